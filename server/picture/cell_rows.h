@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "picture/cells.h"
-#include "picture/light_view.h"
+#include "light/visible/light_view.h"
 #include "picture/pixel_light.h"
 #include "world/raster/raster.h"
 

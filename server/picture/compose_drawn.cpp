@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "light/dynamic/dynamic_image.h"
 #include "light/sample/illumination_map.h"
 #include "picture/cell_rows.h"
 #include "picture/drawn_planes.h"
@@ -257,8 +258,8 @@ struct Composer {
   void light_run(const RunPixels& p, const VisibleRun& run, const CellRows<Scale>& rows,
                  const RunGlow& emitting, int n, LanePart part, Drawn& d) const;
   Shown light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
-                   const RunMoving& moving, const RunMapped& mapped, const CellRows<Scale>& rows,
-                   int n, LanePart part) const;
+                   const RunMoving& moving, const RunMapped& mapped, const RunDynamic& dynamic,
+                   const CellRows<Scale>& rows, int n, LanePart part) const;
 };
 
 template <int Scale>
@@ -335,8 +336,8 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
 template <int Scale>
 Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
                                   const RunGlow& emitting, const RunMoving& moving,
-                                  const RunMapped& mapped, const CellRows<Scale>& rows, int n,
-                                  LanePart part) const {
+                                  const RunMapped& mapped, const RunDynamic& dynamic,
+                                  const CellRows<Scale>& rows, int n, LanePart part) const {
   const int i = n * lane_count - half_group;
   const unsigned here = part.bits(), moves = bits_at(moving.pixels, i) & here;
   Drawn d;
@@ -362,6 +363,7 @@ Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
     shown.samples = q.samples;
   }
   if (moves) put_moving(p, moving.light, i, lanes_of_bits(moves), shown);
+  if (dynamic.any) add_dynamic(p, dynamic, i, shown);
   add_glow(p, emitting, i, here, shown);
   return shown;
 }
@@ -377,13 +379,18 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
     if (kept.skin) moving.pixels = run.light(*kept.skin, p.surface, moving.light);
     RunMapped mapped;
     if (kept.maps) mapped.pixels = run.known(*kept.maps, mapped.unit);
+    RunDynamic dynamic;
+    if ((dynamic.any = kept.dynamic != nullptr))
+      read_dynamic_light(*kept.dynamic, composer.view,
+                         {run.x, run.y, run.count, run.depth, run.object, &p.surface},
+                         dynamic.light);
     const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
       int i = n * lane_count - composer.half_group;
       LanePart part{std::max(-i, 0), std::min(run.count - i, lane_count)};
       planes.put(row + size_t(i + part.begin), part,
-                 composer.light_part(run, p, emitting, moving, mapped, rows, n, part));
+                 composer.light_part(run, p, emitting, moving, mapped, dynamic, rows, n, part));
     }
   };
 }

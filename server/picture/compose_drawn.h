@@ -6,11 +6,12 @@
 #pragma once
 #include "frame/tonemap.h"
 #include "light/visible/visibility.h"
-#include "picture/light_view.h"
+#include "light/visible/light_view.h"
 #include "picture/moving_picture.h"
 
 namespace wellspring {
 
+struct DynamicImage;     // light/dynamic/dynamic_image.h
 struct IlluminationMap;  // light/sample/illumination_map.h
 struct SkinLight;        // light/known/skin_light.h
 
@@ -18,6 +19,8 @@ struct SkinLight;        // light/known/skin_light.h
 struct KeptLight {
   const SkinLight* skin = nullptr;        // what moves is lit by
   const IlluminationMap* maps = nullptr;  // what still surfaces' points count in multiples of
+  // What lights that move or change add, computed for pictures of the view that is drawn.
+  const DynamicImage* dynamic = nullptr;
 };
 
 // Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`

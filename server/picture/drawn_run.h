@@ -32,6 +32,12 @@ struct RunMapped {
   RunKnown unit;
 };
 
+// What lights that move or change add to a run.
+struct RunDynamic {
+  bool any = false;
+  RunKnown light;  // radiance of white diffuse surfaces
+};
+
 // Eight of a run's bits, from lane `i` on, which may begin before it.
 inline unsigned bits_at(uint64_t bits, int i) {
   return unsigned(i < 0 ? bits << -i : bits >> i) & 0xff;
@@ -51,6 +57,14 @@ inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
   put(skin.green, p.surface.green, shown.color.g);
   put(skin.blue, p.surface.blue, shown.color.b);
   shown.samples = lanes_that_move ? all_lanes(skin_samples) : shown.samples;
+}
+
+// Adds what their surfaces reflect of the light of lights that move or change.
+inline void add_dynamic(const RunPixels& p, const RunDynamic& dynamic, int i, Shown& shown) {
+  Color& c = shown.color;
+  c.r += lanes_at(p.surface.red, i) * lanes_at(dynamic.light.red, i);
+  c.g += lanes_at(p.surface.green, i) * lanes_at(dynamic.light.green, i);
+  c.b += lanes_at(p.surface.blue, i) * lanes_at(dynamic.light.blue, i);
 }
 
 // What of eight pixels emits light by itself. `here`: lanes that count, a bit each.

@@ -13,6 +13,7 @@ namespace wellspring {
 struct DynamicLight {
   PunctualLight light;  // as it is at the moment, relative to Scene::origin
   uint32_t id = 0;      // the same from picture to picture, of no other
+  float radius = 0;     // metres around it in which nothing casts a shadow: its flame does not
 };
 
 // Those that a visitor sees by, black ones left out.

@@ -7,6 +7,11 @@
 
 namespace wellspring {
 
+SpotCone make_spot_cone(const PunctualLight& light) {
+  float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+  return {outer, 1 / std::max(0.001f, inner - outer)};
+}
+
 FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const SpotCone> cones) {
   FewLights few{};
   if (lights.size() > size_t(FewLights::most)) return few;

@@ -13,6 +13,7 @@ namespace wellspring {
 struct SpotCone {
   float outer = 0, scale = 1;
 };
+SpotCone make_spot_cone(const PunctualLight& light);
 
 struct FewLights {
   static constexpr int most = 16, groups = most / lane_count;

@@ -171,8 +171,7 @@ void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTa
     if (!emitting.lights[i]) continue;
     tables.punctual.push_back(light);
     tables.punctual_index.push_back(index - 1);
-    float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
-    tables.cones.push_back({outer, 1 / std::max(0.001f, inner - outer)});
+    tables.cones.push_back(make_spot_cone(light));
     punctual_powers.push_back(p);
     punctual_power += double(p);
   }

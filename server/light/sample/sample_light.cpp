@@ -138,7 +138,9 @@ vec3 pass_panes(const Transport& transport, const Ray& ray, PanesPassed& panes) 
 }
 
 // The same for any number of panes, one after the other.
-vec3 step_through_panes(const World& world, Ray ray, const LightSample& light) {
+vec3 step_through_panes(const World& world, Ray ray) {
+  const bool ends = std::isfinite(ray.t_max);
+  const vec3 way = ray.direction, end = ray.origin + way * (ends ? ray.t_max : 0.0f);
   vec3 arrives(1);
   for (int pane = 0; pane < most_panes; pane++) {
     Hit hit = world.intersect(ray);
@@ -149,10 +151,10 @@ vec3 step_through_panes(const World& world, Ray ray, const LightSample& light) {
     arrives *= pane_transmittance(surface, material, ray.direction);
     if (!(max_component(arrives) > 0)) return vec3(0);
     ray.origin = offset_origin(surface, ray.direction);
-    if (!std::isfinite(light.distance)) continue;
-    vec3 line = light.target - ray.origin;
+    if (!ends) continue;
+    vec3 line = end - ray.origin;
     ray.t_max = length(line);
-    if (!(ray.t_max > 0) || dot(line, light.direction) <= 0) return arrives;
+    if (!(ray.t_max > 0) || dot(line, way) <= 0) return arrives;
     ray.direction = line / ray.t_max;
   }
   return vec3(0);
@@ -162,7 +164,6 @@ vec3 step_through_panes(const World& world, Ray ray, const LightSample& light) {
 
 vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
                      const LightSample& light) {
-  const World& world = transport.world;
   Ray ray;
   ray.origin = offset_origin(from, light.direction);
   ray.direction = light.direction;
@@ -172,6 +173,11 @@ vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
     ray.t_max = 1;
     if (!(dot(ray.direction, light.direction) > 0)) return vec3(1);
   }
+  return eval_visibility(transport, ray);
+}
+
+vec3 eval_visibility(const Transport& transport, Ray ray) {
+  const World& world = transport.world;
   if (!transport.tables.any_pane) return world.occluded(ray) ? vec3(0) : vec3(1);
   PanesPassed panes;
   bool blocked = world.occluded(ray, panes);
@@ -180,7 +186,7 @@ vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
   float length = std::sqrt(dot(ray.direction, ray.direction));
   ray.direction /= length;
   ray.t_max *= length;
-  return panes.more ? step_through_panes(world, ray, light) : pass_panes(transport, ray, panes);
+  return panes.more ? step_through_panes(world, ray) : pass_panes(transport, ray, panes);
 }
 
 }  // namespace wellspring

@@ -50,6 +50,8 @@ LightSample sample_punctual_light(const Transport& transport, const SurfacePlace
 // What part of the light arrives: 0 or 1, or the tint of the thin panes in between.
 vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
                      const LightSample& light);
+// The same along a shadow ray, whose direction may have any length.
+vec3 eval_visibility(const Transport& transport, Ray ray);
 
 inline constexpr int most_panes = 64;  // straight through so many in a row, then the light is lost
 

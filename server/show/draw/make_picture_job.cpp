@@ -51,7 +51,8 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   // The first picture of a place, while others walk, is to be there soon.
   const bool hurried = job.keep && place.camera_cuts != picture.job.camera_cuts &&
                        count_moving(show) > int(!stands(show, visitor));
-  job.still = !hurried && show.time - place.moved_at > still_after;
+  job.dynamic = visitor.dynamic;
+  job.still = !hurried && job.dynamic.empty() && show.time - place.moved_at > still_after;
   const PictureJob& before = picture.job;
   // Of a place that was never seen, nothing is known.
   bool seen = picture.drawn_at >= 0 && place.camera_cuts == before.camera_cuts;

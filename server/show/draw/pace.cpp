@@ -6,6 +6,7 @@
 
 #include "show/state/animations.h"
 #include "show/state/delivery.h"
+#include "show/state/dynamic_lights.h"
 #include "show/state/in_view.h"
 
 namespace wellspring {
@@ -92,10 +93,11 @@ void watch(const Show& show, Visitor& visitor) {
   }
   if (note_view(place.heading, show.time, view)) place.camera_cuts++;
   place.last_view = view;
+  visitor.dynamic = dynamic_lights_of(show, visitor, show.time);
 }
 
 bool stands(const Show& show, const Visitor& visitor) {
-  return visitor.shown.frame_number > 0 && show.time - visitor.place.moved_at > still_after &&
+  return visitor.shown.frame_number > 0 && visitor.dynamic.empty() && show.time - visitor.place.moved_at > still_after &&
          visitor.place.velocity == vec3(0) && visitor.place.move == vec3(0);
 }
 

@@ -38,6 +38,15 @@ bool draws_backdrop(const Show& show, const PictureJob& job) {
   return !window.empty() && may_be_laid_over(window, job.view);
 }
 
+// The light of lights that move or change, for a picture of `view`.
+void light_dynamically(Show& show, const PictureJob& job, const View& view, Visitor& visitor) {
+  DynamicImage& image = show.renderer.work.dynamic;
+  const bool any = !job.dynamic.empty();
+  if (any)
+    compute_dynamic_light(*show.world, show.lights, *show.visibility, view, job.dynamic, image);
+  visitor.picture.compositor.set_dynamic(any ? &image : nullptr);
+}
+
 DrawingStep plan_picture(Show& show, const PictureJob& job, const Technique& technique,
                          const View& lit, Visitor& visitor) {
   DrawingWork& work = show.renderer.work;
@@ -76,6 +85,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   }
   const Tonemap curve{show.exhibit.exposure};
   costs.backdrop = draws_backdrop(show, job);
+  light_dynamically(show, job, job.view, visitor);
   if (job.passing)
     compositor.draw(cache, job.view, *show.visibility, curve, work.picture,
                     job.keep ? &work.depth : nullptr);
@@ -227,6 +237,7 @@ void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   DrawingWork& work = show.renderer.work;
   follow_lamps(show, visitor);
   take_answers(show, picture);
+  light_dynamically(show, job, *job.around, visitor);
   picture.compositor.draw(picture.cache, *job.around, *show.visibility,
                           Tonemap{show.exhibit.exposure}, work.picture, &work.depth, true);
   make_keyframe(*job.around, work.picture, work.depth, work.around);

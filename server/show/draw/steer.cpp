@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
-#include "picture/light_view.h"
+#include "light/visible/light_view.h"
 #include "show/draw/pace.h"
 #include "show/kiosk/screen_window.h"
 #include "show/state/in_view.h"

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "light/dynamic/dynamic_light.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -36,6 +37,7 @@ struct PictureJob {
   std::optional<View>
       around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
   int samples = 0;
+  DynamicLights dynamic;  // that shine on what it shows; then it is no picture at rest
 };
 
 // It is drawn in steps, between which the world may move and what moves be drawn.

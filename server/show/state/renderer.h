@@ -19,6 +19,7 @@
 
 #include "base/worker.h"
 #include "cache/broker.h"
+#include "light/dynamic/dynamic_image.h"
 #include "light/known/skin_light.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
@@ -59,6 +60,7 @@ struct DrawingWork {
   size_t traced = 0;  // of the requests
   int guided = 0;     // visibility passes done of a reconstruction's guides
   uint64_t pose = 0;  // of the world, when they were made
+  DynamicImage dynamic;
   MovingLight moving_light;
   MovingPicture moving;  // when it is finished the visitor's old one
 };

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/visible/surface_buffer.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "base/memory.h"
+#include "light/visible/describe_run.h"
+
+namespace wellspring {
+
+size_t memory_bytes(const SurfaceBuffer& surfaces) {
+  return bytes_of(surfaces.depth, surfaces.nx, surfaces.ny, surfaces.nz, surfaces.object);
+}
+
+PixelGrid::PixelGrid(const View& view) {
+  const float size = 2 * view.tan_half_fov / float(view.height);
+  const vec2 axis = axis_place(view);
+  across = view.right * size;
+  down = -view.up * size;
+  corner = view.forward + (0.5f - axis.x) * across + (0.5f - axis.y) * down;
+}
+
+void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuffer& surfaces,
+                  RasterShows shows) {
+  surfaces.view = view;
+  const size_t pixels = surfaces.pixels() + surface_buffer_pad;
+  for (auto* plane : {&surfaces.depth, &surfaces.nx, &surfaces.ny, &surfaces.nz})
+    plane->resize(pixels);
+  surfaces.object.resize(pixels);
+  auto take = [&](const VisibleRun& run) {
+    RunPixels p;
+    describe_run(run, p);
+    const RunSurface& seen = p.surface;
+    const size_t at = size_t(run.y) * size_t(view.width) + size_t(run.x);
+    std::memcpy(&surfaces.depth[at], run.depth, size_t(run.count) * sizeof(float));
+    std::memcpy(&surfaces.object[at], run.object, size_t(run.count) * sizeof(uint32_t));
+    for (int i = 0; i < run.count; i++) {
+      const float x = seen.nx[i], y = seen.ny[i], z = seen.nz[i];
+      const float length2 = x * x + y * y + z * z;
+      const float inverse = length2 > 0 ? 1 / std::sqrt(length2) : 0.0f;
+      surfaces.nx[at + size_t(i)] = x * inverse;
+      surfaces.ny[at + size_t(i)] = y * inverse;
+      surfaces.nz[at + size_t(i)] = z * inverse;
+    }
+  };
+  visibility.see(view, vec2(0.5f), take, shows);
+}
+
+}  // namespace wellspring

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every pixel of a view sees, as planes: places and normals that light falls on (a G-buffer:
+// Saito and Takahashi 1990).
+#pragma once
+#include "base/raw_vector.h"
+#include "light/visible/visibility.h"
+
+namespace wellspring {
+
+// Row after row; arrays end with `surface_buffer_pad` more items that may be read.
+inline constexpr int surface_buffer_pad = 16;
+struct SurfaceBuffer {
+  View view;
+  RawVector<float> depth;       // along the viewing axis; infinity: nothing there
+  RawVector<float> nx, ny, nz;  // normal, towards the eye, unit
+  RawVector<uint32_t> object;   // 0: nothing there
+  size_t pixels() const { return size_t(view.width) * size_t(view.height); }
+};
+size_t memory_bytes(const SurfaceBuffer& surfaces);
+
+// Overwrites `surfaces` by what `view` shows at the middle of its pixels, reusing memory. Normals
+// are those of the mesh. Call as VisibilityPass::see().
+void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuffer& surfaces,
+                  RasterShows shows = RasterShows::all);
+
+// From the eye to places at depth 1: the middle of pixel (x, y) lies at view.position +
+// depth * (corner + x * across + y * down).
+struct PixelGrid {
+  vec3 corner, across, down;
+  explicit PixelGrid(const View& view);
+  vec3 at(float x, float y) const { return corner + x * across + y * down; }
+};
+
+}  // namespace wellspring
