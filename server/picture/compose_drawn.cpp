@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "light/dynamic/dynamic_image.h"
 #include "light/sample/illumination_map.h"
 #include "picture/cell_rows.h"
 #include "picture/drawn_planes.h"
@@ -379,11 +378,7 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
     if (kept.skin) moving.pixels = run.light(*kept.skin, p.surface, moving.light);
     RunMapped mapped;
     if (kept.maps) mapped.pixels = run.known(*kept.maps, mapped.unit);
-    RunDynamic dynamic;
-    if ((dynamic.any = kept.dynamic != nullptr))
-      read_dynamic_light(*kept.dynamic, composer.view,
-                         {run.x, run.y, run.count, run.depth, run.object, &p.surface},
-                         dynamic.light);
+    const RunDynamic dynamic = find_dynamic(kept.dynamic, composer.view, run, p);
     const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {

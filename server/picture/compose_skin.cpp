@@ -11,9 +11,10 @@ namespace wellspring {
 namespace {
 
 Shown light_part(const VisibleRun& run, const RunPixels& p, const RunMoving& moving,
-                 const RunGlow& emitting, int i) {
+                 const RunDynamic& dynamic, const RunGlow& emitting, int i) {
   Shown shown{{}, Lanes{}, load_lanes(run.depth + i), load_lanes<LaneBits>(run.object + i)};
   put_moving(p, moving.light, i, LaneMask{} - 1, shown);
+  if (dynamic.any) add_dynamic(p, dynamic, i, shown);
   add_glow(p, emitting, i, 0xff, shown);
   return shown;
 }
@@ -26,7 +27,7 @@ bool shows_any(const VisibleRun& run) {
 
 void compose_moving(const View& view, const VisibilityPass& visibility, const PictureWindow& window,
                     const Tonemap& tonemap, std::span<const float> disparity,
-                    std::span<uint8_t> covered, const SkinLight& skin, MovingLight& light) {
+                    std::span<uint8_t> covered, const KeptLight& kept, MovingLight& light) {
   NearerEyePlanes planes{tonemap.exposure, disparity.data(), covered.data(),
                          light.picture.rgb.data(), light.peaks.data()};
   auto take = [&](const VisibleRun& run) {
@@ -35,11 +36,12 @@ void compose_moving(const View& view, const VisibilityPass& visibility, const Pi
     RunPixels p;
     RunMoving moving;
     RunGlow emitting = describe_run(run, p);
-    moving.pixels = run.light(skin, p.surface, moving.light);
+    moving.pixels = run.light(*kept.skin, p.surface, moving.light);
+    const RunDynamic dynamic = find_dynamic(kept.dynamic, view, run, p);
     size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
     for (int i = 0; i < run.count; i += lane_count)
       planes.put(row + size_t(i), LanePart{0, std::min(run.count - i, lane_count)},
-                 light_part(run, p, moving, emitting, i));
+                 light_part(run, p, moving, dynamic, emitting, i));
   };
   soften_edges(visibility.see_edges(view, vec2(0.5f), take, RasterShows::moving), light.picture,
                light.peaks);

@@ -9,6 +9,7 @@
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
 #include "picture/read_surface.h"
+#include "picture/relight.h"
 #include "picture/soften_edges.h"
 
 namespace wellspring {
@@ -142,13 +143,20 @@ void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
   const View& view = backdrop.view;
   picture.view = view;
   picture.window = moving_window(world, view);
+  const bool moves = !picture.empty();
+  if (kept_.dynamic) {
+    picture.window = {0, 0, view.width, view.height};
+    relight(backdrop, visibility, *kept_.dynamic, tonemap, work.picture, work.peaks);
+  }
   if (picture.empty()) return;
   const PictureWindow runs = whole_runs(picture.window, view);
-  copy_colors(backdrop, runs, work.picture);
-  guess_peaks(work.picture, runs, work.peaks);
+  if (!kept_.dynamic) {
+    copy_colors(backdrop, runs, work.picture);
+    guess_peaks(work.picture, runs, work.peaks);
+  }
   still_.count.resize(backdrop.disparity.size(), 0);
-  compose_moving(view, visibility, runs, tonemap, backdrop.disparity, still_.count, *kept_.skin,
-                 work);
+  if (moves)
+    compose_moving(view, visibility, runs, tonemap, backdrop.disparity, still_.count, kept_, work);
   take_window(work.picture, picture);
 }
 

@@ -73,8 +73,9 @@ class Compositor {
   // they are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which
-  // `backdrop` is the keyframe; in the light that is kept on its skin. Needs
-  // sight.rasterises(backdrop.view) and set_skin(). An empty picture: it is not to be seen.
+  // `backdrop` is the keyframe; in the light that is kept on its skin. With set_dynamic() all of
+  // the picture is in that light, too. Needs sight.rasterises(backdrop.view) and set_skin(). An
+  // empty picture: it is not to be seen.
   void draw_moving(const World& world, const Keyframe& backdrop, const VisibilityPass& visibility,
                    const Tonemap& tonemap, MovingLight& work, MovingPicture& picture);
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "light/dynamic/dynamic_image.h"
 #include "light/visible/describe_run.h"
 #include "picture/drawn_planes.h"
 #include "world/raster/raster.h"
@@ -57,6 +58,17 @@ inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
   put(skin.green, p.surface.green, shown.color.g);
   put(skin.blue, p.surface.blue, shown.color.b);
   shown.samples = lanes_that_move ? all_lanes(skin_samples) : shown.samples;
+}
+
+// `image`: null, or computed for pictures of `view`.
+inline RunDynamic find_dynamic(const DynamicImage* image, const View& view, const VisibleRun& run,
+                               const RunPixels& p) {
+  RunDynamic found;
+  found.any = image != nullptr;
+  if (image)
+    read_dynamic_light(*image, view, {run.x, run.y, run.count, run.depth, run.object, &p.surface},
+                       found.light);
+  return found;
 }
 
 // Adds what their surfaces reflect of the light of lights that move or change.

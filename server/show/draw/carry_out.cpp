@@ -42,6 +42,7 @@ void draw_what_moves(Show& show, Visitor& visitor) {
   renderer.posed = &visitor;
   renderer.posed_at = show.time;
   renderer.posed_us = show.time_us;
+  renderer.posed_lights = visitor.dynamic;
   visitor.picture.at_work = true;
   use_cores(show, [&show] { draw_moving(show, *show.renderer.posed); });
 }

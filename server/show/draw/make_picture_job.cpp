@@ -52,7 +52,10 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   const bool hurried = job.keep && place.camera_cuts != picture.job.camera_cuts &&
                        count_moving(show) > int(!stands(show, visitor));
   job.dynamic = visitor.dynamic;
-  job.still = !hurried && job.dynamic.empty() && show.time - place.moved_at > still_after;
+  // Over pictures at rest their light is put with what moves (show/draw/moving.h).
+  const bool put_over = job.keep && show.visibility->rasterises(now);
+  job.still =
+      !hurried && (job.dynamic.empty() || put_over) && show.time - place.moved_at > still_after;
   const PictureJob& before = picture.job;
   // Of a place that was never seen, nothing is known.
   bool seen = picture.drawn_at >= 0 && place.camera_cuts == before.camera_cuts;

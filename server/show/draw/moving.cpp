@@ -54,9 +54,15 @@ void finish_skin_light(Show& show) {
 void draw_moving(Show& show, Visitor& visitor) {
   Renderer& renderer = show.renderer;
   double began = seconds_now();
-  visitor.picture.compositor.draw_moving(*show.world, visitor.picture.keyframe, *show.visibility,
-                                         Tonemap{show.exhibit.exposure}, renderer.work.moving_light,
-                                         renderer.work.moving);
+  const Keyframe& keyframe = visitor.picture.keyframe;
+  Compositor& compositor = visitor.picture.compositor;
+  const bool dynamic = !renderer.posed_lights.empty();
+  if (dynamic)
+    compute_dynamic_light(*show.world, show.lights, *show.visibility, keyframe.view,
+                          renderer.posed_lights, renderer.work.dynamic);
+  compositor.set_dynamic(dynamic ? &renderer.work.dynamic : nullptr);
+  compositor.draw_moving(*show.world, keyframe, *show.visibility, Tonemap{show.exhibit.exposure},
+                         renderer.work.moving_light, renderer.work.moving);
   renderer.posed_seconds = seconds_now() - began;
 }
 
@@ -66,7 +72,8 @@ void finish_moving(Show& show, Visitor& visitor) {
   picture.posed_at = renderer.posed_at;
   MovingPicture& moving = renderer.work.moving;
   // Else all of it is drawn anew.
-  picture.backdrop &= may_be_laid_over(moving.window, moving.view);
+  picture.backdrop &=
+      !renderer.posed_lights.empty() || may_be_laid_over(moving.window, moving.view);
   if (!picture.backdrop) return;
   float& smoothed = visitor.times.moving;
   float milliseconds = float(1000 * renderer.posed_seconds);

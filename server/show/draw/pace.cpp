@@ -97,7 +97,7 @@ void watch(const Show& show, Visitor& visitor) {
 }
 
 bool stands(const Show& show, const Visitor& visitor) {
-  return visitor.shown.frame_number > 0 && visitor.dynamic.empty() && show.time - visitor.place.moved_at > still_after &&
+  return visitor.shown.frame_number > 0 && show.time - visitor.place.moved_at > still_after &&
          visitor.place.velocity == vec3(0) && visitor.place.move == vec3(0);
 }
 

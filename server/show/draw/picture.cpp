@@ -34,14 +34,16 @@ void carry_times(double factor, StageTimes& times) {
 bool draws_backdrop(const Show& show, const PictureJob& job) {
   if (!in_steps(job) || !job.moving || job.passing) return false;
   if (!show.visibility->rasterises(job.view)) return false;
+  if (!job.dynamic.empty()) return true;
   PictureWindow window = moving_window(*show.world, job.view);
   return !window.empty() && may_be_laid_over(window, job.view);
 }
 
-// The light of lights that move or change, for a picture of `view`.
+// The light of lights that move or change, for a picture of `view`: over one at rest it is put
+// later.
 void light_dynamically(Show& show, const PictureJob& job, const View& view, Visitor& visitor) {
   DynamicImage& image = show.renderer.work.dynamic;
-  const bool any = !job.dynamic.empty();
+  const bool any = !job.dynamic.empty() && job.passing;
   if (any)
     compute_dynamic_light(*show.world, show.lights, *show.visibility, view, job.dynamic, image);
   visitor.picture.compositor.set_dynamic(any ? &image : nullptr);

@@ -50,13 +50,13 @@ bool is_on(const Show& show, const Visitor& visitor, size_t animation) {
 }
 
 bool sees_moving(const Show& show, const Visitor& visitor, const View& view) {
-  return sees_figure(show, teller_of(show, visitor), view) ||
+  return !visitor.dynamic.empty() || sees_figure(show, teller_of(show, visitor), view) ||
          std::ranges::any_of(show.movers.reach,
                              [&](const Reach& reach) { return in_reach(view, reach); });
 }
 
 bool sees_motion(const Show& show, const Visitor& visitor, const View& view) {
-  if (sees_figure(show, teller_of(show, visitor), view)) return true;
+  if (!visitor.dynamic.empty() || sees_figure(show, teller_of(show, visitor), view)) return true;
   for (size_t i = 0; i < show.exhibit.animations.size(); i++)
     if (in_reach(view, show.movers.reach[i]) &&
         is_running(show.exhibit.animations[i], play_of(show, visitor, i), show.time))

@@ -37,7 +37,7 @@ struct PictureJob {
   std::optional<View>
       around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
   int samples = 0;
-  DynamicLights dynamic;  // that shine on what it shows; then it is no picture at rest
+  DynamicLights dynamic;  // as they are then
 };
 
 // It is drawn in steps, between which the world may move and what moves be drawn.

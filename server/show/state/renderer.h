@@ -89,6 +89,7 @@ struct Renderer {
   Visitor* posed = nullptr;  // for whom what moves is being drawn, between two such steps
   double posed_at = 0;       // show time of its job
   uint64_t posed_us = 0;
+  DynamicLights posed_lights;  // of that visitor then
   double posed_seconds = 0;  // that it took
   bool surrounds = false;    // only `job.around` of it
   PictureJob job;            // for it
