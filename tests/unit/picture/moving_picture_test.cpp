@@ -273,7 +273,7 @@ TEST(MovingPicture, CoversWhatLiesBehindIt) {
     light.picture.width = width, light.picture.height = height;
     light.picture.rgb.assign(3 * pixels, 99);
     guess_peaks(light.picture, window, light.peaks);
-    compose_moving(view, *stage.visibility, window, {}, disparity, covered, skin, light);
+    compose_moving(view, *stage.visibility, window, {}, disparity, covered, {&skin}, light);
     int count = int(std::count(covered.begin(), covered.end(), uint8_t(0)));
     EXPECT_EQ(count + std::count(covered.begin(), covered.end(), uint8_t(7)), pixels);
     if (depth < 1) EXPECT_EQ(count, 0);

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// The light of lights that move, for a picture: that of the technique for direct light, pixel by
+// pixel, and in half of the resolution never across edges.
+#include "light/dynamic/dynamic_image.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "light/technique/technique.h"
+#include "light/visible/describe_run.h"
+#include "scenes/scenes.h"
+
+using namespace wellspring;
+using namespace wellspring::scenes;
+
+namespace {
+
+PunctualLight lamp(vec3 position, vec3 intensity = vec3(3, 2, 1)) {
+  PunctualLight light;
+  light.position = position;
+  light.intensity = intensity;
+  return light;
+}
+
+// A floor with a ball on it and, where asked for, a tinted pane beside the lamp.
+Scene make_floor_and_ball(bool pane = false) {
+  Scene scene = empty_scene();
+  add_floor(scene, 0.5f);
+  add_mesh(scene, sphere_mesh(add_material(scene, diffuse(vec3(0.7f, 0.5f, 0.3f))), 0.5f, 64),
+           "ball", at({0, 0.5f, 0}));
+  if (!pane) return scene;
+  Material tinted = glass(1.5f, 0, 0);
+  tinted.base_color = vec4(0.9f, 0.5f, 0.2f, 1);
+  add_quad(scene, add_material(scene, tinted), {0.7f, 0, 2}, {0, 0, -4}, {0, 3, 0}, "pane");
+  return scene;
+}
+
+View view_of(const Scene& scene, int width, int height) {
+  return make_view_towards(scene, {-2.5, 1.6, 2.5}, {0, 0.4, 0}, {0, 1, 0}, 0.8f, width, height);
+}
+
+// What compute_dynamic_light() makes, times reflectance, as a picture would show it.
+std::vector<vec3> draw_dynamic(const Scene& scene, const View& view,
+                               std::vector<DynamicLight> from) {
+  World world(scene);
+  Lights lights = make_lights(world);
+  VisibilityPass visibility(world, lights);
+  DynamicImage image;
+  compute_dynamic_light(world, lights, visibility, view, from, image);
+  std::vector<vec3> picture(size_t(view.width) * size_t(view.height));
+  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
+    RunPixels p;
+    describe_run(run, p);
+    RunKnown light;
+    read_dynamic_light(image, view, {run.x, run.y, run.count, run.depth, run.object, &p.surface},
+                       light);
+    for (int i = 0; i < run.count; i++)
+      picture[size_t(run.y) * size_t(view.width) + size_t(run.x + i)] =
+          run.object[i] == 0 ? vec3(0)
+                             : vec3(light.red[i], light.green[i], light.blue[i]) *
+                                   vec3(p.surface.red[i], p.surface.green[i], p.surface.blue[i]);
+  });
+  return picture;
+}
+
+// The same light, as the technique for direct light knows it in a scene that it stands in.
+std::vector<vec3> trace_direct_light(Scene scene, const View& view,
+                                     const std::vector<DynamicLight>& from) {
+  for (const DynamicLight& one : from) scene.lights.push_back(one.light);
+  World world(scene);
+  Lights lights = make_lights(world);
+  const Technique& direct = *find_technique("direct");
+  std::vector<vec3> picture;
+  for (int y = 0; y < view.height; y++)
+    for (int x = 0; x < view.width; x++) {
+      Request request;
+      request.ray = view_ray(view, float(x) + 0.5f, float(y) + 0.5f);
+      vec3 sum(0);
+      const int samples = from.size() > 1 ? 64 : 1;
+      for (int i = 0; i < samples; i++) {
+        request.seed = 7, request.index = uint32_t(i);
+        sum += direct.trace(world, lights, {}, request).radiance();
+      }
+      picture.push_back(sum / float(samples));
+    }
+  return picture;
+}
+
+// Pixels that differ by more than a share of what they should be.
+int count_wrong(const std::vector<vec3>& a, const std::vector<vec3>& b, float share) {
+  int wrong = 0;
+  for (size_t i = 0; i < a.size(); i++)
+    wrong += !(max_component(abs(a[i] - b[i])) <= share * max_component(b[i]) + 1e-3f);
+  return wrong;
+}
+
+TEST(DynamicImage, IsTheDirectLightOfALampWithItsShadows) {
+  Scene scene = make_floor_and_ball();
+  View view = view_of(scene, 96, 64);
+  DynamicLight one{lamp({1, 2, 0.5f})};
+  EXPECT_LT(
+      count_wrong(draw_dynamic(scene, view, {one}), trace_direct_light(scene, view, {one}), 0.02f),
+      96 * 64 / 100);
+}
+
+TEST(DynamicImage, KnowsConesRangesAndTheSun) {
+  Scene scene = make_floor_and_ball();
+  View view = view_of(scene, 96, 64);
+  DynamicLight spot{lamp({1, 2, 0.5f})}, sun, near{lamp({1, 2, 0.5f})};
+  spot.light.type = PunctualType::spot;
+  spot.light.direction = normalize(vec3(-1, -2, -0.5f));
+  spot.light.inner_cone = 0.1f, spot.light.outer_cone = 0.4f;
+  sun.light.type = PunctualType::directional;
+  sun.light.direction = normalize(vec3(-1, -1, -0.3f));
+  near.light.range = 2.2f;
+  for (const DynamicLight& one : {spot, sun, near}) {
+    auto picture = draw_dynamic(scene, view, {one});
+    EXPECT_LT(count_wrong(picture, trace_direct_light(scene, view, {one}), 0.02f), 96 * 64 / 100);
+    int lit = 0;
+    for (vec3 color : picture) lit += max_component(color) > 0;
+    EXPECT_GT(lit, 96 * 64 / 50);
+  }
+}
+
+TEST(DynamicImage, AddsUpManyLights) {
+  Scene scene = make_floor_and_ball();
+  View view = view_of(scene, 48, 32);
+  std::vector<DynamicLight> lights;
+  std::vector<vec3> sum(48 * 32, vec3(0));
+  for (int i = 0; i < 40; i++) {
+    lights.push_back({lamp({std::sin(float(i)) * 2, 1.5f, std::cos(float(i)) * 2}, vec3(0.2f))});
+    auto one = draw_dynamic(scene, view, {lights.back()});
+    for (size_t p = 0; p < sum.size(); p++) sum[p] += one[p];
+  }
+  EXPECT_EQ(count_wrong(draw_dynamic(scene, view, lights), sum, 1e-3f), 0);
+}
+
+TEST(DynamicImage, PanesTintWhatPassesThem) {
+  Scene scene = make_floor_and_ball(true);
+  View view = view_of(scene, 96, 64);
+  DynamicLight one{lamp({2, 1.5f, 0})};
+  auto picture = draw_dynamic(scene, view, {one}), truth = trace_direct_light(scene, view, {one});
+  // The pane itself is in the picture, too, which `direct` follows light through.
+  EXPECT_LT(count_wrong(picture, truth, 0.05f), 96 * 64 / 20);
+  auto without = draw_dynamic(make_floor_and_ball(false), view, {one});
+  EXPECT_GT(count_wrong(picture, without, 0.2f), 96 * 64 / 10);
+}
+
+TEST(DynamicImage, NothingAroundAFlameCastsAShadow) {
+  Scene scene = make_floor_and_ball();
+  add_mesh(scene, sphere_mesh(add_material(scene, diffuse(vec3(0.5f))), 0.08f, 16), "flame",
+           at({1, 2, 0.5f}));
+  View view = view_of(scene, 96, 64);
+  DynamicLight one{lamp({1, 2, 0.5f})};
+  auto lit = [&] {
+    int lit = 0;
+    for (vec3 color : draw_dynamic(scene, view, {one})) lit += max_component(color) > 0;
+    return lit;
+  };
+  EXPECT_LT(lit(), 96 * 64 / 50);
+  one.radius = 0.1f;
+  EXPECT_GT(lit(), 96 * 64 / 3);
+}
+
+// A light that touches a surface is bounded; one at a place or of a strength that is none is not
+// seen.
+TEST(DynamicImage, HardLightsStayFinite) {
+  Scene scene = make_floor_and_ball();
+  View view = view_of(scene, 64, 48);
+  const float most = 3 / (pi * least_distance * least_distance);
+  for (vec3 place : {vec3(0.3f, 0, 1), vec3(0, 1, 0), vec3(0, 0.5f, 0), vec3(view.position),
+                     vec3(1e7f, 1e7f, 0), vec3(1e-40f), vec3(NAN, 0, 0), vec3(INFINITY, 0, 0)})
+    for (float strength : {1.0f, 0.0f, 1e-42f}) {
+      auto picture = draw_dynamic(scene, view, {{lamp(place, strength * vec3(3, 2, 1))}});
+      for (vec3 color : picture) {
+        ASSERT_TRUE(is_finite(color)) << place.x;
+        ASSERT_GE(std::min({color.x, color.y, color.z}), 0);
+        ASSERT_LE(max_component(color), most);
+      }
+    }
+}
+
+// A world far from zero, and a view that grazes its floor.
+TEST(DynamicImage, GrazingFloorsAreNotTheirOwnShadow) {
+  Scene scene = empty_scene();
+  add_floor(scene, 0.5f);
+  scene.origin = dvec3(1e6, -4e5, 3e6);
+  View view = make_view_towards(scene, scene.origin + dvec3(0, 0.02, 10),
+                                scene.origin + dvec3(0, 0, -10), {0, 1, 0}, 0.6f, 96, 64);
+  DynamicLight one{lamp({0, 3, -4}, vec3(300))};
+  EXPECT_EQ(
+      count_wrong(draw_dynamic(scene, view, {one}), trace_direct_light(scene, view, {one}), 0.02f),
+      0);
+}
+
+// In half of the resolution light is that of the same surface.
+TEST(DynamicImage, LargePicturesKeepLightWithinItsSurface) {
+  Scene scene = make_floor_and_ball();
+  const int width = 801, height = 603;
+  View view = view_of(scene, width, height);
+  ASSERT_LT(dynamic_light_view(view).width, width);
+  DynamicLight one{lamp({1, 2, 0.5f})};
+  auto picture = draw_dynamic(scene, view, {one}), truth = trace_direct_light(scene, view, {one});
+  // Shadows' edges are a pixel or two of the light wide, and nothing else differs.
+  EXPECT_LT(count_wrong(picture, truth, 0.05f), width * height / 100);
+  EXPECT_LT(count_wrong(picture, truth, 0.25f), width * height / 150);
+}
+
+}  // namespace
