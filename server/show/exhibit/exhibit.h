@@ -12,6 +12,7 @@
 #include "avatar/body/gesture_library.h"
 #include "avatar/story/story_script.h"
 #include "show/exhibit/kiosk_settings.h"
+#include "show/lighting/changing_light.h"
 #include "world/load/credit.h"
 #include "world/scene.h"
 
@@ -199,6 +200,7 @@ struct Exhibit {
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
   std::vector<ExhibitLamp> lamps;  // of each of the scene's
+  std::vector<ChangingLight> lights;
   std::vector<ExhibitAnimation> animations;
   std::vector<ExhibitMover> movers;
   std::optional<Book> book;

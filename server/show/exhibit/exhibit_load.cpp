@@ -14,6 +14,7 @@
 #include "show/exhibit/exhibit_kiosks.h"
 #include "show/exhibit/exhibit_lamps.h"
 #include "show/exhibit/exhibit_light.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "show/exhibit/exhibit_objects.h"
 #include "show/exhibit/exhibit_questions.h"
 #include "show/exhibit/exhibit_story.h"
@@ -227,6 +228,7 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   root.object("walk", false, [&](Fields fields) { read_walk(exhibit, std::move(fields)); });
   read_scene(exhibit, root, problems);
   read_lamps(exhibit, root);
+  read_lights(exhibit, root);
   read_viewpoints(exhibit, root);
   for (const Viewpoint& view : exhibit.scene.viewpoints)
     if (find_viewpoint(exhibit, view.name) < 0) exhibit.viewpoints.push_back({view, {}, {}});
@@ -259,6 +261,7 @@ Exhibit load_exhibit(const std::string& folder) {
     throw ExhibitError(std::move(problems));
   for (const Problem& problem : problems) log::warn("{}", to_string(problem));
   take_movers(exhibit);
+  take_lights(exhibit);
   return exhibit;
 }
 

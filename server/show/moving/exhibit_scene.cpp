@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "avatar/mind/storyteller.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "show/moving/figure.h"
 #include "show/moving/movers.h"
 #include "show/moving/play.h"
@@ -28,6 +29,7 @@ Scene make_exhibit_scene(Exhibit exhibit, double time) {
     scene.instances.push_back({int(scene.meshes.size()), mat4(1), exhibit.movers[i].object});
     scene.meshes.push_back(mover_mesh(exhibit, i, times));
   }
+  put_lights(exhibit.lights, time, scene);
   if (exhibit.storytellers.empty()) return std::move(scene);
   const StorytellerPlace& place = exhibit.storytellers.front();
   const Character& character = place.character;

@@ -9,7 +9,8 @@ namespace wellspring {
 mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene);
 
 // The exhibit's scene with its viewpoints as cameras and its storyteller standing where it stands,
-// as it idles `time` seconds after nobody came; animations that loop have run so long.
+// as it idles `time` seconds after nobody came; animations that loop have run so long, and lights
+// that change are as they are then.
 Scene make_exhibit_scene(Exhibit exhibit, double time);
 
 }  // namespace wellspring

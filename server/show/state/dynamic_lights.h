@@ -7,6 +7,9 @@
 
 namespace wellspring {
 
+// DynamicLight::id: of exhibit.lights their place there and this, and of the others.
+inline constexpr uint32_t first_changing_light = 1, sun_of_the_day = 1000, first_carried = 2000;
+
 // As they are at `time`, seconds of the show. Empty, at no cost, where the exhibit has none.
 DynamicLights dynamic_lights_of(const Show& show, const Visitor& visitor, double time);
 

@@ -14,9 +14,8 @@ bool has(const std::vector<int>& list, int value) {
 }
 
 const Lamp* owner_of_light(const Scene& scene, int light) {
-  for (const Lamp& lamp : scene.lamps)
-    if (has(lamp.lights, light)) return &lamp;
-  return nullptr;
+  const int lamp = lamp_of_light(scene, light);
+  return lamp < 0 ? nullptr : &scene.lamps[size_t(lamp)];
 }
 
 const Lamp* owner_of_material(const Scene& scene, int material) {
@@ -57,6 +56,15 @@ std::vector<char> nodes_within(const Scene& scene, const std::string& name) {
 // Does what has this number come from such a node?
 bool is_within(const std::vector<char>& within, const std::vector<int>& nodes, size_t number) {
   return number < nodes.size() && nodes[number] >= 0 && within[size_t(nodes[number])];
+}
+
+std::vector<int> lights_within(const Scene& scene, const std::vector<char>& within,
+                               const std::string& name) {
+  std::vector<int> lights;
+  for (size_t i = 0; i < scene.lights.size(); i++)
+    if (scene.lights[i].name == name || is_within(within, scene.light_nodes, i))
+      lights.push_back(int(i));
+  return lights;
 }
 
 // What a lamp is going to be, and what is said about one name.
@@ -146,9 +154,7 @@ std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene) {
     if (name.empty()) continue;
     std::vector<char> within = nodes_within(scene, name);
     found.exists = std::find(within.begin(), within.end(), 1) != within.end();
-    for (size_t i = 0; i < scene.lights.size(); i++)
-      if (scene.lights[i].name == name || is_within(within, scene.light_nodes, i))
-        found.add_light(scene, int(i));
+    for (int light : lights_within(scene, within, name)) found.add_light(scene, light);
     for (size_t i = 0; i < scene.instances.size(); i++) {
       uint32_t object = scene.instances[i].object;
       bool named = object < scene.objects.size() && scene.objects[object] == name;
@@ -171,6 +177,41 @@ std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene) {
   for (const auto& [material, of_it] : by_material) take_instances(of_it, material, scene, lamp);
   scene.lamps.push_back(std::move(lamp));
   return faults;
+}
+
+std::vector<int> find_lights(const Scene& scene, const std::string& node, std::string& fault) {
+  const std::vector<char> within = nodes_within(scene, node);
+  std::vector<int> lights = lights_within(scene, within, node);
+  if (!lights.empty()) return lights;
+  const bool exists = std::find(within.begin(), within.end(), 1) != within.end();
+  fault = exists
+              ? "nothing of the node '" + node + "' is a point, spot or distant light"
+              : "the scene has no node '" + node + "'" + did_you_mean(node, names_in(scene, false));
+  return {};
+}
+
+int lamp_of_light(const Scene& scene, int light) {
+  for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++)
+    if (has(scene.lamps[lamp].lights, light)) return int(lamp);
+  return -1;
+}
+
+void remove_lights(std::span<const int> lights, Scene& scene) {
+  std::vector<int> becomes(scene.lights.size(), 0);
+  for (int light : lights) becomes[size_t(light)] = -1;
+  int kept = 0;
+  for (size_t i = 0; i < becomes.size(); i++) {
+    if (becomes[i] < 0) continue;
+    if (size_t(kept) != i) scene.lights[size_t(kept)] = std::move(scene.lights[i]);
+    if (i < scene.light_nodes.size()) scene.light_nodes[size_t(kept)] = scene.light_nodes[i];
+    becomes[i] = kept++;
+  }
+  scene.lights.resize(size_t(kept));
+  scene.light_nodes.resize(std::min(scene.light_nodes.size(), size_t(kept)));
+  for (Lamp& lamp : scene.lamps) {
+    std::erase_if(lamp.lights, [&](int light) { return becomes[size_t(light)] < 0; });
+    for (int& light : lamp.lights) light = becomes[size_t(light)];
+  }
 }
 
 }  // namespace wellspring

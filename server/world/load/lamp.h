@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lamps out of a scene's file: lights and what emits, named by those who furnish an exhibit.
 #pragma once
+#include <span>
+
 #include "world/scene.h"
 
 namespace wellspring {
@@ -24,5 +26,12 @@ struct LampFault {
 // shares with what is no part of it are copied, so that they are its own: the picture stays as it
 // was.
 std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene);
+
+// The punctual lights that a name means as LampNames::nodes has it. `fault`: why it means none.
+std::vector<int> find_lights(const Scene& scene, const std::string& node, std::string& fault);
+// The lamp that a light belongs to, or -1.
+int lamp_of_light(const Scene& scene, int light);
+// Takes these lights out of the scene and its lamps; the others move up.
+void remove_lights(std::span<const int> lights, Scene& scene);
 
 }  // namespace wellspring

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/exhibit/exhibit_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+#include "world/load/lamp.h"
+
+namespace wellspring {
+namespace {
+
+constexpr double most_candela = 1e6, longest_track = 3600;
+constexpr float widest_turn = -0.5f;              // cosine of 120 degrees, from a key to the next
+constexpr float same_place = 1e-3f;               // metres, or of a unit vector
+constexpr double least_between = 1 / most_turns;  // seconds
+
+bool has_place(const PunctualLight& light) { return light.type != PunctualType::directional; }
+bool has_direction(const PunctualLight& light) { return light.type != PunctualType::point; }
+
+vec3 read_direction(Fields& fields, bool required, vec3 otherwise) {
+  const dvec3 given = fields.triple("direction", required, dvec3(otherwise));
+  if (glm::length(given) > 1e-6) return vec3(glm::normalize(given));
+  fields.problem("direction", "must not be zero");
+  return otherwise;
+}
+
+// A light that the scene does not have.
+PunctualLight read_new_light(const Exhibit& exhibit, Fields& fields) {
+  PunctualLight light;
+  const std::string type = fields.text("type", true);
+  if (type == "spot") light.type = PunctualType::spot;
+  else if (type == "sun") light.type = PunctualType::directional;
+  else if (type != "point" && !type.empty())
+    fields.problem("type", "'" + type + "' is none of point, spot and sun");
+  if (has_place(light))
+    light.position = vec3(fields.triple("position", true) - exhibit.scene.origin);
+  if (has_direction(light)) light.direction = read_direction(fields, true, light.direction);
+  const dvec3 color = fields.triple("color", false, dvec3(1));
+  for (int i = 0; i < 3; i++)
+    if (color[i] < 0) fields.problem("color/" + std::to_string(i), "must not be below 0");
+  light.intensity =
+      vec3(glm::max(color, dvec3(0))) *
+      float(fields.number(has_place(light) ? "candela" : "lux", true, 1, 0, most_candela));
+  if (light.type != PunctualType::spot) return light;
+  light.outer_cone = float(glm::radians(fields.number("outer_cone_deg", false, 45, 1, 90)));
+  const double inner = glm::degrees(double(light.outer_cone)) / 2;
+  light.inner_cone = float(glm::radians(fields.number("inner_cone_deg", false, inner, 0, 90)));
+  if (light.inner_cone > light.outer_cone)
+    fields.problem("inner_cone_deg", "is wider than the outer cone");
+  return light;
+}
+
+void read_flicker(ChangingLight& light, Fields fields) {
+  light.flicker.depth = float(fields.number("depth", false, 0.3, 0, 1));
+  light.flicker.hz = float(fields.number("hz", false, 4, 0.1, most_turns));
+  fields.finish();
+}
+
+// What a key leaves out is as in the one before, in the first as in the light itself.
+void read_key(const Exhibit& exhibit, ChangingLight& light, Fields fields) {
+  const bool first = light.track.empty();
+  TrackKey key{0, light.light.position, light.light.direction, 1};
+  if (!first) key = light.track.back();
+  const double before = key.time;
+  const vec3 looked = key.direction;
+  key.time = fields.number("time", true, 0, 0, longest_track);
+  if (first && key.time != 0) fields.problem("time", "of the first entry must be 0");
+  if (!first && key.time < before + least_between * (1 - 1e-9))
+    fields.problem("time",
+                   fmt::format("must be at least {} s after the entry before", least_between));
+  if (has_place(light.light))
+    key.position =
+        vec3(fields.triple("position", false, dvec3(key.position) + exhibit.scene.origin) -
+             exhibit.scene.origin);
+  if (has_direction(light.light)) key.direction = read_direction(fields, false, key.direction);
+  if (!first && dot(key.direction, looked) < widest_turn)
+    fields.problem("direction",
+                   "turns by more than 120 degrees: an entry in between says which way");
+  key.intensity = float(fields.number("intensity", false, double(key.intensity), 0, 1000));
+  fields.finish();
+  light.track.push_back(key);
+}
+
+bool is_same(const TrackKey& a, const TrackKey& b) {
+  return glm::length(a.position - b.position) < same_place &&
+         glm::length(a.direction - b.direction) < same_place && a.intensity == b.intensity;
+}
+
+void read_track(const Exhibit& exhibit, ChangingLight& light, Fields& fields) {
+  fields.objects("track", false, [&](Fields key) { read_key(exhibit, light, std::move(key)); });
+  light.loop = fields.flag("loop", true);
+  std::vector<TrackKey>& track = light.track;
+  if (fields.has("track") && track.size() < 2)
+    fields.problem("track", "must have at least two entries");
+  if (track.size() > most_track_keys)
+    fields.problem("track", fmt::format("has more than {} entries", most_track_keys));
+  if (track.size() >= 2 && light.loop && !is_same(track.front(), track.back()))
+    fields.problem("track",
+                   "ends otherwise than it begins, so the light would jump: give the last entry "
+                   "the values of the first, or say \"loop\": false");
+  const bool dims = std::ranges::any_of(
+      track, [&](const TrackKey& key) { return key.intensity != track.front().intensity; });
+  if (dims && light.flicker.depth > 0)
+    fields.problem("flicker",
+                   "is there beside an intensity that changes on the track: one of them");
+}
+
+// The scene's light of that name; false: there is none to go on with.
+bool find_light(const Exhibit& exhibit, ChangingLight& light, Fields& fields) {
+  light.name = fields.text("node", true);
+  if (light.name.empty() || exhibit.scene.objects.empty()) return false;  // nothing was loaded
+  std::string fault;
+  const std::vector<int> found = find_lights(exhibit.scene, light.name, fault);
+  if (found.size() > 1) fault = "'" + light.name + "' means several lights: name one of them";
+  for (const ChangingLight& other : exhibit.lights)
+    if (!found.empty() && other.of_scene == found.front())
+      fault = "'" + light.name + "' is another entry's light already";
+  if (!fault.empty()) {
+    fields.problem("node", fault);
+    return false;
+  }
+  light.of_scene = found.front();
+  light.light = exhibit.scene.lights[size_t(light.of_scene)];
+  light.lamp = lamp_of_light(exhibit.scene, light.of_scene);
+  return true;
+}
+
+void read_light(Exhibit& exhibit, Fields fields) {
+  ChangingLight light;
+  if (fields.has("type")) {
+    if (fields.has("node"))
+      fields.problem("node", "is there beside a \"type\", which makes a light of its own");
+    fields.value("node");
+    light.name = fields.text("name", true);
+    light.light = read_new_light(exhibit, fields);
+    light.light.name = light.name;
+    if (const std::string lamp = fields.text("lamp", false); !lamp.empty()) {
+      light.lamp = find_lamp(exhibit, lamp);
+      if (light.lamp < 0) fields.problem("lamp", "there is no lamp '" + lamp + "'");
+    }
+  } else if (!find_light(exhibit, light, fields)) {
+    return;
+  }
+  for (const ChangingLight& other : exhibit.lights)
+    if (!light.name.empty() && other.name == light.name)
+      fields.problem("name", "'" + light.name + "' is taken by another light");
+  fields.object("flicker", false, [&](Fields flicker) { read_flicker(light, std::move(flicker)); });
+  read_track(exhibit, light, fields);
+  if (!fields.has("flicker") && !fields.has("track"))
+    fields.problem("",
+                   "has neither \"flicker\" nor \"track\": a light that stays as it is belongs "
+                   "into the scene");
+  fields.finish();
+  exhibit.lights.push_back(std::move(light));
+}
+
+}  // namespace
+
+void read_lights(Exhibit& exhibit, Fields& root) {
+  root.objects("lights", false, [&](Fields fields) { read_light(exhibit, std::move(fields)); });
+  if (exhibit.lights.size() > most_changing_lights)
+    root.problem("lights", fmt::format("are more than {}", most_changing_lights));
+}
+
+void take_lights(Exhibit& exhibit) {
+  std::vector<int> taken;
+  for (ChangingLight& light : exhibit.lights)
+    if (light.of_scene >= 0) taken.push_back(std::exchange(light.of_scene, -1));
+  if (!taken.empty()) remove_lights(taken, exhibit.scene);
+}
+
+void put_lights(const std::vector<ChangingLight>& lights, double time, Scene& scene) {
+  for (const ChangingLight& light : lights) {
+    if (light.lamp >= 0) scene.lamps[size_t(light.lamp)].lights.push_back(int(scene.lights.size()));
+    scene.lights.push_back(eval_light(light, time));
+  }
+}
+
+}  // namespace wellspring
