@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights that move are seen in the pictures of who walks and of who rests, as if they stood where
+// they are; what is kept of light does not know them.
+#include <gtest/gtest.h>
+
+#include "light/technique/technique.h"
+#include "show/state/dynamic_lights.h"
+#include "unit/show/show_stage.h"
+
+namespace wellspring {
+namespace {
+
+// A torch that is carried to and fro, ten metres in as many seconds.
+ChangingLight torch() {
+  ChangingLight light;
+  light.name = "torch";
+  light.light.intensity = vec3(14, 9, 4);
+  light.light.position = {-1, 1.5f, 2};
+  light.track = {{0, {-1, 1.5f, 2}}, {4, {1, 2.2f, 1}}, {8, {-1, 1.5f, 2}}};
+  return light;
+}
+
+struct DynamicPictures : testing::Test, ShowStage {
+  void begin_with(std::vector<ChangingLight> lights, bool background = true) {
+    Exhibit exhibit = make_tiny_exhibit();
+    exhibit.lights = std::move(lights);
+    begin(std::move(exhibit), settings_for("direct", background, 50));
+    join(96, 64);
+  }
+  // With the light at a time as one that stands still.
+  Image8 lit_truth(double time) {
+    Scene scene = show->exhibit.scene;
+    for (const DynamicLight& one : dynamic_lights_of(*show, visitor(), time))
+      scene.lights.push_back(one.light);
+    World world(scene);
+    Lights lights = make_lights(world);
+    StillSettings settings;
+    settings.spp = 64;
+    settings.transport = show->settings.transport;
+    Image8 picture;
+    tonemap(
+        render_still(*show->still_technique, world, lights, visitor().place.last_view, settings),
+        Tonemap{show->exhibit.exposure}, picture);
+    return picture;
+  }
+  Image8 dark_truth() { return truth(visitor().place.last_view, 64); }
+  void expect_lit(double most) {
+    const Image8 shown = last_image();
+    EXPECT_LT(mean_difference(shown, lit_truth(show->time)), most);
+    EXPECT_GT(mean_difference(shown, dark_truth()), 3 * most);
+  }
+};
+
+TEST_F(DynamicPictures, AreLitAtRest) {
+  begin_with({torch()});
+  run(6);
+  EXPECT_TRUE(last_header().flags & packet_still);
+  EXPECT_TRUE(visitor().picture.backdrop);
+  expect_lit(4);
+  // The picture that stays does not know it.
+  Image8 still;
+  const Keyframe& keyframe = visitor().picture.keyframe;
+  still.width = keyframe.view.width, still.height = keyframe.view.height;
+  for (int i = 0; i < still.width * still.height; i++)
+    for (int c : {0, 8, 16}) still.rgb.push_back(uint8_t(keyframe.color[size_t(i)] >> c));
+  EXPECT_LT(mean_difference(still, dark_truth()), 4);
+}
+
+TEST_F(DynamicPictures, FollowTheLight) {
+  begin_with({torch()});
+  run(6);
+  const size_t before = pictures().size();
+  const Image8 earlier = last_image();
+  run(1.5);
+  EXPECT_GT(pictures().size(), before + 15) << "pictures come while it moves";
+  EXPECT_GT(mean_difference(earlier, last_image()), 3);
+  expect_lit(4);
+}
+
+TEST_F(DynamicPictures, AreLitOnTheWay) {
+  begin_with({torch()});
+  for (int i = 0; i < 100; i++) turn(0.01), step();
+  EXPECT_FALSE(last_header().flags & packet_still);
+  expect_lit(8);
+}
+
+TEST_F(DynamicPictures, AreLitWithoutBackground) {
+  begin_with({torch()}, false);
+  run(3);
+  expect_lit(6);
+}
+
+// When it goes out the picture is again what stands still.
+TEST_F(DynamicPictures, BecomeDarkAgain) {
+  ChangingLight ends = torch();
+  ends.loop = false;
+  ends.track = {{0, {-1, 1.5f, 2}}, {3, {-1, 1.5f, 2}}, {3.5, {-1, 1.5f, 2}, {0, 0, -1}, 0}};
+  begin_with({ends});
+  run(2.5);
+  expect_lit(4);
+  run(4);
+  EXPECT_TRUE(visitor().dynamic.empty());
+  EXPECT_LT(mean_difference(last_image(), dark_truth()), 4);
+  const size_t before = pictures().size();
+  run(1);
+  EXPECT_LT(pictures().size(), before + 15) << "nothing moves any more";
+}
+
+// Without such lights nothing of them is computed, and no memory is held for them.
+TEST_F(DynamicPictures, CostNothingWhereThereAreNone) {
+  begin_with({});
+  run(1);
+  for (int i = 0; i < 20; i++) turn(0.01), step();
+  EXPECT_EQ(memory_bytes(show->renderer.work.dynamic), 0u);
+  begin_with({torch()});
+  run(1);
+  EXPECT_GT(memory_bytes(show->renderer.work.dynamic), 0u);
+}
+
+}  // namespace
+}  // namespace wellspring
