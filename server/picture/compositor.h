@@ -46,8 +46,8 @@ class Compositor {
     kept_.maps = maps.get();
     maps_ = std::move(maps);
   }
-  // Pictures show what lights that move or change add from now on (borrowed; null: nothing); of each
-  // view it is to be computed before. Pictures at rest, which become means, are without.
+  // Pictures show what lights that move or change add from now on (borrowed; null: nothing); of
+  // each view it is to be computed before. Pictures at rest, which become means, are without.
   void set_dynamic(const DynamicImage* image) { kept_.dynamic = image; }
   // A picture of `view` in the light of `view` or of light_view(view) (picture/compose_drawn.h),
   // whichever was projected (neither: the latter). The second for the eye at once, and of a `depth`

@@ -319,7 +319,7 @@ TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
     step();
     if (show->renderer.drawn) drawn[size_t(show->renderer.drawn->link->id - 1)]++;
   }
-  // The renderer's time is shared, not the pictures: what one costs differs with the machine's load.
+  // The renderer's time is shared, not pictures: what one costs differs with the machine's load.
   for (int count : drawn) EXPECT_GT(count, 10);
 }
 
