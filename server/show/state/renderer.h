@@ -90,9 +90,9 @@ struct Renderer {
   double posed_at = 0;       // show time of its job
   uint64_t posed_us = 0;
   DynamicLights posed_lights;  // of that visitor then
-  double posed_seconds = 0;  // that it took
-  bool surrounds = false;    // only `job.around` of it
-  PictureJob job;            // for it
+  double posed_seconds = 0;    // that it took
+  bool surrounds = false;      // only `job.around` of it
+  PictureJob job;              // for it
   // By the tick: nobody needs that picture any more (is_outdated), so what is not drawn of it yet
   // is left out.
   std::atomic<bool> given_up{false};

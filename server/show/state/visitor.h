@@ -102,7 +102,7 @@ struct Visitor {
   VisitorSound hearing;                // show/answer/sound.h
   std::unique_ptr<Teller> own_teller;  // since they called her; null: the house's
   VisitorLamps lamps;
-  DynamicLights dynamic;       // lights that move or change, as they are now
+  DynamicLights dynamic;    // lights that move or change, as they are now
   std::vector<Play> plays;  // of each animation, their own; empty: they have touched none
   VisitorGroup group;
   VisitorOrders orders;
