@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far and how finely light is followed; what no technique reads is ignored.
 #pragma once
+#include <cstdint>
 
 namespace wellspring {
 
@@ -19,11 +20,41 @@ struct InstantRadiositySettings {
   float photon_radius = 0;  // metres; 0: by the scene's size, shrinking from pass to pass
 };
 
+// How virtual point lights are chosen among the texels of reflective shadow maps.
+enum class VirtualLightChoice : uint8_t {
+  uniform,          // evenly over each map
+  by_flux,          // by the flux that a texel reflects
+  low_discrepancy,  // at Sobol' points of each map
+  by_effect,        // by flux and by what a texel does, unshadowed, to places that are seen
+};
+
+// Of multires_splatting (light/splat).
+struct SplatSettings {
+  int virtual_lights = 256;  // at most most_virtual_lights
+  int texels = 4096;         // of all reflective shadow maps together
+  VirtualLightChoice choice = VirtualLightChoice::by_flux;
+  int coarsest = 16;               // subsplats along the shorter side of the picture, at least
+  int levels = -1;                 // of refinement from there; <0: down to single pixels
+  float depth_threshold = 0.03f;   // of a subsplat's range of depth, as a share of its least depth
+  float normal_threshold = 0.25f;  // of the range of a component of its unit normals
+  float convergence = 0;   // >0: refined, too, where irradiance bends by more than that share of it
+  bool visibility = true;  // shadow rays from what is lit to virtual lights
+  int shadow_rays = 8;     // of each subsplat
+  int probe_rays = 8;      // of each subsplat above a pixel, to find where visibility changes
+  float visibility_threshold = 0.2f;  // it changes: probes differ in so much of their light
+  int smooth_visibility = 2;          // subsplats around each over which its visibility is averaged
+  float detail = 0;                   // surface detail term of the paper's section 4.2, 0 to 1
+  float least_distance = 0;  // metres, of a virtual light's radius; 0: by the maps' distances
+  float bound = 1;           // factor on that radius; 0: light is not bounded near virtual lights
+};
+inline constexpr int most_virtual_lights = 1 << 16;
+
 struct TransportSettings {
   int max_depth = 8;  // path edges counted from the eye; 1: emission only, 2: direct light
   float clamp =
       0;  // >0: bound of what one sample owes to chance (radiance; biased, for display); 0: none
   InstantRadiositySettings instant;
+  SplatSettings splat;
 };
 
 }  // namespace wellspring

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Min-max mipmaps of a picture (Nichols and Wyman 2009, section 3.2): of its depth, of the three
+// components of its unit normals, and, which the paper lacks, of the distance of each pixel's
+// tangent plane from the eye. A plane has one such distance however steeply it is looked at, so
+// that its range of depth alone is no discontinuity.
+#pragma once
+#include <vector>
+
+#include "base/raw_vector.h"
+#include "base/simd.h"
+#include "light/splat/splat_pixels.h"
+#include "light/transport_settings.h"
+
+namespace wellspring {
+
+// Least depth, nx, ny, nz of a square of pixels, then greatest, negated; so of its planes. Pixels
+// where nothing is lit have infinite depth and nothing else: `low_high[0]` is infinite where there
+// are no others, `low_high[4]` is -infinity where there is one of them.
+struct MinMaxCell {
+  float low_high[lane_count];
+  float plane_low, plane_high;
+};
+// Of both.
+inline MinMaxCell join_cells(const MinMaxCell& a, const MinMaxCell& b) {
+  MinMaxCell both;
+  store_lanes(both.low_high, lanes_min(load_lanes(a.low_high), load_lanes(b.low_high)));
+  both.plane_low = a.plane_low < b.plane_low ? a.plane_low : b.plane_low;
+  both.plane_high = a.plane_high > b.plane_high ? a.plane_high : b.plane_high;
+  return both;
+}
+
+struct MinMaxLevel {
+  int columns = 0, rows = 0;
+  size_t first = 0;  // in `cells`
+};
+// Level k has squares of 2^k pixels; level 0, the picture, is not kept. The last column and row may
+// stick out of the picture.
+struct MinMaxPyramid {
+  std::vector<MinMaxLevel> levels;
+  RawVector<MinMaxCell> cells;
+  const MinMaxCell& at(int level, int x, int y) const {
+    const MinMaxLevel& l = levels[size_t(level)];
+    return cells[l.first + size_t(y) * size_t(l.columns) + size_t(x)];
+  }
+};
+
+// The coarsest level of a picture by the settings, 0: pixels alone, and the finest.
+int coarsest_level(const SplatSettings& settings, int width, int height);
+inline int finest_level(const SplatSettings& settings, int coarsest) {
+  return settings.levels < 0 || settings.levels > coarsest ? 0 : coarsest - settings.levels;
+}
+// Of level `coarsest` and those below. All cores.
+void make_min_max_pyramid(const SplatPixels& pixels, int coarsest, MinMaxPyramid& pyramid);
+
+// Depth and normals vary more than one subsplat may hide. Of a cell with something lit.
+inline bool is_discontinuous(const MinMaxCell& cell, const SplatSettings& settings) {
+  const float* v = cell.low_high;
+  const float most = settings.normal_threshold;
+  bool alike = -v[1] - v[5] <= most && -v[2] - v[6] <= most && -v[3] - v[7] <= most;
+  if (!alike) return true;
+  float allowed = settings.depth_threshold * v[0];
+  if (-v[4] - v[0] <= allowed) return false;
+  return !(cell.plane_high - cell.plane_low <= allowed) ||
+         !(-v[4] < std::numeric_limits<float>::infinity());
+}
+
+}  // namespace wellspring

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The light of all virtual lights on each subsplat, by eight lights at a time (Nichols and Wyman
+// 2009, section 3.4).
+#pragma once
+#include <span>
+
+#include "light/splat/illumination_pyramid.h"
+#include "light/splat/subsplats.h"
+#include "light/splat/virtual_lights.h"
+
+namespace wellspring {
+
+// Irradiance at a place with nothing in between. `each`: null, or room for `lights.padded` numbers,
+// the luminance of what each light adds.
+vec3 sum_virtual_lights(const VirtualLights& lights, vec3 position, vec3 normal,
+                        float* each = nullptr);
+
+// Makes `to` empty and as large as the picture of `pyramid`. All cores.
+void clear_illumination(const MinMaxPyramid& pyramid, IlluminationPyramid& to);
+
+// Puts each subsplat's irradiance into its texel, without shadows. All cores.
+void splat_lights(const SplatPixels& pixels, const VirtualLights& lights,
+                  std::span<const Subsplat> subsplats, IlluminationPyramid& to);
+
+}  // namespace wellspring

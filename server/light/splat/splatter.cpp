@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/splat/splatter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace wellspring {
+
+void draw_virtual_lights(const Transport& transport, std::span<const SplatSource> sources,
+                         const SplatSettings& settings, SplatSeed seed,
+                         std::span<const LitProbe> probes, SplatLights& drawn) {
+  make_reflective_shadow_map(transport, sources, settings, seed, drawn.map);
+  choose_virtual_lights(drawn.map, settings, seed, probes, drawn.lights);
+}
+
+void splat_picture(const Transport& transport, const SplatLights& drawn, const SplatPixels& pixels,
+                   const SplatSettings& settings, SplatSeed seed, SplatPicture& picture) {
+  const int width = pixels.view.width, height = pixels.view.height;
+  const size_t count = size_t(std::max(width, 0)) * size_t(std::max(height, 0));
+  picture.irradiance.resize(count);
+  picture.counters = {};
+  (void)transport, (void)seed;
+  if (drawn.lights.count == 0 || count == 0) {
+    std::fill(picture.irradiance.begin(), picture.irradiance.end(), vec3(0));
+    return;
+  }
+  make_min_max_pyramid(pixels, coarsest_level(settings, width, height), picture.pyramid);
+  make_subsplats(pixels, picture.pyramid, settings, picture.subsplats);
+  clear_illumination(picture.pyramid, picture.illumination);
+  splat_lights(pixels, drawn.lights, picture.subsplats.all(), picture.illumination);
+  for (const Subsplat& one : picture.subsplats.all()) picture.counters.subsplats[one.level]++;
+  picture.counters.evaluations = picture.counters.all_subsplats() * uint64_t(drawn.lights.count);
+  upsample(pixels, picture.pyramid, settings, picture.illumination, picture.room,
+           picture.irradiance);
+}
+
+void find_splat_probes(const SplatPixels& pixels, int count, std::vector<LitProbe>& probes) {
+  probes.clear();
+  const int width = pixels.view.width, height = pixels.view.height;
+  if (width < 1 || height < 1 || count < 1) return;
+  const float side = std::sqrt(float(width) * float(height) / float(count));
+  const PixelGrid grid = make_pixel_grid(pixels);
+  for (float y = 0.5f * side; y < float(height); y += side)
+    for (float x = 0.5f * side; x < float(width); x += side) {
+      const size_t i = size_t(y) * size_t(width) + size_t(x);
+      if (!is_lit(pixels, i)) continue;
+      probes.push_back({pixels.view.position + place_from_eye(pixels, grid, int(x), int(y)),
+                        {pixels.nx[i], pixels.ny[i], pixels.nz[i]}});
+    }
+}
+
+}  // namespace wellspring

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Multiresolution splatting as a whole: Nichols and Wyman, "Multiresolution Splatting for Indirect
+// Illumination" (2009), by rays and vector units instead of a GPU. One bounce: light goes from a
+// source to a surface, is reflected as by Lambert, and arrives at what a pixel sees.
+//
+//   draw_virtual_lights()   once for all pictures of an instant: rays from each source
+//     make_reflective_shadow_map() -> choose_virtual_lights()
+//   splat_picture()         for each picture
+//     make_min_max_pyramid() -> make_subsplats() -> splat_lights() -> upsample()
+//
+// Both keep their memory: once pictures have a size and sources a number, nothing is allocated.
+// Differs from the paper: rays find the maps, also of area lights and the sky; planes seen at a
+// steep angle are not refined (min_max_pyramid.h); light near a virtual light is bounded
+// (virtual_lights.h); neighbours on the two sides of an edge are never mixed (upsample.h); shadows
+// of virtual lights (splat_visibility.h), which the paper leaves out.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "light/splat/splat_lights.h"
+#include "light/splat/upsample.h"
+
+namespace wellspring {
+
+// Of what was drawn for an instant.
+struct SplatLights {
+  ReflectiveShadowMap map;
+  VirtualLights lights;
+};
+
+// `probes`: places of pictures that are wanted (find_splat_probes), for the choice `by_effect`.
+// Same sources, settings and seed: the same random numbers, whatever moves.
+void draw_virtual_lights(const Transport& transport, std::span<const SplatSource> sources,
+                         const SplatSettings& settings, SplatSeed seed,
+                         std::span<const LitProbe> probes, SplatLights& drawn);
+
+// Of the last picture.
+struct SplatCounters {
+  static constexpr int levels = 17;
+  uint64_t subsplats[levels] = {};  // of each level: 2^level pixels a side
+  uint64_t evaluations = 0;         // of a virtual light at a place
+  uint64_t shadow_rays = 0;
+  uint64_t all_subsplats() const {
+    uint64_t sum = 0;
+    for (uint64_t n : subsplats) sum += n;
+    return sum;
+  }
+};
+
+struct SplatPicture {
+  // Indirect irradiance of each pixel, W/m^2 on its side towards the eye; 0 where nothing is lit.
+  // What is reflected of it is albedo / pi times that.
+  RawVector<vec3> irradiance;
+  SplatCounters counters;
+  MinMaxPyramid pyramid;
+  Subsplats subsplats;
+  IlluminationPyramid illumination;
+  UpsampleRoom room;
+};
+
+// All cores. Pictures more than most_splat_side pixels wide or high remain dark.
+void splat_picture(const Transport& transport, const SplatLights& drawn, const SplatPixels& pixels,
+                   const SplatSettings& settings, SplatSeed seed, SplatPicture& picture);
+
+// About `count` lit places spread over the picture, into `probes`.
+void find_splat_probes(const SplatPixels& pixels, int count, std::vector<LitProbe>& probes);
+
+}  // namespace wellspring

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// From subsplats back to pixels, coarse to fine (Nichols and Wyman 2009, section 3.5): a texel
+// without light of its own takes the bilinear mean of the level above, of those texels only that
+// hold some and that no discontinuity parts from the one it lies in. So light is neither pulled
+// from empty texels nor spread across an edge, be it along the border of two coarse texels.
+#pragma once
+#include <span>
+
+#include "light/splat/illumination_pyramid.h"
+#include "light/splat/min_max_pyramid.h"
+
+namespace wellspring {
+
+// Neighbours of each texel that it may be mixed with: workspace.
+struct UpsampleRoom {
+  RawVector<uint8_t> joined;
+};
+
+// Fills every texel below those that hold light, and writes level 0 to `irradiance`, 0 where
+// nothing is lit. settings.detail: the surface detail term of section 4.2, by the cosine between
+// normal and eye, where no subsplat was a pixel. All cores.
+void upsample(const SplatPixels& pixels, const MinMaxPyramid& pyramid,
+              const SplatSettings& settings, IlluminationPyramid& illumination, UpsampleRoom& room,
+              std::span<vec3> irradiance);
+
+}  // namespace wellspring
