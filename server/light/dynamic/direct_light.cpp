@@ -9,6 +9,7 @@
 #include "base/simd.h"
 #include "light/sample/light_tables.h"
 #include "light/sample/sample_light.h"
+#include "light/visible/pixel_grid.h"
 
 namespace wellspring {
 namespace {
@@ -39,9 +40,9 @@ Rows read_rows(const SurfaceBuffer& s, const PixelGrid& grid, int x, int y) {
   r.there = (depth < std::numeric_limits<float>::infinity()) & (lane < float(s.view.width - x));
   depth = keep_lanes(r.there, depth);
   const vec3 from = grid.at(float(x), float(y)), &eye = s.view.position;
-  r.px = eye.x + depth * (from.x + lane * grid.across.x);
-  r.py = eye.y + depth * (from.y + lane * grid.across.y);
-  r.pz = eye.z + depth * (from.z + lane * grid.across.z);
+  r.px = eye.x + depth * (from.x + lane * grid.right.x);
+  r.py = eye.y + depth * (from.y + lane * grid.right.y);
+  r.pz = eye.z + depth * (from.z + lane * grid.right.z);
   r.nx = load_lanes(&s.nx[at]), r.ny = load_lanes(&s.ny[at]), r.nz = load_lanes(&s.nz[at]);
   r.lift = clear_of_surface + clear_share * depth;
   return r;

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "light/visible/light_view.h"
+#include "light/visible/pixel_grid.h"
 
 namespace wellspring {
 namespace {
@@ -33,6 +36,16 @@ float likeness(const DynamicImage& image, const PixelGrid& grid, int x, int y, c
   const float off = dot(to, seen.normal) / (plane_share * seen.depth);
   const float same = s.object[at] == seen.object ? 1.0f : 0.01f;
   return same * facing / (1 + off * off);
+}
+
+void add_irradiance(const RawVector<vec3>& irradiance, LightPlanes& to) {
+  parallel_ranges(int(irradiance.size()), 8192, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      to.red[i] += irradiance[i].x * (1 / pi);
+      to.green[i] += irradiance[i].y * (1 / pi);
+      to.blue[i] += irradiance[i].z * (1 / pi);
+    }
+  });
 }
 
 vec3 light_at(const DynamicImage& image, int x, int y) {
@@ -71,7 +84,23 @@ vec3 interpolate(const DynamicImage& image, const PixelGrid& grid, float x, floa
 }  // namespace
 
 size_t memory_bytes(const DynamicImage& image) {
-  return memory_bytes(image.surfaces) + memory_bytes(image.light);
+  const ReflectiveShadowMap& map = image.virtual_lights.map;
+  const VirtualLights& lights = image.virtual_lights.lights;
+  const SplatPicture& indirect = image.indirect;
+  size_t sum = bytes_of(map.texels, map.maps, map.cells, map.aims, map.shares) +
+               bytes_of(lights.x, lights.y, lights.z, lights.nx, lights.ny, lights.nz, lights.red,
+                        lights.green, lights.blue, lights.radius2, lights.target, lights.weights) +
+               bytes_of(indirect.irradiance, indirect.pyramid.cells, indirect.subsplats.list,
+                        indirect.subsplats.first, indirect.room.joined);
+  for (const IlluminationLevel& level : indirect.illumination.levels) sum += bytes_of(level.texels);
+  return sum + memory_bytes(image.surfaces) + memory_bytes(image.light) + bytes_of(image.sources);
+}
+
+SplatSettings dynamic_splat_settings() {
+  SplatSettings settings;
+  settings.virtual_lights = 128;
+  settings.texels = 2048;
+  return settings;
 }
 
 View dynamic_light_view(const View& view) {
@@ -81,10 +110,26 @@ View dynamic_light_view(const View& view) {
 
 void compute_dynamic_light(const World& world, const Lights& lights,
                            const VisibilityPass& visibility, const View& view,
-                           std::span<const DynamicLight> from, DynamicImage& image) {
+                           std::span<const DynamicLight> from, const SplatSettings& settings,
+                           DynamicImage& image) {
+  const SurfaceBuffer& surfaces = image.surfaces;
   see_surfaces(visibility, dynamic_light_view(view), image.surfaces);
-  clear_planes(image.surfaces.pixels(), image.light);
-  add_direct_light(world, lights, from, image.surfaces, image.light);
+  clear_planes(surfaces.pixels(), image.light);
+  add_direct_light(world, lights, from, surfaces, image.light);
+  if (settings.virtual_lights == 0) return;
+  const Transport transport{world, *lights.tables};
+  image.sources.clear();
+  for (const DynamicLight& one : from) {
+    image.sources.push_back(make_splat_source(one.light, one.id));
+    image.sources.back().radius = one.radius;
+  }
+  draw_virtual_lights(transport, image.sources, settings, {}, {}, image.virtual_lights);
+  SplatPixels pixels;
+  pixels.view = surfaces.view;
+  pixels.depth = surfaces.depth.data();
+  pixels.nx = surfaces.nx.data(), pixels.ny = surfaces.ny.data(), pixels.nz = surfaces.nz.data();
+  splat_picture(transport, image.virtual_lights, pixels, settings, {}, image.indirect);
+  add_irradiance(image.indirect.irradiance, image.light);
 }
 
 void read_dynamic_light(const DynamicImage& image, const View& view, const DynamicRun& run,

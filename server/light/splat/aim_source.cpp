@@ -67,6 +67,7 @@ vec3 cube_direction(int face, vec2 u) {
 void aim_punctual(const SourceAim& aim, const MapCell& cell, vec2 u, ReflectiveShadowMap::Aim& to) {
   const PunctualLight& light = aim.source.light;
   to.ray.origin = light.position;
+  to.ray.t_min = aim.source.radius;
   to.range = light.range;
   to.flux = light.intensity;
   if (light.type == PunctualType::point) {

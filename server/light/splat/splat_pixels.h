@@ -2,6 +2,7 @@
 // What light falls on: the pixels of a view, row by row, as a visibility pass or rays found them.
 // Borrowed arrays, each of width * height numbers.
 #pragma once
+#include "light/visible/pixel_grid.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -18,20 +19,8 @@ struct SplatPixels {
 inline bool is_lit(const SplatPixels& pixels, size_t i) {
   return pixels.depth[i] > 0 && pixels.depth[i] < std::numeric_limits<float>::infinity();
 }
-// Of a pixel's place from the eye, at a depth of 1: from (0, 0), by a pixel to the right, and down.
-struct PixelGrid {
-  vec3 corner, right, down;
-};
 inline PixelGrid make_pixel_grid(const SplatPixels& pixels) {
-  const View& view = pixels.view;
-  float size = 2 * view.tan_half_fov / float(view.height);
-  vec2 axis = axis_place(view);
-  PixelGrid grid;
-  grid.right = view.right * size;
-  grid.down = view.up * -size;
-  grid.corner = view.forward + grid.right * (pixels.offset.x - axis.x) +
-                grid.down * (pixels.offset.y - axis.y);
-  return grid;
+  return PixelGrid(pixels.view, pixels.offset);
 }
 inline vec3 place_from_eye(const SplatPixels& pixels, const PixelGrid& grid, int x, int y) {
   size_t i = size_t(y) * size_t(pixels.view.width) + size_t(x);

@@ -20,6 +20,7 @@ enum class SplatSourceKind : uint8_t {
 struct SplatSource {
   SplatSourceKind kind = SplatSourceKind::punctual;
   PunctualLight light;
+  float radius = 0;  // metres around a point or spot in which its rays meet nothing
   uint32_t first = 0, count = 0;
   // Names its random numbers: a source that moves keeps the rays that it sends, as long as its id
   // and the settings stay.

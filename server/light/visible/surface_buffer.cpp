@@ -13,14 +13,6 @@ size_t memory_bytes(const SurfaceBuffer& surfaces) {
   return bytes_of(surfaces.depth, surfaces.nx, surfaces.ny, surfaces.nz, surfaces.object);
 }
 
-PixelGrid::PixelGrid(const View& view) {
-  const float size = 2 * view.tan_half_fov / float(view.height);
-  const vec2 axis = axis_place(view);
-  across = view.right * size;
-  down = -view.up * size;
-  corner = view.forward + (0.5f - axis.x) * across + (0.5f - axis.y) * down;
-}
-
 void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuffer& surfaces,
                   RasterShows shows) {
   surfaces.view = view;

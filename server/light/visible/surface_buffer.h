@@ -23,12 +23,4 @@ size_t memory_bytes(const SurfaceBuffer& surfaces);
 void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuffer& surfaces,
                   RasterShows shows = RasterShows::all);
 
-// From the eye to places at depth 1: the middle of pixel (x, y) lies at view.position +
-// depth * (corner + x * across + y * down).
-struct PixelGrid {
-  vec3 corner, across, down;
-  explicit PixelGrid(const View& view);
-  vec3 at(float x, float y) const { return corner + x * across + y * down; }
-};
-
 }  // namespace wellspring

@@ -59,7 +59,7 @@ void draw_moving(Show& show, Visitor& visitor) {
   const bool dynamic = !renderer.posed_lights.empty();
   if (dynamic)
     compute_dynamic_light(*show.world, show.lights, *show.visibility, keyframe.view,
-                          renderer.posed_lights, renderer.work.dynamic);
+                          renderer.posed_lights, show.settings.dynamic, renderer.work.dynamic);
   compositor.set_dynamic(dynamic ? &renderer.work.dynamic : nullptr);
   compositor.draw_moving(*show.world, keyframe, *show.visibility, Tonemap{show.exhibit.exposure},
                          renderer.work.moving_light, renderer.work.moving);

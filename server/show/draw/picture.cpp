@@ -45,7 +45,8 @@ void light_dynamically(Show& show, const PictureJob& job, const View& view, Visi
   DynamicImage& image = show.renderer.work.dynamic;
   const bool any = !job.dynamic.empty() && job.passing;
   if (any)
-    compute_dynamic_light(*show.world, show.lights, *show.visibility, view, job.dynamic, image);
+    compute_dynamic_light(*show.world, show.lights, *show.visibility, view, job.dynamic,
+                          show.settings.dynamic, image);
   visitor.picture.compositor.set_dynamic(any ? &image : nullptr);
 }
 

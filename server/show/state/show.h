@@ -50,7 +50,7 @@ struct ShowSettings {
   std::string technique = "gather";  // while anything moves
   std::string still_technique =
       "path";  // while the visitor stands still: the picture becomes the reference
-  TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
+  TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}, .splat = {}};
   bool background = true;  // pictures are drawn while the show goes on, and warped meanwhile
   // Folder of the networks' weights (denoise/denoise.h); empty: pictures at rest are drawn only.
   std::string weights;
@@ -59,7 +59,8 @@ struct ShowSettings {
   bool bakes = true;  // while nobody needs the cores, where there is a cache
   Display display = Display::automatic;
   bool late_samples = true;  // of who walks are traced behind the picture, for the next
-  float moving_clamp = 4;    // instead of transport.clamp while the visitor moves: fewer sparks
+  SplatSettings dynamic = dynamic_splat_settings();  // of the light of lights that move
+  float moving_clamp = 4;  // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
   HouseSettings house;
   std::vector<Token> kiosk_tokens;  // show/answer/trust.h

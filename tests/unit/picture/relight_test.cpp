@@ -72,7 +72,7 @@ TEST(Relight, AddsLightBeforeTheToneCurve) {
   torch.light.intensity = {9, 6, 3};
   DynamicImage light;
   compute_dynamic_light(*room.world, room.lights, *room.visibility, room.view, DynamicLights{torch},
-                        light);
+                        {}, light);
   Image8 picture;
   std::vector<uint8_t> peaks;
   relight(keyframe, *room.visibility, light, curve, picture, peaks);
@@ -117,7 +117,7 @@ TEST(Relight, DarkLightChangesNothing) {
   for (const DynamicLight& one : {black, below}) {
     DynamicImage light;
     compute_dynamic_light(*room.world, room.lights, *room.visibility, room.view, DynamicLights{one},
-                          light);
+                          {}, light);
     Image8 picture;
     std::vector<uint8_t> peaks;
     relight(keyframe, *room.visibility, light, {}, picture, peaks);

@@ -47,7 +47,9 @@ std::vector<vec3> draw_dynamic(const Scene& scene, const View& view,
   Lights lights = make_lights(world);
   VisibilityPass visibility(world, lights);
   DynamicImage image;
-  compute_dynamic_light(world, lights, visibility, view, from, image);
+  SplatSettings direct_alone;
+  direct_alone.virtual_lights = 0;
+  compute_dynamic_light(world, lights, visibility, view, from, direct_alone, image);
   std::vector<vec3> picture(size_t(view.width) * size_t(view.height));
   visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
     RunPixels p;
