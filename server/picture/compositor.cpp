@@ -138,19 +138,19 @@ void Compositor::add_samples(const View& view, std::span<const Request> requests
 void Compositor::invalidate_samples() { samples_ = {}; }
 
 void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
-                             const VisibilityPass& visibility, const Tonemap& tonemap,
-                             MovingLight& work, MovingPicture& picture) {
+                             const BackdropLight* relit, const VisibilityPass& visibility,
+                             const Tonemap& tonemap, MovingLight& work, MovingPicture& picture) {
   const View& view = backdrop.view;
   picture.view = view;
   picture.window = moving_window(world, view);
   const bool moves = !picture.empty();
-  if (kept_.dynamic) {
+  if (relit) {
     picture.window = {0, 0, view.width, view.height};
-    relight(backdrop, visibility, *kept_.dynamic, tonemap, work.picture, work.peaks);
+    relight(backdrop, *relit, tonemap, work.picture, work.peaks);
   }
   if (picture.empty()) return;
   const PictureWindow runs = whole_runs(picture.window, view);
-  if (!kept_.dynamic) {
+  if (!relit) {
     copy_colors(backdrop, runs, work.picture);
     guess_peaks(work.picture, runs, work.peaks);
   }

@@ -19,6 +19,7 @@
 
 namespace wellspring {
 
+struct BackdropLight;  // picture/relight.h
 struct Keyframe;       // picture/keyframe.h
 struct MovingPicture;  // picture/moving_picture.h: what moves in a picture at rest
 struct MovingLight;
@@ -73,11 +74,12 @@ class Compositor {
   // they are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which
-  // `backdrop` is the keyframe; in the light that is kept on its skin. With set_dynamic() all of
-  // the picture is in that light, too. Needs sight.rasterises(backdrop.view) and set_skin(). An
-  // empty picture: it is not to be seen.
-  void draw_moving(const World& world, const Keyframe& backdrop, const VisibilityPass& visibility,
-                   const Tonemap& tonemap, MovingLight& work, MovingPicture& picture);
+  // `backdrop` is the keyframe; in the light that is kept on its skin, and that of set_dynamic().
+  // Needs sight.rasterises(backdrop.view) and set_skin(). An empty picture: it is not to be seen.
+  // `relit`: not null, all of the picture is drawn, the backdrop with that light.
+  void draw_moving(const World& world, const Keyframe& backdrop, const BackdropLight* relit,
+                   const VisibilityPass& visibility, const Tonemap& tonemap, MovingLight& work,
+                   MovingPicture& picture);
 
   // What the pixels of a view at rest have been found to be by samples; empty before.
   const StillSamples& samples() const { return samples_; }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/parallel.h"
 #include "frame/tone_curve.h"
-#include "picture/drawn_run.h"
 #include "picture/moving_picture.h"
 #include "world/texture.h"
 
@@ -50,33 +50,28 @@ void put_lanes(const Keyframe& keyframe, const Lanes3& added, size_t at, int cou
 
 }  // namespace
 
-void relight(const Keyframe& keyframe, const VisibilityPass& visibility, const DynamicImage& light,
-             const Tonemap& tonemap, Image8& picture, std::vector<uint8_t>& peaks) {
+void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tonemap& tonemap,
+             Image8& picture, std::vector<uint8_t>& peaks) {
   const View& view = keyframe.view;
   const PictureWindow whole{0, 0, view.width, view.height};
   copy_colors(keyframe, whole, picture);
   guess_peaks(picture, whole, peaks);
-  auto take = [&](const VisibleRun& run) {
-    RunPixels p;
-    const RunGlow emitting = describe_run(run, p);
-    RunKnown dynamic;
-    read_dynamic_light(light, view, {run.x, run.y, run.count, run.depth, run.object, &p.surface},
-                       dynamic);
-    const size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
-    for (int i = 0; i < run.count; i += lane_count) {
-      const LaneMask reflects = ~lanes_of_bits(bits_at(emitting.only, i));
-      auto add = [&](const float* arriving, const float* reflectance) {
-        return keep_lanes(
-            reflects, load_lanes(arriving + i) * load_lanes(reflectance + i) * tonemap.exposure);
-      };
-      const Lanes3 added{add(dynamic.red, p.surface.red), add(dynamic.green, p.surface.green),
-                         add(dynamic.blue, p.surface.blue)};
-      const int count = std::min(run.count - i, lane_count);
-      const unsigned lit = negative_lanes(max_component(added) > unseen) & ((1u << count) - 1);
-      if (lit) put_lanes(keyframe, added, row + size_t(i), count, picture, peaks);
+  parallel_for(view.height, [&](int y) {
+    RunKnown reflected;
+    for (int x = 0; x < view.width; x += RasterRun::most) {
+      const int count = std::min(RasterRun::most, view.width - x);
+      reflect_light(backdrop.surfaces, backdrop.light, x, y, count, reflected);
+      const size_t at = size_t(y) * size_t(view.width) + size_t(x);
+      for (int i = 0; i < count; i += lane_count) {
+        const Lanes3 added = Lanes3{load_lanes(reflected.red + i), load_lanes(reflected.green + i),
+                                    load_lanes(reflected.blue + i)} *
+                             all_lanes(tonemap.exposure);
+        const int here = std::min(count - i, lane_count);
+        const unsigned lit = negative_lanes(max_component(added) > unseen) & ((1u << here) - 1);
+        if (lit) put_lanes(keyframe, added, at + size_t(i), here, picture, peaks);
+      }
     }
-  };
-  visibility.see(view, vec2(0.5f), take, RasterShows::still);
+  });
 }
 
 }  // namespace wellspring

@@ -4,16 +4,20 @@
 // added before the tone curve.
 #pragma once
 #include "frame/tonemap.h"
-#include "light/dynamic/dynamic_image.h"
-#include "light/visible/visibility.h"
+#include "light/dynamic/backdrop_surfaces.h"
 #include "picture/keyframe.h"
 
 namespace wellspring {
 
-// Overwrites `picture` by what the keyframe shows with that light, which was computed for its view,
+// What stands still of a picture, and what falls there.
+struct BackdropLight {
+  const BackdropSurfaces& surfaces;
+  const LightPlanes& light;
+};
+// Overwrites `picture` by what the keyframe, of the view of those surfaces, shows with that light,
 // and `peaks` by the light beyond white (frame/tone_curve.h). What emits light by itself stays as
-// it is. Needs visibility.rasterises() of the view.
-void relight(const Keyframe& keyframe, const VisibilityPass& visibility, const DynamicImage& light,
-             const Tonemap& tonemap, Image8& picture, std::vector<uint8_t>& peaks);
+// it is.
+void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tonemap& tonemap,
+             Image8& picture, std::vector<uint8_t>& peaks);
 
 }  // namespace wellspring

@@ -89,6 +89,27 @@ ReportPage light_cycles_page() {
                         {"cycles_block_correlation", "neighbours"}}}}};
 }
 
+ReportPage light_dynamic_page() {
+  return {"light.dynamic",
+          "What does the light of a torch cost that moves through the castle's hall? Pictures of "
+          "1280x720, processor time of all cores.",
+          {"FLIP of its light alone, direct and scattered once, against `path` of as many edges; "
+           "flicker: second differences of scattered light from picture to picture, over it, while "
+           "the torch moves 3 cm a picture."},
+          {{.caption = "",
+            .rows = {{"virtual lights", "virtual_lights"}, {"shadows", "shadows"}},
+            .columns = {{"picture_ms", "a picture, ms"},
+                        {"picture_ms", "by the clock", 1, "", "clock_ms"},
+                        {"picture_ms", "surfaces", 1, "", "surfaces_ms"},
+                        {"picture_ms", "direct", 1, "", "direct_ms"},
+                        {"picture_ms", "shadow maps", 1, "", "maps_ms"},
+                        {"picture_ms", "splatting", 1, "", "splat_ms"},
+                        {"picture_ms", "putting over", 1, "", "put_ms"},
+                        {"picture_ms", "FLIP", 1, "", "flip"},
+                        {"picture_ms", "flicker", 1, "", "flicker"}},
+            .most_rows = 12}}};
+}
+
 ReportPage light_photons_page() {
   return {"light.photons",
           "What do caustic photons cost? Stored in grids and asked by every pixel.",

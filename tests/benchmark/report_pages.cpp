@@ -399,7 +399,8 @@ std::vector<ReportPage> declared_pages() {
           light_error_page("light.hall"),
           light_rays_page(),
           light_cycles_page(),
-          light_photons_page()};
+          light_photons_page(),
+          light_dynamic_page()};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "light_cycles.h"
+#include "light_dynamic.h"
 #include "light_photons.h"
 #include "light_rays.h"
 
@@ -47,6 +48,7 @@ constexpr ReportEntry entries[] = {{"stream", bench_stream},
                                    {"light.rays", bench_light_rays},
                                    {"light.cycles", bench_light_cycles},
                                    {"light.photons", bench_light_photons},
+                                   {"light.dynamic", bench_light_dynamic},
                                    {"light.hall", bench_light_hall, true}};
 
 using Pages = std::map<std::string, std::string>;

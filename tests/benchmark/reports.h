@@ -31,6 +31,7 @@ ReportPage light_error_page(const std::string& name);
 ReportPage light_rays_page();
 ReportPage light_cycles_page();
 ReportPage light_photons_page();
+ReportPage light_dynamic_page();
 
 // What is declared for this report, else plain_page.
 ReportPage find_page(const std::string& name);

@@ -119,8 +119,8 @@ struct Visit {
     smooth_skin(stage.world(), skin, time == 0 ? 6 : 2);
   }
   void draw() {
-    compositor.draw_moving(stage.world(), backdrop, visibility, Tonemap{stage.exhibit().exposure},
-                           light, moving);
+    compositor.draw_moving(stage.world(), backdrop, nullptr, visibility,
+                           Tonemap{stage.exhibit().exposure}, light, moving);
   }
   void show(double time) {
     find_light(time);

@@ -6,33 +6,39 @@
 
 #include "light/dynamic/direct_light.h"
 #include "light/dynamic/dynamic_light.h"
+#include "light/dynamic/light_taps.h"
 #include "light/splat/splatter.h"
 #include "light/transport_settings.h"
 #include "light/visible/surface_buffer.h"
 
 namespace wellspring {
 
+// What is scattered once: virtual lights, and what they do to a picture.
+struct DynamicBounce {
+  std::vector<SplatSource> sources;
+  SplatLights lights;
+  SplatPicture picture;
+};
 struct DynamicImage {
   SurfaceBuffer surfaces;  // where it was computed
   LightPlanes light;       // of each of its pixels
-  std::vector<SplatSource> sources;
-  SplatLights virtual_lights;
-  SplatPicture indirect;
+  DynamicBounce bounce;
 };
 size_t memory_bytes(const DynamicImage& image);
-
-// Pixels of a picture above which the light has half of its resolution.
-inline constexpr size_t fine_dynamic_pixels = 320 * 1024;
-
-// The view in which light for pictures of `view` is computed.
-View dynamic_light_view(const View& view);
 
 // As the lights that move are wanted in pictures of the show: few virtual lights, the same random
 // numbers in every picture, so that light changes as smoothly as what it comes from.
 SplatSettings dynamic_splat_settings();
 
-// Overwrites `image` by the light of `from` in pictures of `view`, straight and scattered once,
-// reusing memory. All cores; call after World::commit(), while nothing moves.
+// All cores; call after World::commit(), while nothing moves. Memory is used again.
+// Sends the light of `from` into the world, for light_surfaces().
+void begin_bounce(const World& world, const Lights& lights, std::span<const DynamicLight> from,
+                  const SplatSettings& settings, DynamicBounce& bounce);
+// Overwrites `light` by what falls on `surfaces`, straight and scattered once.
+void light_surfaces(const World& world, const Lights& lights, std::span<const DynamicLight> from,
+                    const SurfaceBuffer& surfaces, const SplatSettings& settings,
+                    DynamicBounce& bounce, LightPlanes& light);
+// Both, for pictures of `view`.
 void compute_dynamic_light(const World& world, const Lights& lights,
                            const VisibilityPass& visibility, const View& view,
                            std::span<const DynamicLight> from, const SplatSettings& settings,

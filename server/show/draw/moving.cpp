@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
+#include "picture/relight.h"
 
 namespace wellspring {
 namespace {
@@ -51,18 +52,38 @@ void finish_skin_light(Show& show) {
   show.totals.samples += show.renderer.skin.traced;
 }
 
+namespace {
+
+// The light of lights that move on what stands still in the visitor's picture, and on what moves.
+void light_picture(Show& show, VisitorPicture& picture) {
+  Renderer& renderer = show.renderer;
+  DynamicImage& image = renderer.work.dynamic;
+  const DynamicLights& from = renderer.posed_lights;
+  const SplatSettings& settings = show.settings.dynamic;
+  const View& view = picture.keyframe.view;
+  BackdropSurfaces& surfaces = picture.surfaces;
+  if (surfaces.view != view) find_backdrop_surfaces(*show.visibility, view, surfaces);
+  see_surfaces(*show.visibility, dynamic_light_view(view), image.surfaces, RasterShows::moving);
+  begin_bounce(*show.world, show.lights, from, settings, image.bounce);
+  light_surfaces(*show.world, show.lights, from, surfaces.surfaces, settings, image.bounce,
+                 renderer.work.backdrop_light);
+  light_surfaces(*show.world, show.lights, from, image.surfaces, settings, image.bounce,
+                 image.light);
+}
+
+}  // namespace
+
 void draw_moving(Show& show, Visitor& visitor) {
   Renderer& renderer = show.renderer;
   double began = seconds_now();
-  const Keyframe& keyframe = visitor.picture.keyframe;
-  Compositor& compositor = visitor.picture.compositor;
+  VisitorPicture& picture = visitor.picture;
   const bool dynamic = !renderer.posed_lights.empty();
-  if (dynamic)
-    compute_dynamic_light(*show.world, show.lights, *show.visibility, keyframe.view,
-                          renderer.posed_lights, show.settings.dynamic, renderer.work.dynamic);
-  compositor.set_dynamic(dynamic ? &renderer.work.dynamic : nullptr);
-  compositor.draw_moving(*show.world, keyframe, *show.visibility, Tonemap{show.exhibit.exposure},
-                         renderer.work.moving_light, renderer.work.moving);
+  if (dynamic) light_picture(show, picture);
+  const BackdropLight relit{picture.surfaces, renderer.work.backdrop_light};
+  picture.compositor.set_dynamic(dynamic ? &renderer.work.dynamic : nullptr);
+  picture.compositor.draw_moving(*show.world, picture.keyframe, dynamic ? &relit : nullptr,
+                                 *show.visibility, Tonemap{show.exhibit.exposure},
+                                 renderer.work.moving_light, renderer.work.moving);
   renderer.posed_seconds = seconds_now() - began;
 }
 

@@ -10,7 +10,8 @@ size_t memory_bytes(const DrawingWork& work) {
          memory_bytes(work.keyframe) + memory_bytes(work.around) +
          bytes_of(work.depth, work.picture.rgb, work.requests, work.ahead, work.corrective,
                   work.samples) +
-         memory_bytes(work.dynamic) + memory_bytes(work.moving_light) + memory_bytes(work.moving);
+         memory_bytes(work.dynamic) + memory_bytes(work.backdrop_light) +
+         memory_bytes(work.moving_light) + memory_bytes(work.moving);
 }
 
 }  // namespace wellspring

@@ -61,6 +61,7 @@ struct DrawingWork {
   int guided = 0;     // visibility passes done of a reconstruction's guides
   uint64_t pose = 0;  // of the world, when they were made
   DynamicImage dynamic;
+  LightPlanes backdrop_light;  // what of it falls on what stands still
   MovingLight moving_light;
   MovingPicture moving;  // when it is finished the visitor's old one
 };

@@ -10,6 +10,7 @@
 #include "cache/broker.h"
 #include "cache/cache.h"
 #include "frame/tonemap.h"
+#include "light/dynamic/backdrop_surfaces.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
@@ -62,11 +63,12 @@ struct VisitorPicture {
   Image8 image;       // until it is shown
   Keyframe keyframe;  // what pictures are warped from until the next
   Surroundings around;
-  Fade fade;               // to the keyframe
-  bool backdrop = false;   // the keyframe is without what moves (show/draw/moving.h)
-  MovingPicture moving;    // that, to be laid over it; empty: nothing
-  double posed_at = -1e9;  // show time of its job
-  bool unshown = false;    // nothing of it has been sent yet
+  Fade fade;                  // to the keyframe
+  bool backdrop = false;      // the keyframe is without what moves (show/draw/moving.h)
+  MovingPicture moving;       // that, to be laid over it; empty: nothing
+  double posed_at = -1e9;     // show time of its job
+  BackdropSurfaces surfaces;  // of the keyframe, while lights that move shine on it
+  bool unshown = false;       // nothing of it has been sent yet
   size_t cache_bytes = 0, memory_bytes = 0;  // of its cache; of all that is kept for its pictures
 };
 

@@ -87,7 +87,8 @@ struct Rested {
     return keyframe_of(view, backdrop);
   }
   Image8 draw_over(const Stage& stage, const Keyframe& keyframe) {
-    visit.compositor.draw_moving(*stage.world, keyframe, *stage.visibility, {}, light, moving);
+    visit.compositor.draw_moving(*stage.world, keyframe, nullptr, *stage.visibility, {}, light,
+                                 moving);
     return laid_over(keyframe, moving);
   }
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "light/dynamic/dynamic_image.h"
 #include "light/visible/describe_run.h"
 #include "scenes/scenes.h"
 
@@ -31,6 +32,20 @@ struct Room {
     visibility = std::make_unique<VisibilityPass>(*world, lights);
     view = make_view_towards(scene, {0, 1.5, 3}, {0, 0.5, 0}, {0, 1, 0}, 0.7f, 128, 96);
   }
+};
+
+// The light of a lamp there.
+struct Backdrop {
+  BackdropSurfaces surfaces;
+  LightPlanes planes;
+  Backdrop(const Room& room, const DynamicLight& from) {
+    find_backdrop_surfaces(*room.visibility, room.view, surfaces);
+    DynamicBounce bounce;
+    const DynamicLights lights{from};
+    begin_bounce(*room.world, room.lights, lights, {}, bounce);
+    light_surfaces(*room.world, room.lights, lights, surfaces.surfaces, {}, bounce, planes);
+  }
+  BackdropLight both() const { return {surfaces, planes}; }
 };
 
 // What a picture at rest might be: from black to twice as bright as white.
@@ -75,7 +90,7 @@ TEST(Relight, AddsLightBeforeTheToneCurve) {
                         {}, light);
   Image8 picture;
   std::vector<uint8_t> peaks;
-  relight(keyframe, *room.visibility, light, curve, picture, peaks);
+  relight(keyframe, light.both(), curve, picture, peaks);
 
   Frame sum = rest;
   std::vector<uint8_t> glows(sum.color.size(), 0);
@@ -86,7 +101,7 @@ TEST(Relight, AddsLightBeforeTheToneCurve) {
       const size_t at = size_t(run.y) * size_t(room.view.width) + size_t(run.x + i);
       glows[at] = emitting.only >> i & 1;
       if (!glows[at] && run.object[i])
-        sum.color[at] += vec3(light.light.red[at], light.light.green[at], light.light.blue[at]) *
+        sum.color[at] += vec3(light.planes.red[at], light.planes.green[at], light.planes.blue[at]) *
                          vec3(p.surface.red[i], p.surface.green[i], p.surface.blue[i]);
     }
   });
@@ -120,7 +135,7 @@ TEST(Relight, DarkLightChangesNothing) {
                           {}, light);
     Image8 picture;
     std::vector<uint8_t> peaks;
-    relight(keyframe, *room.visibility, light, {}, picture, peaks);
+    relight(keyframe, light.both(), {}, picture, peaks);
     EXPECT_EQ(picture.rgb, before.rgb);
   }
 }

@@ -3,6 +3,8 @@
 // pixel, and in half of the resolution never across edges.
 #include "light/dynamic/dynamic_image.h"
 
+#include "light/dynamic/backdrop_surfaces.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -207,6 +209,36 @@ TEST(DynamicImage, LargePicturesKeepLightWithinItsSurface) {
   // Shadows' edges are a pixel or two of the light wide, and nothing else differs.
   EXPECT_LT(count_wrong(picture, truth, 0.05f), width * height / 100);
   EXPECT_LT(count_wrong(picture, truth, 0.25f), width * height / 150);
+}
+
+// The same by what was found once of a picture at rest, but for reflectances of eight bits.
+TEST(BackdropSurfaces, ReflectWhatPicturesShow) {
+  Scene scene = make_floor_and_ball();
+  World world(scene);
+  Lights lights = make_lights(world);
+  VisibilityPass visibility(world, lights);
+  const DynamicLights from{{lamp({1, 2, 0.5f})}};
+  for (ivec2 size : {ivec2(96, 64), ivec2(801, 603)}) {
+    View view = view_of(scene, size.x, size.y);
+    BackdropSurfaces backdrop;
+    find_backdrop_surfaces(visibility, view, backdrop);
+    EXPECT_EQ(backdrop.shares.empty(), size.x < 100);
+    SplatSettings direct_alone;
+    direct_alone.virtual_lights = 0;
+    DynamicBounce bounce;
+    LightPlanes light;
+    light_surfaces(world, lights, from, backdrop.surfaces, direct_alone, bounce, light);
+    std::vector<vec3> picture;
+    for (int y = 0; y < size.y; y++)
+      for (int x = 0; x < size.x; x += 32) {
+        RunKnown reflected;
+        const int count = std::min(32, size.x - x);
+        reflect_light(backdrop, light, x, y, count, reflected);
+        for (int i = 0; i < count; i++)
+          picture.push_back({reflected.red[i], reflected.green[i], reflected.blue[i]});
+      }
+    EXPECT_LT(count_wrong(picture, draw_dynamic(scene, view, from), 0.02f), size.x * size.y / 200);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light of half of a picture's resolution is read between four of its pixels, which count as far as
+// they show the same surface.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "light/visible/light_view.h"
+#include "light/visible/pixel_grid.h"
+#include "light/visible/surface_buffer.h"
+
+namespace wellspring {
+
+// Pixels of a picture above which the light has half of its resolution.
+inline constexpr size_t fine_dynamic_pixels = 320 * 1024;
+// The view in which light for pictures of `view` is computed: light_view() of large ones.
+inline View dynamic_light_view(const View& view) {
+  const bool fine = size_t(view.width) * size_t(view.height) <= fine_dynamic_pixels;
+  return fine ? view : light_view(view);
+}
+
+// The two pixels of the light around the middle of pixel `at` of a picture's row or column, and how
+// far that is from the first to the second.
+struct TapPair {
+  int first, second;
+  float share;
+};
+inline TapPair tap_pair(int at, int size) {
+  static_assert(light_scale == 2);
+  const int left = (at + 1) / 2 - 1;
+  return {std::max(left, 0), std::min(left + 1, size - 1), at % 2 ? 0.25f : 0.75f};
+}
+
+// What a pixel of the picture shows.
+struct SeenPoint {
+  vec3 place{0}, normal{0};  // relative to the eye; unit, or 0
+  float depth = 0;
+  uint32_t object = 0;
+};
+// `way`: from the eye to the pixel, at depth 1.
+inline SeenPoint seen_point(float depth, uint32_t object, const RunSurface& surface, int i,
+                            vec3 way) {
+  SeenPoint seen{depth * way, {surface.nx[i], surface.ny[i], surface.nz[i]}, depth, object};
+  const float length2 = dot(seen.normal, seen.normal);
+  if (length2 > 0) seen.normal /= std::sqrt(length2);
+  if (!(depth < std::numeric_limits<float>::infinity())) seen.place = vec3(0);
+  return seen;
+}
+// Of the four pixels of the light around it, row by row: bilinear weights times how much each shows
+// the same surface; where none does, the most alike alone counts. They add up to 1; 0: nothing is
+// there.
+struct TapWeights {
+  float of[4] = {};
+};
+TapWeights weigh_taps(const SurfaceBuffer& light, const PixelGrid& grid, const TapPair& x,
+                      const TapPair& y, const SeenPoint& seen);
+
+}  // namespace wellspring
