@@ -43,6 +43,14 @@ vec3 sum_virtual_lights(const VirtualLights& lights, vec3 position, vec3 normal,
               : sum_lights<false>(lights, position, normal, nullptr);
 }
 
+vec3 eval_virtual_light(const VirtualLights& lights, size_t light, vec3 position, vec3 normal) {
+  vec3 way = vec3(lights.x[light], lights.y[light], lights.z[light]) - position;
+  float d2 = dot(way, way), here = dot(way, normal),
+        there = -dot(way, vec3(lights.nx[light], lights.ny[light], lights.nz[light]));
+  if (!(here > 0 && there > 0 && d2 > least_distance2 && d2 < most_distance2)) return vec3(0);
+  return lights.intensity(light) * (here * there / (d2 * (d2 + lights.radius2[light])));
+}
+
 void clear_illumination(const MinMaxPyramid& pyramid, IlluminationPyramid& to) {
   to.levels.resize(pyramid.levels.size());
   for (size_t k = 0; k < to.levels.size(); k++) {

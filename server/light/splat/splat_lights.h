@@ -15,6 +15,9 @@ namespace wellspring {
 vec3 sum_virtual_lights(const VirtualLights& lights, vec3 position, vec3 normal,
                         float* each = nullptr);
 
+// That of one light.
+vec3 eval_virtual_light(const VirtualLights& lights, size_t light, vec3 position, vec3 normal);
+
 // Makes `to` empty and as large as the picture of `pyramid`. All cores.
 void clear_illumination(const MinMaxPyramid& pyramid, IlluminationPyramid& to);
 

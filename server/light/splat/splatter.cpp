@@ -21,7 +21,6 @@ void splat_picture(const Transport& transport, const SplatLights& drawn, const S
   const size_t count = size_t(std::max(width, 0)) * size_t(std::max(height, 0));
   picture.irradiance.resize(count);
   picture.counters = {};
-  (void)transport, (void)seed;
   if (drawn.lights.count == 0 || count == 0) {
     std::fill(picture.irradiance.begin(), picture.irradiance.end(), vec3(0));
     return;
@@ -29,7 +28,16 @@ void splat_picture(const Transport& transport, const SplatLights& drawn, const S
   make_min_max_pyramid(pixels, coarsest_level(settings, width, height), picture.pyramid);
   make_subsplats(pixels, picture.pyramid, settings, picture.subsplats);
   clear_illumination(picture.pyramid, picture.illumination);
-  splat_lights(pixels, drawn.lights, picture.subsplats.all(), picture.illumination);
+  SplatCounters& counters = picture.counters;
+  if (settings.visibility) {
+    counters.probe_rays = refine_by_visibility(transport, pixels, picture.pyramid, drawn.lights,
+                                               settings, picture.subsplats, picture.shadows);
+    counters.shadow_rays =
+        splat_shadowed_lights(transport, pixels, picture.pyramid, drawn.lights, settings, seed,
+                              picture.subsplats, picture.shadows, picture.illumination);
+  } else {
+    splat_lights(pixels, drawn.lights, picture.subsplats.all(), picture.illumination);
+  }
   for (const Subsplat& one : picture.subsplats.all()) picture.counters.subsplats[one.level]++;
   picture.counters.evaluations = picture.counters.all_subsplats() * uint64_t(drawn.lights.count);
   upsample(pixels, picture.pyramid, settings, picture.illumination, picture.room,
