@@ -111,28 +111,6 @@ float differing_share(const SplatShadowRoom& room, uint32_t a, uint32_t b, int p
   return all > 0 ? differs / all : 0;
 }
 
-// Those that are marked become the lit ones of their four parts.
-void part_marked(const SplatPixels& pixels, Subsplats& subsplats, SplatShadowRoom& room) {
-  room.parted.resize(0);
-  for (size_t i = 0; i < subsplats.count; i++) {
-    const Subsplat one = subsplats.list[i];
-    if (!room.split[i]) {
-      room.parted.push_back(one);
-      continue;
-    }
-    for (int k = 0; k < 4; k++) {
-      Subsplat part{uint16_t(2 * one.x + (k & 1)), uint16_t(2 * one.y + (k >> 1)),
-                    uint8_t(one.level - 1)};
-      int x, y;
-      if (part.x << part.level < pixels.view.width && part.y << part.level < pixels.view.height &&
-          find_lit_pixel(pixels, part, x, y))
-        room.parted.push_back(part);
-    }
-  }
-  subsplats.list.swap(room.parted);
-  subsplats.count = subsplats.list.size();
-}
-
 // Where in a picture's pattern of random numbers: neighbours differ much (interleaved gradient
 // noise: Jimenez 2014), passes complement each other (golden ratio).
 float start_of(const Subsplat& one, SplatSeed seed) {
@@ -253,8 +231,8 @@ uint64_t refine_by_visibility(const Transport& transport, const SplatPixels& pix
     const int count = int(room.current.size());
     if (count == 0) continue;
     room.seen.resize(size_t(count)), room.weight.resize(size_t(count) * size_t(probes));
-    room.split.resize(subsplats.count);
-    std::fill(room.split.begin(), room.split.end(), uint8_t(0));
+    subsplats.split.resize(subsplats.count);
+    std::fill(subsplats.split.begin(), subsplats.split.end(), uint8_t(0));
     cast_probes(transport, pixels, lights, subsplats, probes, count, room);
     for (float weight : room.weight) rays += weight > 0;
     bool any = false;
@@ -267,11 +245,11 @@ uint64_t refine_by_visibility(const Transport& transport, const SplatPixels& pix
         uint32_t other = owner_of(pyramid, room, level, x, y);
         if (other == none || !continuity.joins(own, pyramid.at(level, x, y))) continue;
         if (!(differing_share(room, k, other, probes) > settings.visibility_threshold)) continue;
-        room.split[room.current[k]] = room.split[room.current[other]] = 1;
+        subsplats.split[room.current[k]] = subsplats.split[room.current[other]] = 1;
         any = true;
       }
     }
-    if (any) part_marked(pixels, subsplats, room);
+    if (any) part_subsplats(pixels, subsplats);
   }
   return rays;
 }

@@ -22,8 +22,6 @@ struct SplatShadowRoom {
   RawVector<uint32_t> current;      // subsplats of the level that is probed
   RawVector<uint32_t> seen;         // bits: which probe lights each of them sees
   RawVector<float> weight;          // what each probe light would add there
-  RawVector<uint8_t> split;         // of each subsplat
-  RawVector<Subsplat> parted;
 };
 
 // Subsplats above two pixels whose neighbours see other lights become four. Returns the rays cast.
