@@ -12,6 +12,7 @@ namespace wellspring {
 struct IlluminationMap;  // light/sample/illumination_map.h
 struct InstantPass;      // light/instant/instant_pass.h
 struct LightTables;      // light/sample/light_tables.h
+struct SplatPass;        // light/splat/splat_technique.h
 struct RadianceGrid;     // light/sample/radiance_grid.h
 struct EmittingSources;  // light/sample/emitting.h
 struct TransportPlan;    // light/transport_plan.h
@@ -26,6 +27,7 @@ struct Lights {
   std::shared_ptr<const IlluminationMap> maps = nullptr;
   // Of techniques that draw light anew for each pass; null until one begins.
   std::shared_ptr<const InstantPass> pass = nullptr;
+  std::shared_ptr<const SplatPass> splat_pass = nullptr;
 };
 
 Lights make_lights(const World& world);

@@ -18,6 +18,8 @@ MinMaxCell nothing() {
   return cell;
 }
 
+}  // namespace
+
 MinMaxCell look_at_pixel(const SplatPixels& pixels, const PixelGrid& grid, int x, int y) {
   const size_t i = size_t(y) * size_t(pixels.view.width) + size_t(x);
   if (!is_lit(pixels, i)) {
@@ -30,8 +32,6 @@ MinMaxCell look_at_pixel(const SplatPixels& pixels, const PixelGrid& grid, int x
   const float plane = dot(n, place_from_eye(pixels, grid, x, y));
   return {{z, n.x, n.y, n.z, -z, -n.x, -n.y, -n.z}, plane, plane};
 }
-
-}  // namespace
 
 int coarsest_level(const SplatSettings& settings, int width, int height) {
   const int side = std::min(width, height), least = std::max(settings.coarsest, 1);

@@ -44,6 +44,9 @@ struct MinMaxPyramid {
   }
 };
 
+// A pixel alone.
+MinMaxCell look_at_pixel(const SplatPixels& pixels, const PixelGrid& grid, int x, int y);
+
 // The coarsest level of a picture by the settings, 0: pixels alone, and the finest.
 int coarsest_level(const SplatSettings& settings, int width, int height);
 inline int finest_level(const SplatSettings& settings, int coarsest) {

@@ -43,6 +43,14 @@ vec3 sum_virtual_lights(const VirtualLights& lights, vec3 position, vec3 normal,
               : sum_lights<false>(lights, position, normal, nullptr);
 }
 
+vec3 eval_virtual_light(const VirtualLights& lights, size_t light, vec3 position, vec3 normal) {
+  vec3 way = vec3(lights.x[light], lights.y[light], lights.z[light]) - position;
+  float d2 = dot(way, way), here = dot(way, normal),
+        there = -dot(way, vec3(lights.nx[light], lights.ny[light], lights.nz[light]));
+  if (!(here > 0 && there > 0 && d2 > least_distance2 && d2 < most_distance2)) return vec3(0);
+  return lights.intensity(light) * (here * there / (d2 * (d2 + lights.radius2[light])));
+}
+
 void clear_illumination(const MinMaxPyramid& pyramid, IlluminationPyramid& to) {
   to.levels.resize(pyramid.levels.size());
   for (size_t k = 0; k < to.levels.size(); k++) {
@@ -72,6 +80,61 @@ void splat_lights(const SplatPixels& pixels, const VirtualLights& lights,
       to.levels[one.level].at(one.x, one.y) = {light.x, light.y, light.z, 1};
     }
   });
+}
+
+namespace {
+
+// What linear interpolation between a texel and its neighbours on one axis may miss, as a share of
+// the texel's light; where there is no neighbour nothing is known.
+float missed_share(const IlluminationTexel& own, const IlluminationTexel* before,
+                   const IlluminationTexel* behind) {
+  auto light = [](const IlluminationTexel& texel) { return texel.red + texel.green + texel.blue; };
+  const float here = light(own);
+  if (!(here > 0)) return 0;
+  if (before && behind) return std::abs(light(*before) + light(*behind) - 2 * here) / (8 * here);
+  const IlluminationTexel* only = before ? before : behind;
+  return only ? std::abs(light(*only) - here) / (2 * here) : 0;
+}
+
+}  // namespace
+
+uint64_t refine_by_convergence(const SplatPixels& pixels, const MinMaxPyramid& pyramid,
+                               const VirtualLights& lights, const SplatSettings& settings,
+                               Subsplats& subsplats, IlluminationPyramid& to) {
+  uint64_t lit = 0;
+  for (int level = subsplats.coarsest; level > finest_level(settings, subsplats.coarsest);
+       level--) {
+    IlluminationLevel& light = to.levels[size_t(level)];
+    auto neighbour = [&](const Subsplat& one, int dx, int dy) -> const IlluminationTexel* {
+      int x = one.x + dx, y = one.y + dy;
+      if (x < 0 || y < 0 || x >= light.columns || y >= light.rows || !(light.at(x, y).held > 0))
+        return nullptr;
+      MinMaxCell both = join_cells(pyramid.at(level, one.x, one.y), pyramid.at(level, x, y));
+      return is_discontinuous(both, settings) ? nullptr : &light.at(x, y);
+    };
+    subsplats.split.resize(subsplats.count);
+    bool any = false;
+    for (size_t i = 0; i < subsplats.count; i++) {
+      const Subsplat& one = subsplats.list[i];
+      subsplats.split[i] = 0;
+      if (one.level != level) continue;
+      const IlluminationTexel& own = light.at(one.x, one.y);
+      float missed = std::max(missed_share(own, neighbour(one, -1, 0), neighbour(one, 1, 0)),
+                              missed_share(own, neighbour(one, 0, -1), neighbour(one, 0, 1)));
+      if (missed > settings.convergence) subsplats.split[i] = 1, any = true;
+    }
+    if (!any) continue;
+    for (size_t i = 0; i < subsplats.count; i++)
+      if (subsplats.split[i]) light.at(subsplats.list[i].x, subsplats.list[i].y) = {};
+    part_subsplats(pixels, subsplats);
+    subsplats.parted.resize(0);
+    for (const Subsplat& one : subsplats.all())
+      if (one.level == level - 1 && !(to.levels[one.level].at(one.x, one.y).held > 0))
+        subsplats.parted.push_back(one);
+    splat_lights(pixels, lights, subsplats.parted, to);
+    lit += subsplats.parted.size();
+  }
+  return lit;
 }
 
 }  // namespace wellspring

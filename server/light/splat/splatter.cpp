@@ -21,7 +21,6 @@ void splat_picture(const Transport& transport, const SplatLights& drawn, const S
   const size_t count = size_t(std::max(width, 0)) * size_t(std::max(height, 0));
   picture.irradiance.resize(count);
   picture.counters = {};
-  (void)transport, (void)seed;
   if (drawn.lights.count == 0 || count == 0) {
     std::fill(picture.irradiance.begin(), picture.irradiance.end(), vec3(0));
     return;
@@ -29,9 +28,30 @@ void splat_picture(const Transport& transport, const SplatLights& drawn, const S
   make_min_max_pyramid(pixels, coarsest_level(settings, width, height), picture.pyramid);
   make_subsplats(pixels, picture.pyramid, settings, picture.subsplats);
   clear_illumination(picture.pyramid, picture.illumination);
-  splat_lights(pixels, drawn.lights, picture.subsplats.all(), picture.illumination);
+  SplatCounters& counters = picture.counters;
+  uint64_t lit = 0;  // places
+  auto splat_without_shadows = [&] {
+    splat_lights(pixels, drawn.lights, picture.subsplats.all(), picture.illumination);
+    lit += picture.subsplats.count;
+  };
+  if (settings.convergence > 0) {
+    splat_without_shadows();
+    lit += refine_by_convergence(pixels, picture.pyramid, drawn.lights, settings, picture.subsplats,
+                                 picture.illumination);
+  }
+  if (settings.visibility) {
+    if (settings.convergence > 0) clear_illumination(picture.pyramid, picture.illumination);
+    counters.probe_rays = refine_by_visibility(transport, pixels, picture.pyramid, drawn.lights,
+                                               settings, picture.subsplats, picture.shadows);
+    counters.shadow_rays =
+        splat_shadowed_lights(transport, pixels, picture.pyramid, drawn.lights, settings, seed,
+                              picture.subsplats, picture.shadows, picture.illumination);
+    lit += picture.subsplats.count;
+  } else if (!(settings.convergence > 0)) {
+    splat_without_shadows();
+  }
   for (const Subsplat& one : picture.subsplats.all()) picture.counters.subsplats[one.level]++;
-  picture.counters.evaluations = picture.counters.all_subsplats() * uint64_t(drawn.lights.count);
+  counters.evaluations = lit * uint64_t(drawn.lights.count);
   upsample(pixels, picture.pyramid, settings, picture.illumination, picture.room,
            picture.irradiance);
 }

@@ -6,7 +6,8 @@
 //   draw_virtual_lights()   once for all pictures of an instant: rays from each source
 //     make_reflective_shadow_map() -> choose_virtual_lights()
 //   splat_picture()         for each picture
-//     make_min_max_pyramid() -> make_subsplats() -> splat_lights() -> upsample()
+//     make_min_max_pyramid() -> make_subsplats() -> refine_by_visibility()
+//     -> splat_shadowed_lights() or splat_lights() -> upsample()
 //
 // Both keep their memory: once pictures have a size and sources a number, nothing is allocated.
 // Differs from the paper: rays find the maps, also of area lights and the sky; planes seen at a
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "light/splat/splat_lights.h"
+#include "light/splat/splat_visibility.h"
 #include "light/splat/upsample.h"
 
 namespace wellspring {
@@ -39,7 +41,8 @@ struct SplatCounters {
   static constexpr int levels = 17;
   uint64_t subsplats[levels] = {};  // of each level: 2^level pixels a side
   uint64_t evaluations = 0;         // of a virtual light at a place
-  uint64_t shadow_rays = 0;
+  uint64_t shadow_rays = 0;         // that light was counted by
+  uint64_t probe_rays = 0;          // to find where visibility changes
   uint64_t all_subsplats() const {
     uint64_t sum = 0;
     for (uint64_t n : subsplats) sum += n;
@@ -56,6 +59,7 @@ struct SplatPicture {
   Subsplats subsplats;
   IlluminationPyramid illumination;
   UpsampleRoom room;
+  SplatShadowRoom shadows;
 };
 
 // All cores. Pictures more than most_splat_side pixels wide or high remain dark.

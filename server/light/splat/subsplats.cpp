@@ -60,6 +60,27 @@ void make_subsplats(const SplatPixels& pixels, const MinMaxPyramid& pyramid,
   });
 }
 
+void part_subsplats(const SplatPixels& pixels, Subsplats& subsplats) {
+  subsplats.parted.resize(0);
+  for (size_t i = 0; i < subsplats.count; i++) {
+    const Subsplat one = subsplats.list[i];
+    if (!subsplats.split[i]) {
+      subsplats.parted.push_back(one);
+      continue;
+    }
+    for (int k = 0; k < 4; k++) {
+      Subsplat part{uint16_t(2 * one.x + (k & 1)), uint16_t(2 * one.y + (k >> 1)),
+                    uint8_t(one.level - 1)};
+      int x, y;
+      if (part.x << part.level < pixels.view.width && part.y << part.level < pixels.view.height &&
+          find_lit_pixel(pixels, part, x, y))
+        subsplats.parted.push_back(part);
+    }
+  }
+  subsplats.list.swap(subsplats.parted);
+  subsplats.count = subsplats.list.size();
+}
+
 bool find_lit_pixel(const SplatPixels& pixels, const Subsplat& subsplat, int& x, int& y) {
   const int width = pixels.view.width, height = pixels.view.height, size = 1 << subsplat.level;
   const int left = subsplat.x * size, top = subsplat.y * size;

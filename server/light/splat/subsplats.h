@@ -23,13 +23,19 @@ struct Subsplats {
   RawVector<Subsplat> list;
   size_t count = 0;  // of `list`; what follows is room
   int coarsest = 0;
-  RawVector<uint32_t> first;  // of each coarsest square: workspace
+  RawVector<uint32_t> first;   // of each coarsest square: workspace
+  RawVector<uint8_t> split;    // of each subsplat: to be parted; workspace
+  RawVector<Subsplat> parted;  // workspace
   std::span<const Subsplat> all() const { return {list.data(), count}; }
 };
 
 // All cores.
 void make_subsplats(const SplatPixels& pixels, const MinMaxPyramid& pyramid,
                     const SplatSettings& settings, Subsplats& subsplats);
+
+// Those that `split` marks, none of them a pixel, become those of their four parts where something
+// is lit.
+void part_subsplats(const SplatPixels& pixels, Subsplats& subsplats);
 
 // The lit pixel that a subsplat is lit by: its middle, or the first of its others where nothing is
 // lit in the middle. False: none is.

@@ -11,6 +11,7 @@
 #include "base/rng.h"
 #include "light/instant/instant_radiosity.h"
 #include "light/instant/instant_samples.h"
+#include "light/splat/splat_technique.h"
 #include "light/technique/pixel_requests.h"
 #include "light/technique/technique_list.h"
 
@@ -30,6 +31,10 @@ constexpr Technique list[] = {
      "point lights along paths of light, neighbours filtered together: quick, right after many "
      "passes",
      trace_instant, nullptr, begin_instant, finish_instant, trace_many_instant},
+    {"multires_splatting",
+     "direct, and one bounce of diffuse light by virtual lights that are splatted coarsely where "
+     "a picture is even: for light that moves",
+     trace_direct, nullptr, begin_splat, finish_splat, trace_many_direct},
 };
 
 // Pixels a side of what trace_many gets at once: neighbours, in the same cache.

@@ -22,6 +22,8 @@ constexpr Claim claimed[] = {
      "come upon is blunter"},
     {"instant_radiosity", every_kind & ~unsigned(caustics),
      "caustics are blurred by the photons' radius"},
+    {"multires_splatting", every_kind & ~unsigned(interreflection | caustics),
+     "of light between surfaces there is one bounce, blurred between discontinuities"},
 };
 
 PunctualLight point_light(vec3 position, float intensity) {

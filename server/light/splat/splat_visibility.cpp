@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/splat/splat_visibility.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "light/splat/shadow_packet.h"
+
+namespace wellspring {
+namespace {
+
+constexpr uint32_t none = 0xffffffffu;
+constexpr int most_probe_rays = 32, most_shadow_rays = 256;
+constexpr int finest_probed = 2;  // level below which nothing is refined for its shadows
+
+// A subsplat's lit pixel.
+struct LitPixel {
+  vec3 place{0}, normal{0, 1, 0};
+  float depth = 0;
+};
+bool look_at(const SplatPixels& pixels, const PixelGrid& grid, const Subsplat& one, LitPixel& to) {
+  int x, y;
+  if (!find_lit_pixel(pixels, one, x, y)) return false;
+  const size_t i = size_t(y) * size_t(pixels.view.width) + size_t(x);
+  to.place = pixels.view.position + place_from_eye(pixels, grid, x, y);
+  to.normal = {pixels.nx[i], pixels.ny[i], pixels.nz[i]};
+  to.depth = pixels.depth[i];
+  return true;
+}
+
+// Who owns each square of each level.
+void start_owners(const MinMaxPyramid& pyramid, SplatShadowRoom& room) {
+  size_t total = 0;
+  room.first_owner.clear();
+  for (const MinMaxLevel& level : pyramid.levels) {
+    room.first_owner.push_back(total);
+    total += size_t(level.columns) * size_t(level.rows);
+  }
+  if (room.owner.size() < total) room.owner.resize(total);
+  parallel_ranges(int(total), 1 << 16, [&](int begin, int end) {
+    std::fill(room.owner.begin() + begin, room.owner.begin() + end, none);
+  });
+}
+uint32_t& owner_of(const MinMaxPyramid& pyramid, SplatShadowRoom& room, int level, int x, int y) {
+  size_t row = size_t(y) * size_t(pyramid.levels[size_t(level)].columns);
+  return room.owner[room.first_owner[size_t(level)] + row + size_t(x)];
+}
+bool inside(const MinMaxLevel& level, int x, int y) {
+  return x >= 0 && y >= 0 && x < level.columns && y < level.rows;
+}
+
+// No discontinuity parts two squares of a level.
+class Continuity {
+ public:
+  Continuity(const SplatPixels& pixels, const MinMaxPyramid& pyramid, const SplatSettings& settings)
+      : pixels_(pixels), pyramid_(pyramid), settings_(settings), grid_(make_pixel_grid(pixels)) {}
+  MinMaxCell cell(int level, int x, int y) const {
+    return level > 0 ? pyramid_.at(level, x, y) : look_at_pixel(pixels_, grid_, x, y);
+  }
+  bool joins(const MinMaxCell& a, const MinMaxCell& b) const {
+    return !is_discontinuous(join_cells(a, b), settings_);
+  }
+
+ private:
+  const SplatPixels& pixels_;
+  const MinMaxPyramid& pyramid_;
+  const SplatSettings& settings_;
+  PixelGrid grid_;
+};
+
+// Shadow rays of the subsplats `room.current` to probe lights, every so many-th of all.
+void cast_probes(const Transport& transport, const SplatPixels& pixels, const VirtualLights& lights,
+                 const Subsplats& subsplats, int probes, int count, SplatShadowRoom& room) {
+  const PixelGrid grid = make_pixel_grid(pixels);
+  parallel_ranges(count, 16, [&](int begin, int end) {
+    ShadowPacket packet(transport);
+    auto arrive = [&](uint32_t item, vec3) {
+      room.seen[item / uint32_t(probes)] |= 1u << item % uint32_t(probes);
+    };
+    for (int k = begin; k < end; k++) {
+      room.seen[size_t(k)] = 0;
+      float* weight = &room.weight[size_t(k) * size_t(probes)];
+      std::fill_n(weight, probes, 0.0f);
+      LitPixel lit;
+      if (!look_at(pixels, grid, subsplats.list[room.current[size_t(k)]], lit)) continue;
+      ShadowOrigin from = shadow_origin(lit.place, lit.normal, lit.depth);
+      for (int p = 0; p < probes; p++) {
+        size_t light = size_t((2 * p + 1) * int64_t(lights.count) / (2 * probes));
+        weight[p] = luminance(eval_virtual_light(lights, light, lit.place, lit.normal));
+        if (!(weight[p] > 0)) continue;
+        if (packet.full()) packet.cast(arrive);
+        packet.add(from, lights.target[light], uint32_t(k * probes + p));
+      }
+    }
+    packet.cast(arrive);
+  });
+}
+
+// Of the light of the probes, the share that arrives at one of both alone.
+float differing_share(const SplatShadowRoom& room, uint32_t a, uint32_t b, int probes) {
+  float all = 0, differs = 0;
+  for (int p = 0; p < probes; p++) {
+    float both =
+        room.weight[a * size_t(probes) + size_t(p)] + room.weight[b * size_t(probes) + size_t(p)];
+    all += both;
+    if ((room.seen[a] ^ room.seen[b]) >> p & 1) differs += both;
+  }
+  return all > 0 ? differs / all : 0;
+}
+
+// Where in a picture's pattern of random numbers: neighbours differ much (interleaved gradient
+// noise: Jimenez 2014), passes complement each other (golden ratio).
+float start_of(const Subsplat& one, SplatSeed seed) {
+  auto fraction = [](double v) { return v - std::floor(v); };
+  double place = fraction(0.06711056 * one.x + 0.00583715 * one.y);
+  double level = 0.37 * one.level + double(seed.seed % 1024) / 1024;
+  return float(fraction(fraction(52.9829189 * place) + level + 0.6180339887498949 * seed.pass));
+}
+
+int rays_of(const Subsplat& one, const SplatSettings& settings) {
+  int rays = std::clamp(settings.shadow_rays, 1, most_shadow_rays);
+  return std::max(1, one.level >= 2 ? rays : one.level == 1 ? rays / 2 : rays / 4);
+}
+
+// One subsplat's rays to lights chosen by what they would add: every so many-th of the running sum.
+// Neighbours in the list of lights are near each other, so those chosen are from everywhere.
+template <class Ask>
+void choose_asked(const VirtualLights& lights, const float* each, double step, float start,
+                  const Ask& ask) {
+  double passed = 0, next = double(start) * step;
+  for (size_t i = 0; i < size_t(lights.padded); i += lane_count) {
+    const double group = double(lanes_sum(load_lanes(each + i)));
+    if (passed + group <= next) {
+      passed += group;
+      continue;
+    }
+    for (size_t k = i; k < i + lane_count; k++) {
+      passed += double(each[k]);
+      for (; next < passed; next += step)
+        if (each[k] > 0) ask(k);
+    }
+  }
+}
+
+// The light of one of the subsplats on its way through shadow rays.
+class ShadowedSplats {
+ public:
+  ShadowedSplats(const Transport& transport, const VirtualLights& lights, SplatShadowRoom& room)
+      : lights_(lights), room_(room), packet_(transport) {}
+  // `step`: luminance that each ray stands for.
+  void ask(const ShadowOrigin& from, size_t light, uint32_t subsplat, double step) {
+    if (packet_.full()) cast();
+    packet_.add(from, lights_.target[light], waiting_);
+    vec3 intensity = lights_.intensity(light);
+    asked_[waiting_++] = {intensity * float(step / double(luminance(intensity))), subsplat};
+  }
+  void cast() {
+    rays_ += waiting_;
+    packet_.cast([&](uint32_t item, vec3 tint) {
+      SplatShadowRoom::Share& share = room_.shares[asked_[item].subsplat];
+      vec3 light = asked_[item].light * tint;
+      share.red += light.x, share.green += light.y, share.blue += light.z;
+    });
+    waiting_ = 0;
+  }
+  uint64_t rays() const { return rays_; }
+
+ private:
+  struct Asked {
+    vec3 light;
+    uint32_t subsplat;
+  };
+  const VirtualLights& lights_;
+  SplatShadowRoom& room_;
+  ShadowPacket packet_;
+  Asked asked_[RayPacket::lanes];
+  uint32_t waiting_ = 0;
+  uint64_t rays_ = 0;
+};
+
+// Of all light, what has arrived; unknown where there is none.
+SplatShadowRoom::Share share_of(SplatShadowRoom::Share arrived, const IlluminationTexel& all) {
+  if (!(all.red + all.green + all.blue > 0)) return {-1, -1, -1};
+  auto share = [](float part, float whole) { return whole > 0 ? part / whole : 1; };
+  return {share(arrived.red, all.red), share(arrived.green, all.green),
+          share(arrived.blue, all.blue)};
+}
+
+// The mean share of a subsplat and those around it that it may be mixed with.
+vec3 smooth_share(const MinMaxPyramid& pyramid, const Continuity& continuity, const Subsplat& one,
+                  int reach, SplatShadowRoom& room) {
+  const MinMaxCell own = continuity.cell(one.level, one.x, one.y);
+  vec3 sum(0);
+  int number = 0;
+  for (int y = one.y - reach; y <= one.y + reach; y++)
+    for (int x = one.x - reach; x <= one.x + reach; x++) {
+      if (!inside(pyramid.levels[one.level], x, y)) continue;
+      uint32_t other = owner_of(pyramid, room, one.level, x, y);
+      if (other == none || room.shares[other].red < 0) continue;
+      bool self = x == one.x && y == one.y;
+      if (!self && !continuity.joins(own, continuity.cell(one.level, x, y))) continue;
+      const SplatShadowRoom::Share& share = room.shares[other];
+      sum += vec3(share.red, share.green, share.blue);
+      number++;
+    }
+  return number > 0 ? sum / float(number) : vec3(1);
+}
+
+}  // namespace
+
+uint64_t refine_by_visibility(const Transport& transport, const SplatPixels& pixels,
+                              const MinMaxPyramid& pyramid, const VirtualLights& lights,
+                              const SplatSettings& settings, Subsplats& subsplats,
+                              SplatShadowRoom& room) {
+  const int probes = std::clamp(settings.probe_rays, 0, std::min(most_probe_rays, lights.count));
+  if (probes == 0) return 0;
+  const Continuity continuity(pixels, pyramid, settings);
+  uint64_t rays = 0;
+  start_owners(pyramid, room);
+  for (int level = subsplats.coarsest; level >= finest_probed; level--) {
+    room.current.resize(0);
+    for (size_t i = 0; i < subsplats.count; i++) {
+      const Subsplat& one = subsplats.list[i];
+      if (one.level != level) continue;
+      owner_of(pyramid, room, level, one.x, one.y) = uint32_t(room.current.size());
+      room.current.push_back(uint32_t(i));
+    }
+    const int count = int(room.current.size());
+    if (count == 0) continue;
+    room.seen.resize(size_t(count)), room.weight.resize(size_t(count) * size_t(probes));
+    subsplats.split.resize(subsplats.count);
+    std::fill(subsplats.split.begin(), subsplats.split.end(), uint8_t(0));
+    cast_probes(transport, pixels, lights, subsplats, probes, count, room);
+    for (float weight : room.weight) rays += weight > 0;
+    bool any = false;
+    for (uint32_t k = 0; k < uint32_t(count); k++) {
+      const Subsplat& one = subsplats.list[room.current[k]];
+      const MinMaxCell own = pyramid.at(level, one.x, one.y);
+      for (int way = 0; way < 2; way++) {
+        int x = one.x + (way == 0), y = one.y + (way == 1);
+        if (!inside(pyramid.levels[size_t(level)], x, y)) continue;
+        uint32_t other = owner_of(pyramid, room, level, x, y);
+        if (other == none || !continuity.joins(own, pyramid.at(level, x, y))) continue;
+        if (!(differing_share(room, k, other, probes) > settings.visibility_threshold)) continue;
+        subsplats.split[room.current[k]] = subsplats.split[room.current[other]] = 1;
+        any = true;
+      }
+    }
+    if (any) part_subsplats(pixels, subsplats);
+  }
+  return rays;
+}
+
+uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pixels,
+                               const MinMaxPyramid& pyramid, const VirtualLights& lights,
+                               const SplatSettings& settings, SplatSeed seed,
+                               const Subsplats& subsplats, SplatShadowRoom& room,
+                               IlluminationPyramid& to) {
+  const PixelGrid grid = make_pixel_grid(pixels);
+  const int count = int(subsplats.count);
+  std::atomic<uint64_t> rays = 0;
+  room.shares.resize(subsplats.count);
+  start_owners(pyramid, room);
+  parallel_ranges(count, 64, [&](int begin, int end) {
+    thread_local RawVector<float> each;
+    if (each.size() < size_t(lights.padded)) each.resize(size_t(lights.padded));
+    ShadowedSplats shadowed(transport, lights, room);
+    for (int i = begin; i < end; i++) {
+      const Subsplat& one = subsplats.list[size_t(i)];
+      room.shares[size_t(i)] = {0, 0, 0};
+      LitPixel lit;
+      if (!look_at(pixels, grid, one, lit)) continue;
+      vec3 light = sum_virtual_lights(lights, lit.place, lit.normal, each.data());
+      to.levels[one.level].at(one.x, one.y) = {light.x, light.y, light.z, 1};
+      owner_of(pyramid, room, one.level, one.x, one.y) = uint32_t(i);
+      double sum = double(luminance(light));
+      if (!(sum > 0) || !std::isfinite(sum)) continue;
+      const double step = sum / rays_of(one, settings);
+      ShadowOrigin from = shadow_origin(lit.place, lit.normal, lit.depth);
+      choose_asked(lights, each.data(), step, start_of(one, seed),
+                   [&](size_t chosen) { shadowed.ask(from, chosen, uint32_t(i), step); });
+    }
+    shadowed.cast();
+    rays += shadowed.rays();
+    for (int i = begin; i < end; i++) {
+      const Subsplat& one = subsplats.list[size_t(i)];
+      room.shares[size_t(i)] =
+          share_of(room.shares[size_t(i)], to.levels[one.level].at(one.x, one.y));
+    }
+  });
+  const Continuity continuity(pixels, pyramid, settings);
+  const int reach = std::clamp(settings.smooth_visibility, 0, 8);
+  parallel_ranges(count, 64, [&](int begin, int end) {
+    for (int i = begin; i < end; i++) {
+      const Subsplat& one = subsplats.list[size_t(i)];
+      vec3 share = smooth_share(pyramid, continuity, one, reach, room);
+      IlluminationTexel& texel = to.levels[one.level].at(one.x, one.y);
+      texel.red *= share.x, texel.green *= share.y, texel.blue *= share.z;
+    }
+  });
+  return rays;
+}
+
+}  // namespace wellspring
