@@ -85,9 +85,7 @@ TEST(Relight, AddsLightBeforeTheToneCurve) {
   DynamicLight torch;
   torch.light.position = {1, 1.2f, 1};
   torch.light.intensity = {9, 6, 3};
-  DynamicImage light;
-  compute_dynamic_light(*room.world, room.lights, *room.visibility, room.view, DynamicLights{torch},
-                        {}, light);
+  const Backdrop light(room, torch);
   Image8 picture;
   std::vector<uint8_t> peaks;
   relight(keyframe, light.both(), curve, picture, peaks);
@@ -130,9 +128,7 @@ TEST(Relight, DarkLightChangesNothing) {
   black.light.intensity = vec3(0);
   below.light.position = {0, -1, 0};
   for (const DynamicLight& one : {black, below}) {
-    DynamicImage light;
-    compute_dynamic_light(*room.world, room.lights, *room.visibility, room.view, DynamicLights{one},
-                          {}, light);
+    const Backdrop light(room, one);
     Image8 picture;
     std::vector<uint8_t> peaks;
     relight(keyframe, light.both(), {}, picture, peaks);

@@ -27,20 +27,24 @@ struct DynamicPictures : testing::Test, ShowStage {
     begin(std::move(exhibit), settings_for("direct", background, 50));
     join(96, 64);
   }
-  // With the light at a time as one that stands still.
+  // With what the light at a time adds, straight and scattered once.
   Image8 lit_truth(double time) {
-    Scene scene = show->exhibit.scene;
-    for (const DynamicLight& one : dynamic_lights_of(*show, visitor(), time))
-      scene.lights.push_back(one.light);
-    World world(scene);
-    Lights lights = make_lights(world);
+    const View& view = visitor().place.last_view;
     StillSettings settings;
     settings.spp = 64;
     settings.transport = show->settings.transport;
+    Frame sum = render_still(*show->still_technique, *show->world, show->lights, view, settings);
+    Scene scene = show->exhibit.scene;
+    for (Material& material : scene.materials) material.emission = vec3(0);
+    for (const DynamicLight& one : dynamic_lights_of(*show, visitor(), time))
+      scene.lights.push_back(one.light);
+    World world(scene);
+    settings.transport.max_depth = 3;
+    const Frame added =
+        render_still(*find_technique("path"), world, make_lights(world), view, settings);
+    for (size_t i = 0; i < sum.color.size(); i++) sum.color[i] += added.color[i];
     Image8 picture;
-    tonemap(
-        render_still(*show->still_technique, world, lights, visitor().place.last_view, settings),
-        Tonemap{show->exhibit.exposure}, picture);
+    tonemap(sum, Tonemap{show->exhibit.exposure}, picture);
     return picture;
   }
   Image8 dark_truth() { return truth(visitor().place.last_view, 64); }
