@@ -10,7 +10,7 @@ namespace {
 constexpr const char* names[] = {
     "area lights",     "light tree", "emission pictures", "punctual lights", "environment",
     "environment map", "panes",      "refraction",        "absorption",      "dispersion",
-    "coats",           "caustics",   "cached radiance"};
+    "coats",           "caustics",   "cached radiance",   "dynamic lights"};
 static_assert(std::size(names) == transport_parts);
 
 // What the decisions are made from.
@@ -208,6 +208,11 @@ void decide_results(const Scene& scene, const Census& c, Deciding& d) {
            !c.any_light() ? "no light"
            : c.moving > 0 ? "no rough surface stands still"
                           : "no rough surface to keep light on");
+  d.decide(
+      dynamic_lights, scene.dynamic_lights > 0,
+      count_of(size_t(scene.dynamic_lights), "light moves or changes", "lights move or change") +
+          ": found anew for each picture",
+      "no light moves or changes: nothing of a picture is lit anew");
 }
 
 }  // namespace
@@ -253,6 +258,11 @@ std::span<const char* const> technique_notes(TransportPart part) {
       "none",
       "instant_radiosity: photons, spread over a radius that shrinks from pass to pass"};
   static constexpr const char* kept[] = {"gather alone asks for it"};
+  static constexpr const char* dynamic[] = {
+      "pictures of the show: a shadow ray a pixel, and multires_splatting of what is scattered "
+      "once",
+      "other techniques are given them as they are at one moment"};
+  if (part == TransportPart::dynamic_lights) return dynamic;
   if (part == TransportPart::dispersion) return dispersion;
   if (part == TransportPart::caustics) return caustics;
   if (part == TransportPart::cached_radiance) return kept;

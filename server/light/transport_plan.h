@@ -31,6 +31,7 @@ enum class TransportPart : uint8_t {
   coats,                   // clearcoat or sheen over the base
   caustics,                // light from a specular thing onto a rough one: photons
   cached_radiance,         // results may persist: what stands still, lit by what stands still
+  dynamic_lights,          // that move or change: their light is found anew for each picture
   count
 };
 inline constexpr size_t transport_parts = size_t(TransportPart::count);

@@ -70,6 +70,7 @@ struct Scene {
   std::vector<int> object_nodes, light_nodes;
   std::vector<PunctualLight> lights;
   std::vector<Lamp> lamps;  // what of them, and of emissive materials, can be switched
+  int dynamic_lights = 0;   // that move or change over it, and are none of `lights`
   Environment environment;
   std::vector<Viewpoint> viewpoints;
   std::vector<PlacedMotion> motions;  // where they were asked for

@@ -282,6 +282,16 @@ TEST(TransportPlan, KeptLightNeedsSomethingThatStandsStill) {
   EXPECT_NE(plan.decisions[size_t(cached_radiance)].why.find("moving"), std::string::npos);
 }
 
+TEST(TransportPlan, LightsThatMoveAreFoundAnewForEachPicture) {
+  Scene scene = make_cornell_box();
+  EXPECT_FALSE(make_transport_plan(scene).uses(TransportPart::dynamic_lights));
+  scene.dynamic_lights = 2;
+  const TransportPlan plan = make_transport_plan(scene);
+  EXPECT_TRUE(plan.uses(TransportPart::dynamic_lights));
+  EXPECT_NE(explain(plan).find("2 lights move or change"), std::string::npos);
+  EXPECT_NE(explain(plan).find("multires_splatting"), std::string::npos);
+}
+
 TEST(TransportPlan, ExplanationListsEveryPartOnce) {
   Scene scene = scene_with(glass(1.5f, 0, 1));
   scene.materials.back().name = "green\nglass";
