@@ -27,6 +27,7 @@
 #include "light/transport_plan.h"
 #include "show/exhibit/exhibit_lamps.h"
 #include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "show/moving/exhibit_scene.h"
 #include "world/fit_view.h"
 #include "world/load/scene_load.h"
@@ -48,7 +49,7 @@ struct Options {
                      environment, sky, replay;
   std::string denoise, albedo, normal;  // a network's name, and files of guides; empty: none
   double fov = 0, time = 0;
-  std::optional<double> exposure;  // else the exhibit's
+  std::optional<double> exposure, hour;  // else the exhibit's
   int spp = 16, max_depth = 8, threads = 0;
   uint64_t seed = 1;
   std::vector<std::string> lamps;  // NAME=on, NAME=off
@@ -150,7 +151,8 @@ void check_resources(const Options& o, ivec2 size) {
 
 struct LoadedScene {
   Scene scene;
-  std::vector<char> lamps;  // of each of the scene's: is it on?
+  std::vector<char> lamps;  // of each of the exhibit's: is it on?
+  std::optional<Day> day;
   float exposure = 1;
 };
 
@@ -166,14 +168,15 @@ const SceneKind scene_kinds[] = {
      [](const std::string& path, double time) {
        Exhibit exhibit = load_exhibit(path);
        std::vector<char> lamps = first_lamps(exhibit);
+       std::optional<Day> day = exhibit.day;
        float exposure = float(exhibit.exposure);
-       return LoadedScene{make_exhibit_scene(std::move(exhibit), time), lamps, exposure};
+       return LoadedScene{make_exhibit_scene(std::move(exhibit), time), lamps, day, exposure};
      }},
     {"glTF file", [](const std::string& path) { return !std::filesystem::is_directory(path); },
      [](const std::string& path, double time) {
        SceneLoadOptions options;
        options.time = time;
-       return LoadedScene{load_scene(path, options), {}};
+       return LoadedScene{load_scene(path, options), {}, {}};
      }},
 };
 
@@ -208,10 +211,23 @@ void apply_lamps(const std::vector<std::string>& orders, const Scene& scene,
   }
 }
 
-// Lights that were made, and are prepared, while all lamps were on.
-void light_lamps(const std::vector<char>& lamps, World& world, Lights& lights) {
-  if (lamps.empty()) return;
-  for (size_t i = 0; i < lamps.size(); i++) world.switch_lamp(int(i), lamps[i]);
+// --hour, if it is another than the exhibit's own: the sun of the scene goes to where it stands
+// then.
+LampLevels apply_hour(const Options& o, LoadedScene& loaded) {
+  std::optional<double> hour;
+  if (o.hour && !loaded.day) throw UsageError("--hour: the scene is no exhibit with a \"day\"");
+  if (o.hour) hour = hour_of_day(*loaded.day, *o.hour);
+  LampLevels levels = lamp_levels(loaded.day, loaded.lamps, hour);
+  if (!hour) return levels;
+  put_sun(*loaded.day, *hour, loaded.scene);
+  levels[size_t(loaded.day->sun_lamp)] = loaded.lamps[size_t(loaded.day->lamp)] ? lamp_full : 0;
+  return levels;
+}
+
+// Lights that were made, and are prepared, while all lamps were full.
+void light_lamps(const LampLevels& levels, World& world, Lights& lights) {
+  if (levels.empty()) return;
+  for (size_t i = 0; i < levels.size(); i++) world.set_lamp(int(i), levels[i]);
   lights = relit(lights, world);
 }
 
@@ -353,6 +369,8 @@ void add_options(CLI::App& app, Options& o) {
       ->excludes("--environment");
   app.add_option("--lamp", o.lamps,
                  "NAME=on or NAME=off: a lamp of the exhibit that is not to be as it begins");
+  app.add_option("--hour", o.hour, "of the exhibit's day, 17.5: half past five")
+      ->check(CLI::Range(0.0, 24.0));
   app.add_option("--threads", o.threads, "0: all cores")->capture_default_str();
   app.add_option("--replay", o.replay,
                  "x,y,i: print the radiance of sample i of pixel x,y instead");
@@ -393,9 +411,11 @@ void render(const Options& o) {
   std::string problem;
   if (!o.denoise.empty()) denoiser = load_denoiser(*find_net_size(o.denoise), problem);
   if (!problem.empty()) throw LoadError("--denoise " + o.denoise, "", problem);
-  auto [scene, lamps, exposure] = load_any_scene(o.scene, o.time);
+  LoadedScene loaded = load_any_scene(o.scene, o.time);
+  Scene& scene = loaded.scene;
   for (const std::string& warning : scene.warnings) std::cerr << o.scene << ": " << warning << "\n";
-  apply_lamps(o.lamps, scene, lamps);
+  apply_lamps(o.lamps, scene, loaded.lamps);
+  const LampLevels levels = apply_hour(o, loaded);
   if (!o.sky.empty()) apply_sky(o.sky, scene);
   else apply_environment(o.environment, scene);
   if (o.explain) return print_plan(o, scene);
@@ -404,7 +424,7 @@ void render(const Options& o) {
   Lights lights = make_lights(world);
   if (auto* prepare = find_technique(o.technique)->prepare)
     prepare(world, std::span(&view.position, 1), lights);
-  light_lamps(lamps, world, lights);
+  light_lamps(levels, world, lights);
   StillSettings settings;
   settings.spp = o.spp;
   settings.seed = o.seed;
@@ -419,7 +439,7 @@ void render(const Options& o) {
   std::string comment = std::to_string(o.spp) + " samples a pixel by " + o.technique + ", " +
                         use_guides(o, denoiser.get(), world, lights, view, frame);
   double all_seconds = seconds_now() - start;
-  save_picture(o.out, frame, {float(o.exposure.value_or(exposure))}, comment);
+  save_picture(o.out, frame, {float(o.exposure.value_or(loaded.exposure))}, comment);
   double samples = double(size.x) * double(size.y) * double(o.spp);
   std::fprintf(
       stderr, "%s: %dx%d, %d samples a pixel by %s, %.2f s, %.2f million samples a second\n",

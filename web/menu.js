@@ -2,6 +2,7 @@
 // The side menu: made from what the server says there is.
 import { read_address } from './address.js';
 import { by_id } from './element.js';
+import { make_hour } from './hour.js';
 import { kept } from './kept.js';
 import { language_names, translate_page, word } from './words.js';
 
@@ -29,7 +30,7 @@ function lamp_switch({ name, title, on }, on_change) {
 }
 
 // orders: {viewpoint(name), object(id), tour(action, id), story(id), storyteller(fields),
-// lamp(name, on), lang(tag), subtitles(on), attention(share)}
+// lamp(name, on), hour(hour), lang(tag), subtitles(on), attention(share)}
 export function make_menu(orders) {
   const menu = by_id('menu'), opener = by_id('menu-button');
   let lang = 'en', before = opener;  // before: what had the focus when it was opened
@@ -64,6 +65,7 @@ export function make_menu(orders) {
   attention.addEventListener('input', tell_attention);
   attention.addEventListener('change', () => orders.attention(Number(attention.value)));
 
+  const hour = make_hour(orders.hour);
   return {
     // As the visitor chose, now or earlier; null: never.
     attention: () => (kept.get('attention') === null ? null : Number(attention.value)),
@@ -107,6 +109,7 @@ export function make_menu(orders) {
       const lamps = message.lamps.map((lamp) => lamp_switch(lamp, orders.lamp));
       by_id('lamps').replaceChildren(...lamps);
       by_id('lamps-section').hidden = message.lamps.length === 0;
+      hour.welcome(message);
       by_id('languages').replaceChildren(...message.languages.map((tag) => {
         const element = button(language_names[tag] ?? tag, () => orders.lang(tag));
         element.setAttribute('aria-pressed', String(tag === lang || tag === lang.split('-')[0]));
@@ -116,6 +119,7 @@ export function make_menu(orders) {
     state(message) {
       for (const input of by_id('lamps').querySelectorAll('input'))
         input.checked = message.lamps?.[input.dataset.lamp] ?? input.checked;
+      hour.state(message);
     },
     agent(message) {
       by_id('storyteller-visible').checked = message.visible;

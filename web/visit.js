@@ -252,6 +252,7 @@ const menu = make_menu({
   story: (story) => connection.send({ type: 'storyteller', story }),
   storyteller: (fields) => connection.send({ type: 'storyteller', ...fields }),
   lamp: (name, on) => connection.send({ type: 'lamp', name, on }),
+  hour: (value) => connection.send({ type: 'hour', value }),
   lang(tag) {
     lang = tag;
     kept.set('lang', tag);

@@ -31,6 +31,9 @@ struct MessageDescriber {
               Need = Need::optional) {
     out[name] = about;
   }
+  void number_or_null(const char* name, double, double, const auto&, const char* about) {
+    out[name] = about;
+  }
   void integer(const char* name, int, int, const auto&, const char* about, Need = Need::optional) {
     out[name] = about;
   }

@@ -51,6 +51,11 @@ const json* Fields::find(const char* name, Need need) {
   return nullptr;
 }
 
+bool Fields::is_null(const char* name) const {
+  const auto found = object_.find(name);
+  return found != object_.end() && found->is_null();
+}
+
 bool Fields::check_number(const std::string& name, const json& value, double low, double high,
                           double& out) {
   if (!value.is_number()) return fail(name, "must be a number"), false;

@@ -46,6 +46,7 @@ class Fields {
   const nlohmann::json* object(const char* name);
   const nlohmann::json* array(const char* name, size_t max_size);
 
+  bool is_null(const char* name) const;  // it is there and null
   void fail(const std::string& name, const std::string& what);
   bool good() const { return !error_; }
 

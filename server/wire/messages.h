@@ -222,6 +222,17 @@ struct LampOrder {
   }
   bool operator==(const LampOrder&) const = default;
 };
+// The hour of the day by which the visitor sees the exhibit.
+struct HourOrder {
+  static constexpr const char* type = "hour";
+  std::optional<double> value;  // nothing: the exhibit's own
+  static void list(auto& message, auto& fields) {
+    fields.number_or_null("value", 0, 24, message.value,
+                          "0..24, 17.5 is half past five, within the exhibit's day; null or left "
+                          "out: the exhibit's own");
+  }
+  bool operator==(const HourOrder&) const = default;
+};
 // Starts an animation that is started by touch, or sends it back.
 struct PlayOrder {
   static constexpr const char* type = "play";
@@ -352,8 +363,8 @@ struct WaitingPlace {
   bool operator==(const WaitingPlace&) const = default;
 };
 
-using BrowserMessage =
-    std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, Tour, StorytellerOrder, LampOrder,
-                 PlayOrder, KioskTouch, GroupOrder, Ask, Settings, Ack, PresenceNews, Bye>;
+using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, Tour,
+                                    StorytellerOrder, LampOrder, HourOrder, PlayOrder, KioskTouch,
+                                    GroupOrder, Ask, Settings, Ack, PresenceNews, Bye>;
 
 }  // namespace wellspring

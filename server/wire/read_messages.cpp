@@ -42,6 +42,11 @@ class MessageReader {
               Need need = Need::optional) {
     read(value, [&](auto& v) { return fields_.number(name, low, high, v, need); });
   }
+  // Null says nothing.
+  void number_or_null(const char* name, double low, double high, std::optional<double>& value,
+                      const char* about) {
+    if (!fields_.is_null(name)) number(name, low, high, value, about);
+  }
   template <class Value>
   void integer(const char* name, int low, int high, Value& value, const char*,
                Need need = Need::optional) {

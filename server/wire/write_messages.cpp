@@ -101,6 +101,10 @@ class MessageWriter {
               Need = Need::optional) {
     put(name, value);
   }
+  void number_or_null(const char* name, double, double, const std::optional<double>& value,
+                      const char*) {
+    put(name, value);
+  }
   template <class Value>
   void integer(const char* name, int, int, const Value& value, const char*, Need = Need::optional) {
     put(name, value);

@@ -16,10 +16,11 @@ Material repainted(const Material& m, const Repaint& change) {
   return made;
 }
 
-Material switched_off(const Material& m) {
+Material dimmed(const Material& m, float brightness) {
   Material made = m;
-  made.emission = vec3(0);
-  if (m.unlit) made.base_color = vec4(vec3(0), m.base_color.w);  // its colour is its light
+  made.emission *= brightness;
+  // Its colour is its light.
+  if (m.unlit) made.base_color = vec4(vec3(m.base_color) * brightness, m.base_color.w);
   return made;
 }
 

@@ -75,7 +75,7 @@ void each_texture(M& m, Body&& body) {
 }
 // `m` changed so: colours stay within their ranges, what is not finite changes nothing.
 Material repainted(const Material& m, const Repaint& change);
-// The same without its own light.
-Material switched_off(const Material& m);
+// The same with its own light times `brightness`.
+Material dimmed(const Material& m, float brightness);
 
 }  // namespace wellspring

@@ -100,12 +100,12 @@ double haze_phase(double cosine) {
 struct Atmosphere {
   double turbidity;
   dvec3 sun;  // towards it; y is up
-  SunTable sunlight;
+  const SunTable& sunlight;
   static constexpr int levels = 24;
   dvec3 further[levels];  // what has scattered more than once, the same from all sides, by height
 
-  Atmosphere(double turbidity_, dvec3 sun_)
-      : turbidity(turbidity_), sun(sun_), sunlight(turbidity_) {
+  Atmosphere(double turbidity_, dvec3 sun_, const SunTable& sunlight_)
+      : turbidity(turbidity_), sun(sun_), sunlight(sunlight_) {
     std::fill(further, further + levels, dvec3(0));
     dvec3 series[levels];
     parallel_for(levels, [&](int i) { series[i] = sum_series(radius_of(i)); });
@@ -204,9 +204,34 @@ vec3 eval_sun_irradiance(const SkySettings& settings) {
   return vec3(sun_irradiance(settings, SunTable(settings.turbidity)));
 }
 
+std::vector<Daylight> eval_daylight(const SkySettings& settings,
+                                    std::span<const double> elevations) {
+  constexpr int rows = 12, columns = 16;
+  const SunTable sunlight(settings.turbidity);
+  std::vector<Daylight> daylight(elevations.size());
+  parallel_for(int(elevations.size()), [&](int i) {
+    SkySettings now = settings;
+    now.elevation = elevations[size_t(i)];
+    const Atmosphere air(now.turbidity, towards_sun(now), sunlight);
+    dvec3 sky(0);
+    for (int k = 0; k < rows * columns; k++) {
+      // Evenly over the ground's view of the sky: cosine of the zenith angle, squared.
+      const double cosine = std::sqrt((k / columns + 0.5) / rows),
+                   flat = std::sqrt(1 - cosine * cosine),
+                   phi = 2 * pi_ * (k % columns + 0.5) / columns;
+      sky += air.gather(earth + eye_height, {flat * std::sin(phi), cosine, -flat * std::cos(phi)},
+                        32, false, nullptr);
+    }
+    sky *= sun_outside * now.strength * pi_ / (rows * columns);
+    daylight[size_t(i)] = {vec3(sun_irradiance(now, sunlight)), vec3(sky)};
+  });
+  return daylight;
+}
+
 void add_sky(const SkySettings& settings, Scene& scene) {
   constexpr int width = 512, height = 256;
-  Atmosphere air(settings.turbidity, towards_sun(settings));
+  const SunTable sunlight(settings.turbidity);
+  const Atmosphere air(settings.turbidity, towards_sun(settings), sunlight);
   Image image;
   image.name = "sky";
   image.width = width;
@@ -226,7 +251,7 @@ void add_sky(const SkySettings& settings, Scene& scene) {
           radiance * (std::cos(theta) * std::sin(theta) * pi_ / height * 2 * pi_ / width);
     }
   });
-  dvec3 sun = sun_irradiance(settings, air.sunlight);
+  dvec3 sun = sun_irradiance(settings, sunlight);
   dvec3 ground = sun * std::max(0.0, air.sun.y);
   for (const dvec3& row : sky_irradiance) ground += row;
   ground *= ground_albedo / pi_;

@@ -10,6 +10,9 @@
 // Units: an irradiance of 1 is 10,000 lux, a radiance of 1 is 10,000 cd/m^2. Outside the air the
 // sun gives 128,000 lux, so a clear noon comes to about 10, and to 1 or 2 in the shade.
 #pragma once
+#include <span>
+#include <vector>
+
 #include "world/scene.h"
 
 namespace wellspring {
@@ -33,5 +36,13 @@ bool add_missing_light(Scene& scene);
 
 // Irradiance of the sun on a surface that faces it, from its elevation in degrees.
 vec3 eval_sun_irradiance(const SkySettings& settings);
+
+// Irradiances: of the sun on a surface that faces it, of the sky on the ground.
+struct Daylight {
+  vec3 sun{0}, sky{0};
+};
+// Of the sun at each of these elevations (degrees) instead of the settings'. Milliseconds each.
+std::vector<Daylight> eval_daylight(const SkySettings& settings,
+                                    std::span<const double> elevations);
 
 }  // namespace wellspring

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "world/lamp_level.h"
 #include "world/scene.h"
 
 namespace wellspring {
@@ -108,10 +109,10 @@ class World {
   void repaint(int material, const Repaint& change);
   uint64_t paints() const;  // how often anything was repainted
 
-  // The scene's lamps, by their numbers; all are on at first. While no ray is being traced. Lights
-  // have to be told: light/known/lamps.h.
-  void switch_lamp(int lamp, bool on);
-  bool is_on(int lamp) const;
+  // The scene's lamps, by their numbers; all are full at first. While no ray is being traced.
+  // Lights have to be told: light/known/lamps.h.
+  void set_lamp(int lamp, LampLevel level);
+  const LampLevels& lamp_levels() const;
 
   // Nearest hit. Surfaces with alpha are passed through where their alpha says so (mask: cut-off;
   // blend: stochastically, decided by a hash of the ray and the hit, so that a replay agrees).

@@ -258,8 +258,8 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
     for (vec3& p : mesh.positions)
       if (!is_finite(p)) p = vec3(0);
   }
-  // Lamps are made of copies of materials, which may go dark.
-  w.lamp_on.assign(scene.lamps.size(), 1);
+  // Lamps are made of copies of materials, which may be dimmed.
+  w.lamp_levels.assign(scene.lamps.size(), lamp_full);
   for (const Lamp& lamp : scene.lamps)
     for (int material : lamp.materials)
       w.of_lamps.emplace_back(material,

@@ -45,7 +45,7 @@ struct World::Impl {
   uint64_t paints = 0;
   std::vector<std::pair<int, std::unique_ptr<Material>>>
       of_lamps;  // materials that lamps are made of
-  std::vector<char> lamp_on;
+  LampLevels lamp_levels;
   std::vector<std::vector<Face>>
       faces;              // of each instance of the scene, where placed points to them
   std::vector<Tag> tags;  // reserved up front: geometries point into it

@@ -134,19 +134,18 @@ void World::repaint(int material, const Repaint& change) {
 
 uint64_t World::paints() const { return impl_->paints; }
 
-void World::switch_lamp(int lamp, bool on) {
+void World::set_lamp(int lamp, LampLevel level) {
   Impl& w = *impl_;
-  if (bool(w.lamp_on.at(size_t(lamp))) == on) return;
-  w.lamp_on[size_t(lamp)] = on;
+  if (w.lamp_levels.at(size_t(lamp)) == level) return;
+  w.lamp_levels[size_t(lamp)] = level;
   for (int material : w.scene->lamps[size_t(lamp)].materials)
     for (auto& [number, worn] : w.of_lamps) {
       if (number != material) continue;
-      const Material& own = w.scene->materials[size_t(material)];
-      *worn = on ? own : switched_off(own);
+      *worn = dimmed(w.scene->materials[size_t(material)], brightness_of(level));
     }
 }
 
-bool World::is_on(int lamp) const { return impl_->lamp_on.at(size_t(lamp)); }
+const LampLevels& World::lamp_levels() const { return impl_->lamp_levels; }
 
 void World::commit() {
   if (!impl_->moved) return;

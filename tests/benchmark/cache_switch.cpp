@@ -29,9 +29,9 @@ constexpr float tolerance = 0.1f, darkest = 1e-4f;
 // A scene in one of its lights.
 struct Lit {
   Scene scene;
-  std::vector<char> lamps;  // of an exhibit's: is it on? Empty: another scene is another light
+  LampLevels lamps;  // of an exhibit; empty: another scene is another light
   std::unique_ptr<World> world;
-  Lights lights, all;  // `all`: while all of the exhibit's lamps are on
+  Lights lights, all;  // `all`: while all of the exhibit's lamps are full
   std::unique_ptr<VisibilityPass> visibility;
   View view;
   Truth truth;
@@ -126,8 +126,8 @@ Told tell(const Lit& was, const Lit& is, RenderCache& cache) {
     cache.relight([](const RenderCache::Surface&, vec3&, vec3&) { return true; });
     return {};
   }
-  auto put = [&](const std::vector<char>& lamps) {
-    for (size_t i = 0; i < lamps.size(); i++) is.world->switch_lamp(int(i), lamps[i]);
+  auto put = [&](const LampLevels& lamps) {
+    for (size_t i = 0; i < lamps.size(); i++) is.world->set_lamp(int(i), lamps[i]);
   };
   put(was.lamps);
   double start = seconds_now();
@@ -191,7 +191,7 @@ void prepare(const std::string& name, const BenchScene& scene, const TruthSettin
   if (technique.prepare)
     technique.prepare(*lit.world, std::span(&lit.view.position, 1), lit.lights);
   if (!lit.lamps.empty()) {
-    for (size_t i = 0; i < lit.lamps.size(); i++) lit.world->switch_lamp(int(i), lit.lamps[i]);
+    for (size_t i = 0; i < lit.lamps.size(); i++) lit.world->set_lamp(int(i), lit.lamps[i]);
     lit.all = lit.lights;
     lit.lights = relit(lit.all, *lit.world);
   }
@@ -200,8 +200,9 @@ void prepare(const std::string& name, const BenchScene& scene, const TruthSettin
 
 // One of the exhibit's lamps, while all others are on.
 void make_exhibit_lamps(const std::string& name, Lit& off, Lit& on) {
-  for (Lit* lit : {&off, &on}) lit->lamps.assign(lit->scene.lamps.size(), 1);
-  for (size_t i = 0; i < off.lamps.size(); i++) off.lamps[i] = off.scene.lamps[i].name != name;
+  for (Lit* lit : {&off, &on}) lit->lamps.assign(lit->scene.lamps.size(), lamp_full);
+  for (size_t i = 0; i < off.lamps.size(); i++)  // with the day's sun
+    if (off.scene.lamps[i].name.starts_with(name)) off.lamps[i] = 0;
   if (off.lamps == on.lamps) throw LoadError("castle", "/lamps", "there is no '" + name + "'");
 }
 

@@ -16,7 +16,7 @@ void fuzz_cached_grid(Bytes bytes) {
   if (!grid) return;
   find_grid_slot(*grid, vec3(0.1f, 0.2f, 0.3f), vec3(0, 1, 0));
   if (grid->lamps) find_lamps_seen(*grid->lamps, vec3(0.1f, 0.2f, 0.3f), vec3(0, 1, 0));
-  if (grid->parts) relit(*grid, std::vector<char>(grid->parts->light.size(), 1));
+  if (grid->parts) relit(*grid, LampLevels(grid->parts->light.size(), 100));
 }
 
 }  // namespace wellspring::fuzz

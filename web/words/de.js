@@ -2,7 +2,8 @@
 // The page's own words in German.
 export default {
   menu: 'Menü', close: 'Schließen', places: 'Orte', tours: 'Rundgang', stories: 'Geschichten',
-  storyteller: 'Wer erzählt', lamps: 'Licht', shown: 'Sichtbar', lively: 'Lebendige Bewegungen',
+  storyteller: 'Wer erzählt', lamps: 'Licht',
+  hour: 'Tageszeit', shown: 'Sichtbar', lively: 'Lebendige Bewegungen',
   language: 'Sprache', subtitles: 'Untertitel', walking: 'Bewegen', key_walk: 'gehen',
   key_arrows: 'gehen und drehen', key_drag_name: 'Ziehen', key_drag: 'umsehen',
   key_places: 'zu einem Ort', pause: 'Pause', resume: 'Weiter', stop: 'Beenden',

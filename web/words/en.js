@@ -2,7 +2,8 @@
 // The page's own words in English.
 export default {
   menu: 'Menu', close: 'Close', places: 'Places', tours: 'Guided tour', stories: 'Stories',
-  storyteller: 'Storyteller', lamps: 'Lights', shown: 'Shown', lively: 'Lively movements',
+  storyteller: 'Storyteller', lamps: 'Lights',
+  hour: 'Hour of the day', shown: 'Shown', lively: 'Lively movements',
   language: 'Language', subtitles: 'Subtitles', walking: 'Getting about', key_walk: 'walk',
   key_arrows: 'walk and turn', key_drag_name: 'Drag', key_drag: 'look round',
   key_places: 'go to a place', pause: 'Pause', resume: 'Go on', stop: 'Stop',

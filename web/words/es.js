@@ -2,7 +2,8 @@
 // The page's own words in Spanish.
 export default {
   menu: 'Menú', close: 'Cerrar', places: 'Lugares', tours: 'Visita guiada', stories: 'Relatos',
-  storyteller: 'Quién narra', lamps: 'Luces', shown: 'Visible', lively: 'Movimientos vivos',
+  storyteller: 'Quién narra', lamps: 'Luces',
+  hour: 'Hora del día', shown: 'Visible', lively: 'Movimientos vivos',
   language: 'Idioma', subtitles: 'Subtítulos', walking: 'Moverse', key_walk: 'andar',
   key_arrows: 'andar y girar', key_drag_name: 'Arrastrar', key_drag: 'mirar alrededor',
   key_places: 'ir a un lugar', pause: 'Pausa', resume: 'Seguir', stop: 'Terminar',

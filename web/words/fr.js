@@ -2,7 +2,8 @@
 // The page's own words in French.
 export default {
   menu: 'Menu', close: 'Fermer', places: 'Lieux', tours: 'Visite guidée', stories: 'Récits',
-  storyteller: 'Qui raconte', lamps: 'Lumières', shown: 'Visible', lively: 'Gestes vivants',
+  storyteller: 'Qui raconte', lamps: 'Lumières',
+  hour: 'Heure du jour', shown: 'Visible', lively: 'Gestes vivants',
   language: 'Langue', subtitles: 'Sous-titres', walking: 'Se déplacer', key_walk: 'marcher',
   key_arrows: 'marcher et tourner', key_drag_name: 'Glisser', key_drag: 'regarder autour de soi',
   key_places: 'aller à un lieu', pause: 'Pause', resume: 'Continuer', stop: 'Arrêter',

@@ -2,7 +2,8 @@
 // The page's own words in Slovak.
 export default {
   menu: 'Ponuka', close: 'Zavrieť', places: 'Miesta', tours: 'Prehliadka', stories: 'Príbehy',
-  storyteller: 'Kto rozpráva', lamps: 'Svetlá', shown: 'Zobraziť postavu', lively: 'Živé pohyby',
+  storyteller: 'Kto rozpráva', lamps: 'Svetlá',
+  hour: 'Denná doba', shown: 'Zobraziť postavu', lively: 'Živé pohyby',
   language: 'Jazyk', subtitles: 'Titulky', walking: 'Pohyb', key_walk: 'chôdza',
   key_arrows: 'chôdza a otáčanie', key_drag_name: 'Ťahanie', key_drag: 'rozhliadanie',
   key_places: 'na miesto', pause: 'Pauza', resume: 'Ďalej', stop: 'Ukončiť', restart: 'Od začiatku',

@@ -17,13 +17,6 @@ constexpr float darkest = 0.02f;  // reflectance by which light can be told
 constexpr size_t most_cells = 1 << 20;
 constexpr int never = 1 << 28;
 
-std::vector<char> states_of(const World& world) {
-  std::vector<char> on;
-  for (size_t lamp = 0; lamp < world.scene().lamps.size(); lamp++)
-    on.push_back(world.is_on(int(lamp)));
-  return on;
-}
-
 bool differs(vec3 was, vec3 left, vec3 added) {
   float a = luminance(was), b = luminance(left + added);
   // Lights that take each other's place are another light, too.
@@ -35,14 +28,14 @@ bool differs(vec3 was, vec3 left, vec3 added) {
 Lights relit(const Lights& all, const World& world) {
   Lights lights = all;
   lights.tables = relit(*all.tables, world.scene(), find_emitting(world));
-  if (all.grid && all.grid->parts) lights.grid = relit(*all.grid, states_of(world));
-  if (all.maps && all.maps->layers->size() > 1) lights.maps = relit(*all.maps, states_of(world));
+  if (all.grid && all.grid->parts) lights.grid = relit(*all.grid, world.lamp_levels());
+  if (all.maps && all.maps->layers->size() > 1) lights.maps = relit(*all.maps, world.lamp_levels());
   lights.pass = nullptr;
   return lights;
 }
 
-LightChange::LightChange(const Scene& scene, const Lights& all, std::span<const char> before,
-                         std::span<const char> after) {
+LightChange::LightChange(const Scene& scene, const Lights& all, std::span<const LampLevel> before,
+                         std::span<const LampLevel> after) {
   if (std::equal(before.begin(), before.end(), after.begin(), after.end())) return;
   if (!all.grid || !all.grid->parts) {
     everywhere_ = true;
@@ -59,9 +52,10 @@ LightChange::LightChange(const Scene& scene, const Lights& all, std::span<const 
     Known k{parts.light[0][i], parts.light[0][i], vec3(0), parts.albedo[i], grid.count[slot]};
     for (size_t lamp = 0; lamp < before.size(); lamp++) {
       vec3 more = parts.light[lamp + 1][i];
-      if (before[lamp]) k.was += more;
-      if (before[lamp] && after[lamp]) k.left += more;
-      if (!before[lamp] && after[lamp]) k.added += more;
+      const float was = brightness_of(before[lamp]), is = brightness_of(after[lamp]);
+      k.was += was * more;
+      k.left += std::min(was, is) * more;
+      k.added += std::max(is - was, 0.0f) * more;
     }
     k.changes = differs(k.was, k.left, k.added);
     known_of_[slot] = uint32_t(known_.size());
@@ -76,8 +70,8 @@ LightChange::LightChange(const Scene& scene, const Lights& all, std::span<const 
 }
 
 // Coarser cells than cached radiance's, without sides, so that few are unknown.
-void LightChange::fill_cells(const Scene& scene, const Lights& all, std::span<const char> before,
-                             std::span<const char> after) {
+void LightChange::fill_cells(const Scene& scene, const Lights& all,
+                             std::span<const LampLevel> before, std::span<const LampLevel> after) {
   std::vector<char> switched(scene.materials.size(), 0);
   for (size_t lamp = 0; lamp < before.size(); lamp++)
     for (int material : scene.lamps[lamp].materials)

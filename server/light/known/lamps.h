@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps are switched while an exhibit runs. Light adds up, so what costs seconds is made once with
-// all of them on, lamp by lamp where it is light itself, and a switch chooses from that:
-// milliseconds.
+// Lamps are switched and dimmed while an exhibit runs. Light adds up, so what costs seconds is made
+// once with all of them full, lamp by lamp where it is light itself, and each state is a sum of
+// that: milliseconds.
 #pragma once
 #include <span>
 #include <vector>
@@ -11,19 +11,19 @@
 namespace wellspring {
 
 // The lights of `world` as its lamps are now. `all`: of the same world, made and prepared for all
-// techniques in use while all lamps were on. A technique of passes has to begin one before the next
-// sample.
+// techniques in use while all lamps were full. A technique of passes has to begin one before the
+// next sample.
 Lights relit(const Lights& all, const World& world);
 
-// Where light changes by more than a tenth between two states of the lamps (one char each, 0: off),
-// and what becomes of it, as cached radiance knows it; of places that it does not know it is
-// guessed by the nearest. Without cached radiance: everywhere, and nobody knows how. Made in
-// milliseconds, asked in nanoseconds.
+// Where light changes by more than a tenth between two states of the lamps, and what becomes of it,
+// as cached radiance knows it; of places that it does not know it is guessed by the nearest.
+// Without cached radiance: everywhere, and nobody knows how. Made in milliseconds, asked in
+// nanoseconds.
 class LightChange {
  public:
   // `all`: as for relit().
-  LightChange(const Scene& scene, const Lights& all, std::span<const char> before,
-              std::span<const char> after);
+  LightChange(const Scene& scene, const Lights& all, std::span<const LampLevel> before,
+              std::span<const LampLevel> after);
   // At a surface (scene coordinates): of the light that fell there `kept` is left, and `added` is
   // new, both of which stay as they are where nothing is known. Thread-safe.
   bool changes(vec3 place, vec3 normal, vec3& kept, vec3& added) const;
@@ -35,8 +35,8 @@ class LightChange {
     float weight = 0;
     bool changes = false;  // here, or of guessed ones where they were guessed from
   };
-  void fill_cells(const Scene& scene, const Lights& all, std::span<const char> before,
-                  std::span<const char> after);
+  void fill_cells(const Scene& scene, const Lights& all, std::span<const LampLevel> before,
+                  std::span<const LampLevel> after);
   void guess_unknown();
   template <class IsFrom, class Visit>
   std::vector<int> steps_from(const IsFrom& is_from, const Visit& visit) const;

@@ -17,14 +17,14 @@ size_t memory_bytes(const IlluminationMap& map) {
 }
 
 std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
-                                             std::span<const char> lamps) {
+                                             std::span<const LampLevel> levels) {
   auto map = std::make_shared<IlluminationMap>(all);
   const auto& layers = *all.layers;
   parallel_ranges(int(map->light.size()), 4096, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {
       vec3 light = unpack_rgb9e5(layers[0][i]);
       for (size_t lamp = 0; lamp + 1 < layers.size(); lamp++)
-        if (lamps[lamp]) light += unpack_rgb9e5(layers[lamp + 1][i]);
+        if (levels[lamp]) light += brightness_of(levels[lamp]) * unpack_rgb9e5(layers[lamp + 1][i]);
       map->light[i] = pack_rgb9e5(light);
     }
   });

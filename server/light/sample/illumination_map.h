@@ -50,7 +50,7 @@ struct IlluminationCharts {
 struct IlluminationMap {
   std::shared_ptr<const IlluminationCharts> places;
   std::vector<IlluminationTile> tiles;
-  std::vector<uint32_t> light;  // of each node, pack_rgb9e5; of the lamps that are on
+  std::vector<uint32_t> light;  // of each node, pack_rgb9e5; of the lamps as they are
   // The light of what belongs to no lamp, then of each lamp alone. Copies share them.
   std::shared_ptr<const std::vector<std::vector<uint32_t>>> layers;
   float error = 1;  // estimated: standard error of the nodes over their mean light
@@ -61,9 +61,9 @@ size_t memory_bytes(const IlluminationMap& map);
 // Of a scene's map: one for each lamp, and one for what belongs to none.
 inline size_t layer_count(const Scene& scene) { return scene.lamps.size() + 1; }
 
-// Its light where lamps[i] says whether lamp i is on. Milliseconds.
+// Its light where lamp i is as bright as levels[i]. Milliseconds.
 std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
-                                             std::span<const char> lamps);
+                                             std::span<const LampLevel> levels);
 
 // Of each of the scene's objects: whether the map knows the light of any part of it.
 std::vector<char> mapped_objects(const Scene& scene, const IlluminationMap& map);

@@ -48,7 +48,7 @@ struct LightTables {
   EnvironmentLight environment;
   std::vector<PunctualLight> punctual;   // those of any power
   std::vector<SpotCone> cones;           // of each of them
-  std::vector<uint32_t> punctual_index;  // of each of them, in that list where all lamps are on
+  std::vector<uint32_t> punctual_index;  // of each of them, in that list where all lamps are full
   FewLights few_punctual;                // all of them, where they are few
   // Where there are many: the near ones (point, spot) by power and place, the distant ones by
   // power.

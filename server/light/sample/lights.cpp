@@ -168,8 +168,11 @@ void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTa
         is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
     if (!(p > 0) || !std::isfinite(p) || !finite) continue;
     index++;
-    if (!emitting.lights[i]) continue;
+    const float brightness = emitting.lights[i];
+    if (!(brightness > 0)) continue;
+    p *= brightness;
     tables.punctual.push_back(light);
+    tables.punctual.back().intensity *= brightness;
     tables.punctual_index.push_back(index - 1);
     tables.cones.push_back(make_spot_cone(light));
     punctual_powers.push_back(p);
@@ -224,9 +227,9 @@ std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& sc
   for (size_t i = 0; i < tables->emitters.size(); i++) {
     EmitterTriangle& e = tables->emitters[i];
     const Mesh& mesh = scene.meshes[size_t(scene.instances[e.instance].mesh)];
-    if (emitting.materials[size_t(mesh.material)]) continue;
-    e.emission = vec3(0);
-    tables->emitter_power[i] = 0;
+    const float brightness = emitting.materials[size_t(mesh.material)];
+    e.emission *= brightness;
+    tables->emitter_power[i] *= brightness;
   }
   if (!emitting.sky) tables->environment = {};
   choose_sources(scene, emitting, *tables);

@@ -36,7 +36,8 @@ Lights make_lights(const World& world);
 Lights make_lights(const World& world, const TransportPlan& plan);
 TransportPlan make_plan(const World& world);  // of its scene and what moves in it
 
-// The tables of fewer sources than those of `all`, which was made while all lamps were on.
+// The tables of fewer or darker sources than those of `all`, which was made while all lamps were
+// full.
 std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
                                          const EmittingSources& emitting);
 

@@ -5,13 +5,14 @@
 
 namespace wellspring {
 
-std::shared_ptr<const RadianceGrid> relit(const RadianceGrid& all, std::span<const char> lamps) {
+std::shared_ptr<const RadianceGrid> relit(const RadianceGrid& all,
+                                          std::span<const LampLevel> levels) {
   auto grid = std::make_shared<RadianceGrid>(all);
   const RadianceGrid::Parts& parts = *all.parts;
   for (size_t i = 0; i < parts.slots.size(); i++) {
     vec3 light = parts.light[0][i];
     for (size_t lamp = 0; lamp + 1 < parts.light.size(); lamp++)
-      if (lamps[lamp]) light += parts.light[lamp + 1][i];
+      if (levels[lamp]) light += brightness_of(levels[lamp]) * parts.light[lamp + 1][i];
     grid->light[parts.slots[i]] = light;
   }
   return grid;

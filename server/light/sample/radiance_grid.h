@@ -17,7 +17,7 @@ namespace wellspring {
 struct RadianceGrid {
   float cell = 0.25f;          // metres
   std::vector<uint64_t> keys;  // place_key, where find_place_slot() says; 0: free
-  std::vector<vec3> light;   // radiance scattered back, textures and all; of the lamps that are on
+  std::vector<vec3> light;   // radiance scattered back, textures and all; of the lamps as they are
   std::vector<float> count;  // samples behind it
   std::shared_ptr<const LampsSeen> lamps;  // may be null
   std::vector<uint8_t> keeps;  // of each material: opaque, dark of itself and too rough to mirror
@@ -32,8 +32,9 @@ struct RadianceGrid {
 };
 inline constexpr float enough_grid_samples = 12;  // a cell with fewer is not asked
 
-// Its light where lamps[i] says whether lamp i is on. Milliseconds.
-std::shared_ptr<const RadianceGrid> relit(const RadianceGrid& all, std::span<const char> lamps);
+// Its light where lamp i is as bright as levels[i]. Milliseconds.
+std::shared_ptr<const RadianceGrid> relit(const RadianceGrid& all,
+                                          std::span<const LampLevel> levels);
 // The slot of a surface there: of light that was met, or a free one.
 uint32_t find_grid_slot(const RadianceGrid& grid, vec3 place, vec3 normal);
 // Where a slot's light was met: the cell's corners are `cell` times this and one more.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which sources of a scene emit light while its lamps are switched.
+// How brightly the sources of a scene emit light while its lamps are switched or dimmed.
 #pragma once
 #include <vector>
 
@@ -7,9 +7,9 @@
 
 namespace wellspring {
 
-// What emits of a scene.
+// How brightly it does, times the scene's own light: 0 to 1.
 struct EmittingSources {
-  std::vector<char> materials, lights;  // of each of the scene's
+  std::vector<float> materials, lights;  // of each of the scene's
   bool sky = true;
 };
 EmittingSources find_emitting(const World& world);  // as its lamps are

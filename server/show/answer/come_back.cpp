@@ -43,6 +43,7 @@ json describe(const Show& show, const Visitor& visitor) {
   for (size_t i = 0; i < visitor.lamps.own.size(); i++)
     if (visitor.lamps.own[i])
       about["lamps"][show.exhibit.lamps[i].id] = bool(visitor.lamps.wish[i]);
+  if (visitor.lamps.hour) about["hour"] = *visitor.lamps.hour;
   if (const TourRide& ride = place.tour; ride.state != TourRide::State::none && ride.tour >= 0)
     about["tour"] = {{"id", show.exhibit.tours[size_t(ride.tour)].id},
                      {"stop", ride.stop},
@@ -75,6 +76,7 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   if (place.viewpoint >= int(show.exhibit.viewpoints.size())) place.viewpoint = -1;
   const json lamps = about.value("lamps", json::object());
   for (const auto& [name, on] : lamps.items()) switch_lamp(show, visitor, name, on.get<bool>());
+  if (about.contains("hour")) set_hour(show, visitor, about["hour"].get<double>());
   if (about.contains("leads")) {
     const std::string code = about["leads"];
     const bool taken = std::ranges::any_of(

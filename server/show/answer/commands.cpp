@@ -169,6 +169,12 @@ Answer handle_one(Show& show, Visitor& visitor, const LampOrder& order) {
   return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
 }
 
+Answer handle_one(Show& show, Visitor& visitor, const HourOrder& order) {
+  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (set_hour(show, visitor, order.value)) return {};
+  return WireError{"no_day", "the hour of the day cannot be chosen here"};
+}
+
 Answer handle_one(Show& show, Visitor& visitor, const PlayOrder& order) {
   if (Answer wrong = check_not_following(show, visitor)) return wrong;
   if (play_animation(show, visitor, order.name, order.on)) return {};

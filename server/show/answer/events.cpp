@@ -69,12 +69,18 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
                           ? json(nullptr)
                           : json(exhibit.storytellers[size_t(story.storyteller_index)].id);
   }
-  const std::vector<char> lamps = lamps_of(show, visitor);
+  const std::vector<char> lamps = switches_of(show, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"].push_back({{"name", exhibit.lamps[i].id},
                                 {"title", text(exhibit.lamps[i].title)},
                                 {"on", bool(lamps[i])},
                                 {"shared", exhibit.lamps[i].shared}});
+  message["day"] = nullptr;
+  if (const std::optional<Day>& day = exhibit.day)
+    message["day"] = {{"from", day->settings.from},
+                      {"to", day->settings.to},
+                      {"at", day->settings.at},
+                      {"hour", hour_of(show, visitor).value_or(day->settings.at)}};
   for (size_t i = 0; i < exhibit.animations.size(); i++) {
     const ExhibitAnimation& animation = exhibit.animations[i];
     if (animation.start != ExhibitAnimation::Start::touch) continue;
@@ -129,9 +135,10 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   if (place.around.point >= 0 && !place.around.leaves)
     message["around"] = exhibit.points[size_t(place.around.point)].id;
   if (!exhibit.lamps.empty()) message["lamps"] = json::object();
-  const std::vector<char> lamps = lamps_of(show, visitor);
+  const std::vector<char> lamps = switches_of(show, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"][exhibit.lamps[i].id] = bool(lamps[i]);
+  if (exhibit.day) message["hour"] = hour_of(show, visitor).value_or(exhibit.day->settings.at);
   for (size_t i = 0; i < exhibit.animations.size(); i++)
     if (exhibit.animations[i].start == ExhibitAnimation::Start::touch)
       message["animations"][exhibit.animations[i].id] = is_on(show, visitor, i);

@@ -64,12 +64,14 @@ KioskInput read_pages(Show& show, const Kiosk& kiosk) {
   return input;
 }
 
-// Nobody is told a story who has left; the lamps are the house's, the screen is a window again.
+// Nobody is told a story who has left; lamps and hour are the house's, the screen is a window
+// again.
 void see_off(Show& show, const Kiosk& kiosk) {
   for (Visitor& page : show.visitors) {
     if (!is_page_of(show, page, kiosk)) continue;
     page.lamps.own.clear();
     page.lamps.wish.clear();
+    page.lamps.hour.reset();
     if (is_told(show, page)) fall_silent(show, show.teller);
     if (page.place.tour.state != TourRide::State::none)
       handle(show, page, Tour{TourAction::stop, ""});

@@ -22,6 +22,7 @@ constexpr OrderBound bounds[] = {
     {Tour::type, 5, 5},              // a way, and words
     {StorytellerOrder::type, 5, 8},  // another figure, and words that are spoken for them
     {LampOrder::type, 10, 10},       // other light
+    {HourOrder::type, 10, 10},       // other light
     {PlayOrder::type, 10, 10},       // what moves
     {GroupOrder::type, 2, 5},        // codes are not to be guessed
     {Ask::type, 2, 4},               // an answer is looked for and spoken
@@ -76,7 +77,7 @@ template <class Order>
 bool overrule(const Order&, const Order&) {
   return std::is_same_v<Order, Hello> || std::is_same_v<Order, CameraTo> ||
          std::is_same_v<Order, ViewpointTo> || std::is_same_v<Order, GoTo> ||
-         std::is_same_v<Order, Ask>;
+         std::is_same_v<Order, Ask> || std::is_same_v<Order, HourOrder>;
 }
 
 // How many were left out for it.

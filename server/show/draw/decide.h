@@ -22,7 +22,7 @@ struct VisitorDrawState {
   bool stands = false;       // nothing moved its view for a moment
   bool new_place = false;    // nothing was drawn yet of where it is now
   bool same_view = false;    // the last picture was drawn for the view that it has now
-  bool other_light = false;  // lamps were switched since that picture
+  bool other_light = false;  // lamps or the hour have changed since that picture
   bool sees_moving = false;  // something that can move may be in view
   bool drew_moving = false;  // and may have been in that picture
   bool unshown = false;      // that picture has not been sent yet

@@ -13,6 +13,7 @@
 #include "avatar/story/story_script.h"
 #include "show/exhibit/kiosk_settings.h"
 #include "show/lighting/changing_light.h"
+#include "show/lighting/day.h"
 #include "world/load/credit.h"
 #include "world/scene.h"
 
@@ -135,7 +136,7 @@ struct ExhibitMover {
   uint32_t object = 0;        // of the scene
 };
 
-// What visitors may switch: scene.lamps[i] is what it is made of.
+// What visitors may switch: scene.lamps[i] is what it is made of, and the sun of the day.
 struct ExhibitLamp {
   std::string id;
   LocalText title;
@@ -199,8 +200,9 @@ struct Exhibit {
   std::vector<TourPlan> tours;
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
-  std::vector<ExhibitLamp> lamps;  // of each of the scene's
+  std::vector<ExhibitLamp> lamps;  // of each of the scene's, but for the day's sun
   std::vector<ChangingLight> lights;
+  std::optional<Day> day;
   std::vector<ExhibitAnimation> animations;
   std::vector<ExhibitMover> movers;
   std::optional<Book> book;

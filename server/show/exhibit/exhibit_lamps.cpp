@@ -41,4 +41,8 @@ std::vector<char> first_lamps(const Exhibit& exhibit) {
   return on;
 }
 
+LampLevels first_levels(const Exhibit& exhibit) {
+  return lamp_levels(exhibit.day, first_lamps(exhibit), {});
+}
+
 }  // namespace wellspring

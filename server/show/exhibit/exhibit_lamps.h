@@ -8,7 +8,8 @@ namespace wellspring {
 // Fills exhibit.lamps, and exhibit.scene.lamps one for one. Call when the scene is there.
 void read_lamps(Exhibit& exhibit, Fields& root);
 
-// As the exhibit is at first.
+// As the exhibit is at first: which of its lamps are on, and the scene's.
 std::vector<char> first_lamps(const Exhibit& exhibit);
+LampLevels first_levels(const Exhibit& exhibit);
 
 }  // namespace wellspring

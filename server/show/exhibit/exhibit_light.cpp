@@ -7,6 +7,7 @@
 #include "light/known/lamps.h"
 #include "light/technique/technique.h"
 #include "light/visible/guides.h"
+#include "show/exhibit/exhibit_lamps.h"
 
 namespace wellspring {
 namespace {
@@ -40,9 +41,10 @@ std::optional<float> exposure_of(const Frame& frame, const GuidePlanes& guides) 
 }  // namespace
 
 std::optional<float> measure_exposure(const Exhibit& exhibit, World& world) {
-  const Lights all = make_lights(world);  // while all lamps are on
-  for (size_t i = 0; i < exhibit.lamps.size(); i++) world.switch_lamp(int(i), exhibit.lamps[i].on);
-  const Lights lights = exhibit.lamps.empty() ? all : relit(all, world);
+  const Lights all = make_lights(world);  // while all lamps are full
+  const LampLevels levels = first_levels(exhibit);
+  for (size_t i = 0; i < levels.size(); i++) world.set_lamp(int(i), levels[i]);
+  const Lights lights = levels.empty() ? all : relit(all, world);
   StillSettings settings;
   settings.spp = samples;
   settings.transport.max_depth = bounces;
@@ -55,7 +57,7 @@ std::optional<float> measure_exposure(const Exhibit& exhibit, World& world) {
     std::optional<float> exposure = exposure_of(frame, make_guides(world, lights, view, 4));
     if (exposure) sum += std::log(double(*exposure)), count++;
   }
-  for (size_t i = 0; i < exhibit.lamps.size(); i++) world.switch_lamp(int(i), true);
+  for (size_t i = 0; i < levels.size(); i++) world.set_lamp(int(i), lamp_full);
   if (count == 0) return {};
   return std::clamp(float(std::exp(sum / count)), least, most);
 }

@@ -156,7 +156,62 @@ void read_light(Exhibit& exhibit, Fields fields) {
   exhibit.lights.push_back(std::move(light));
 }
 
+// The scene's sun of that name, if it can be the day's; -1: it cannot.
+int find_sun(const Exhibit& exhibit, const std::string& name, int lamp, Fields& fields) {
+  std::string fault;
+  const std::vector<int> found = find_lights(exhibit.scene, name, fault);
+  if (fault.empty()) {
+    const int light = found.front(), owner = lamp_of_light(exhibit.scene, light);
+    if (found.size() > 1) fault = "'" + name + "' means several lights: name one of them";
+    else if (has_place(exhibit.scene.lights[size_t(light)])) fault = "'" + name + "' is no sun";
+    else if (owner >= 0 && owner != lamp)
+      fault =
+          "'" + name + "' belongs to the lamp '" + exhibit.scene.lamps[size_t(owner)].name + "'";
+    else if (std::ranges::any_of(exhibit.lights, [&](const ChangingLight& other) {
+               return other.of_scene == light;
+             }))
+      fault = "'" + name + "' is one of \"lights\" already";
+    if (fault.empty()) return light;
+  }
+  fields.problem("sun", fault);
+  return -1;
+}
+
+void read_day_fields(Exhibit& exhibit, Fields fields) {
+  DaySettings settings;
+  settings.at = fields.number("at", true, settings.at, 0, 24);
+  settings.from = fields.number("from", false, settings.from, 0, 24);
+  settings.to = fields.number("to", false, settings.to, 0, 24);
+  settings.latitude = fields.number("latitude_deg", false, settings.latitude, -66, 66);
+  if (!(settings.from < settings.to)) fields.problem("to", "must be later than \"from\"");
+  else if (settings.at < settings.from || settings.at > settings.to)
+    fields.problem("at", "must lie between \"from\" and \"to\"");
+  const std::string name = fields.text("lamp", true), sun = fields.text("sun", true);
+  const int lamp = find_lamp(exhibit, name);
+  if (lamp < 0 && !name.empty()) fields.problem("lamp", "there is no lamp '" + name + "'");
+  fields.finish();
+  if (lamp < 0 || sun.empty() || exhibit.scene.objects.empty()) return;
+  const int light = find_sun(exhibit, sun, lamp, fields);
+  if (light < 0) return;
+  const std::string problem = day_problem(settings, exhibit.scene.lights[size_t(light)]);
+  if (!problem.empty()) return fields.problem("", problem);
+  set_day(settings, lamp, light, exhibit);
+}
+
 }  // namespace
+
+void read_day(Exhibit& exhibit, Fields& root) {
+  root.object("day", false, [&](Fields fields) { read_day_fields(exhibit, std::move(fields)); });
+}
+
+void set_day(const DaySettings& settings, int lamp, int light, Exhibit& exhibit) {
+  Scene& scene = exhibit.scene;
+  exhibit.day = make_day(settings, scene.lights[size_t(light)]);
+  exhibit.day->lamp = lamp;
+  exhibit.day->sun_lamp = int(scene.lamps.size());
+  std::erase(scene.lamps[size_t(lamp)].lights, light);
+  scene.lamps.push_back({scene.lamps[size_t(lamp)].name + ": sun", {light}, {}});
+}
 
 void read_lights(Exhibit& exhibit, Fields& root) {
   root.objects("lights", false, [&](Fields fields) { read_light(exhibit, std::move(fields)); });
@@ -177,6 +232,11 @@ void put_lights(const std::vector<ChangingLight>& lights, double time, Scene& sc
     if (light.lamp >= 0) scene.lamps[size_t(light.lamp)].lights.push_back(int(scene.lights.size()));
     scene.lights.push_back(eval_light(light, time));
   }
+}
+
+void put_sun(const Day& day, double hour, Scene& scene) {
+  Lamp& lamp = scene.lamps[size_t(day.sun_lamp)];
+  scene.lights[size_t(lamp.lights.front())] = eval_sun(day, hour);
 }
 
 }  // namespace wellspring

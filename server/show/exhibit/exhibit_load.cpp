@@ -229,6 +229,7 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   read_scene(exhibit, root, problems);
   read_lamps(exhibit, root);
   read_lights(exhibit, root);
+  read_day(exhibit, root);
   read_viewpoints(exhibit, root);
   for (const Viewpoint& view : exhibit.scene.viewpoints)
     if (find_viewpoint(exhibit, view.name) < 0) exhibit.viewpoints.push_back({view, {}, {}});

@@ -66,6 +66,10 @@ json describe(const Exhibit& exhibit) {
   about["lamps"] = json::array();
   for (const ExhibitLamp& lamp : exhibit.lamps)
     about["lamps"].push_back({{"name", lamp.id}, {"title", lamp.title}, {"on_at_first", lamp.on}});
+  about["day"] = nullptr;
+  if (const std::optional<Day>& day = exhibit.day)
+    about["day"] = {
+        {"from", day->settings.from}, {"to", day->settings.to}, {"at", day->settings.at}};
   about["animations"] = json::array();
   for (const ExhibitAnimation& animation : exhibit.animations) {
     const bool touched = animation.start == ExhibitAnimation::Start::touch;

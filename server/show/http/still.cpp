@@ -40,8 +40,8 @@ StillRoom::StillRoom(const Show& show)
   for (int i = first; i < count; i++)  // one storyteller at a time
     world_->show(i - first, show.world->is_visible(uint32_t(i)));
   world_->commit();
-  const std::vector<char> lamps = first_lamps(exhibit_);
-  for (size_t i = 0; i < lamps.size(); i++) world_->switch_lamp(int(i), lamps[i]);
+  const LampLevels levels = first_levels(exhibit_);
+  for (size_t i = 0; i < levels.size(); i++) world_->set_lamp(int(i), levels[i]);
   lights_ = make_lights(*world_);
   transport_.clamp = 0;
 }

@@ -11,8 +11,7 @@ namespace {
 
 constexpr double least_between = 0.2;  // seconds from one change of the light to the next
 
-const LightChange& change_between(Show& show, const std::vector<char>& before,
-                                  const std::vector<char>& after) {
+const LightChange& change_between(Show& show, const LampLevels& before, const LampLevels& after) {
   Switches& switches = show.switches;
   for (const LightStep& step : switches.steps)
     if (step.before == before && step.after == after) return step.change;
@@ -22,8 +21,7 @@ const LightChange& change_between(Show& show, const std::vector<char>& before,
 }
 
 // The light on what moves, guessed from another state's until samples say more.
-SkinLight changed_skin(Show& show, const std::vector<char>& before,
-                       const std::vector<char>& after) {
+SkinLight changed_skin(Show& show, const LampLevels& before, const LampLevels& after) {
   SkinLight skin = show.skin;
   if (skin.places.empty()) return skin;
   const LightChange& change = change_between(show, before, after);
@@ -34,9 +32,8 @@ SkinLight changed_skin(Show& show, const std::vector<char>& before,
   return skin;
 }
 
-void switch_world(Show& show, const std::vector<char>& lamps) {
-  for (size_t lamp = 0; lamp < lamps.size(); lamp++)
-    show.world->switch_lamp(int(lamp), lamps[lamp]);
+void switch_world(Show& show, const LampLevels& lamps) {
+  for (size_t lamp = 0; lamp < lamps.size(); lamp++) show.world->set_lamp(int(lamp), lamps[lamp]);
   show.switches.lit = lamps;
 }
 
@@ -76,24 +73,46 @@ void begin_lamps(Show& show) {
   show.switches.wanted = first_lamps(show.exhibit);
   if (show.exhibit.lamps.empty()) return;
   show.switches.all = show.lights;
-  switch_world(show, show.switches.wanted);
+  switch_world(show, first_levels(show.exhibit));
   show.lights = relit(show.switches.all, *show.world);
 }
 
-std::vector<char> lamps_of(const Show& show, const Visitor& visitor) {
-  std::vector<char> lamps = show.switches.wanted;
+namespace {
+// Whose wishes count.
+const VisitorLamps& wishes_of(const Show& show, const Visitor& visitor) {
   const Visitor* leader = leader_of(show, visitor);
-  const VisitorLamps& own = (leader ? *leader : visitor).lamps;
-  for (size_t i = 0; i < own.own.size(); i++)
-    if (own.own[i]) lamps[i] = own.wish[i];
-  return lamps;
+  return (leader ? *leader : visitor).lamps;
+}
+}  // namespace
+
+std::vector<char> switches_of(const Show& show, const Visitor& visitor) {
+  std::vector<char> on = show.switches.wanted;
+  const VisitorLamps& wishes = wishes_of(show, visitor);
+  for (size_t i = 0; i < wishes.own.size(); i++)
+    if (wishes.own[i]) on[i] = wishes.wish[i];
+  return on;
+}
+
+std::optional<double> hour_of(const Show& show, const Visitor& visitor) {
+  return wishes_of(show, visitor).hour;
+}
+
+LampLevels lamps_of(const Show& show, const Visitor& visitor) {
+  return lamp_levels(show.exhibit.day, switches_of(show, visitor), hour_of(show, visitor));
+}
+
+bool set_hour(const Show& show, Visitor& visitor, std::optional<double> hour) {
+  if (!show.exhibit.day) return false;
+  visitor.lamps.hour = hour ? hour_of_day(*show.exhibit.day, *hour) : hour;
+  visitor.state_sent_at = -1e9;
+  return true;
 }
 
 bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on) {
   const int found = find_lamp(show.exhibit, name);
   if (found < 0) return false;
   const size_t lamp = size_t(found);
-  if (bool(lamps_of(show, visitor)[lamp]) == on) return true;
+  if (bool(switches_of(show, visitor)[lamp]) == on) return true;
   show.totals.lamps_switched++;
   if (show.exhibit.lamps[lamp].shared) {
     show.switches.wanted[lamp] = on;
@@ -111,22 +130,25 @@ bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on) {
 
 bool lamps_wait(const Show& show, const Visitor& visitor) {
   const VisitorLamps& lamps = visitor.lamps;
-  return lamps.lit != lamps_of(show, visitor) && show.time - lamps.lit_at >= least_between;
+  const bool differs =
+      lamps.lit_hour != hour_of(show, visitor) || lamps.lit != lamps_of(show, visitor);
+  return differs && show.time - lamps.lit_at >= least_between;
 }
 
 void light_lamps(Show& show, Visitor& visitor) {
   VisitorLamps& lamps = visitor.lamps;
   const bool first = lamps.lit.empty();
   lamps.lit = lamps_of(show, visitor);
+  lamps.lit_hour = hour_of(show, visitor);
   if (first) return;
   lamps.lit_at = show.time;
   look_anew(visitor.picture);
 }
 
-void light_world(Show& show, const std::vector<char>& lamps) {
+void light_world(Show& show, const LampLevels& lamps) {
   Switches& switches = show.switches;
   if (lamps == switches.lit) return;
-  const std::vector<char> before = switches.lit;
+  const LampLevels before = switches.lit;
   auto known = switches.others.extract(lamps);
   KnownLight next;
   if (known) {
@@ -144,7 +166,8 @@ void light_world(Show& show, const std::vector<char>& lamps) {
 void follow_lamps(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   picture.compositor.set_maps(show.lights.maps);
-  const std::vector<char>& lit = show.switches.lit;
+  picture.hour = visitor.lamps.lit_hour;
+  const LampLevels& lit = show.switches.lit;
   if (picture.lamps == lit) return;
   if (picture.lamps.size() == lit.size()) {
     const LightChange& change = change_between(show, picture.lamps, lit);

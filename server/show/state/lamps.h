@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lamps of a running exhibit. Who switches one does it for themselves, or for everybody where
-// the exhibit says that it is shared.
+// The lamps of a running exhibit, and its hour of the day. Who switches a lamp does it for
+// themselves, or for everybody where the exhibit says that it is shared; the hour is everyone's
+// own.
 //
 // What is wanted changes at once and is told; the light follows between two pictures, a fifth of a
 // second after the last change at the earliest, so that nobody makes it flash more than three times
@@ -9,6 +10,7 @@
 // kept. Each visitor's cache learns of a change before its next picture, and what was asked for in
 // the old light is not taken any more.
 #pragma once
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -18,18 +20,26 @@ namespace wellspring {
 
 // Maps of the exhibit's scene, of all lamps, from now on. While nothing is drawn.
 void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
-// Puts the lamps as they are at first. show.lights were made, and are prepared, while all were on.
+// Puts the lamps as they are at first. show.lights were made, and are prepared, while all were
+// full.
 void begin_lamps(Show& show);
-// As the visitor wants them: of each lamp, the visitor's own wish or the house's.
-std::vector<char> lamps_of(const Show& show, const Visitor& visitor);
+// As the visitor wants them: which of the exhibit's are on, by the visitor's own wish or the
+// house's; the hour of the day (nothing: the exhibit's own); and what levels of the scene's lamps
+// follow from both.
+std::vector<char> switches_of(const Show& show, const Visitor& visitor);
+std::optional<double> hour_of(const Show& show, const Visitor& visitor);
+LampLevels lamps_of(const Show& show, const Visitor& visitor);
 // Who sees it hears of it with the next tick. False: there is no such lamp.
 bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on);
+// Nothing: back to the exhibit's own. Who sees it hears of it with the next tick. False: the
+// exhibit has no day.
+bool set_hour(const Show& show, Visitor& visitor, std::optional<double> hour);
 // Is the visitor's light to follow now?
 bool lamps_wait(const Show& show, const Visitor& visitor);
 // It follows from the next picture on. While none is drawn for that visitor.
 void light_lamps(Show& show, Visitor& visitor);
 // The world and its lights in that state. Only while the renderer is idle.
-void light_world(Show& show, const std::vector<char>& lamps);
+void light_world(Show& show, const LampLevels& lamps);
 // Before anything is drawn for a visitor, by whoever draws: its cache forgets what another light
 // was.
 void follow_lamps(Show& show, Visitor& visitor);

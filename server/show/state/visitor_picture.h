@@ -45,7 +45,8 @@ struct Surroundings {
 struct VisitorPicture {
   bool at_work = false;  // a picture of this visitor is drawn or its samples are traced
   // The light that is known.
-  std::vector<char> lamps;  // whose light the cache knows: see show/state/lamps.h
+  LampLevels lamps;            // whose light the cache knows: see show/state/lamps.h
+  std::optional<double> hour;  // of the day, that is seen by
   RenderCache cache;
   Compositor compositor;
   Broker broker;              // what is traced after its picture, for the next

@@ -34,7 +34,7 @@ void go_on_in_world_of(Show& show, Visitor& visitor) {
 
 bool see_the_same(const Show& show, const Visitor& a, const Visitor& b) {
   return &teller_of(show, a) == &teller_of(show, b) && a.lamps.lit == b.lamps.lit &&
-         who_touched(show, a) == who_touched(show, b);
+         a.lamps.lit_hour == b.lamps.lit_hour && who_touched(show, a) == who_touched(show, b);
 }
 
 }  // namespace wellspring

@@ -13,7 +13,7 @@ void pose_world(Show& show, const Teller& teller, const std::vector<double>& tim
 void begin_world_of(Show& show, Visitor& visitor);
 // For more of what was begun: as it was last posed, unless for somebody who sees others.
 void go_on_in_world_of(Show& show, Visitor& visitor);
-// Whether two visitors see the same lamps, animations and teller.
+// Whether two visitors see the same lamps, hour, animations and teller.
 bool see_the_same(const Show& show, const Visitor& a, const Visitor& b);
 
 }  // namespace wellspring

@@ -92,7 +92,7 @@ TEST(Glow, FollowsTheLampThatIsSwitched) {
   for (int i = 0; i < 40; i++) visit.step(stage, view, size * size, PictureOf::moving_fine);
   float lit = compare(visit.frame, visit.frame, view, 3).shown.x;
   EXPECT_GT(lit, 2);
-  stage.world->switch_lamp(0, false);
+  stage.world->set_lamp(0, 0);
   visit.cache.relight([](const RenderCache::Surface&, vec3&, vec3&) { return true; });
   visit.step(stage, view, 0, PictureOf::moving_fine);
   EXPECT_NEAR(compare(visit.frame, visit.frame, view, 3).shown.x, 0.5f, 0.05f);

@@ -2,8 +2,9 @@
 // A small exhibit made in code: a lit room of 8 x 4 x 8 m with a wall in the middle, two
 // viewpoints, a tour and a story.
 #pragma once
-#include "show/exhibit/exhibit.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "unit/show/tiny_figure.h"
+#include "world/load/lamp.h"
 
 namespace wellspring {
 
@@ -71,6 +72,20 @@ inline Exhibit make_tiny_exhibit(dvec3 origin = dvec3(0)) {
   exhibit.walk = WalkSettings{};
   exhibit.walk->eye_height = 1.6f;
   return exhibit;
+}
+
+// The room's lamp is its sky, with a sun that stands 45 degrees high in the south at noon. The
+// first of the exhibit's lamps.
+inline void add_day(Exhibit& exhibit) {
+  PunctualLight sun;
+  sun.name = "sun";
+  sun.type = PunctualType::directional;
+  sun.direction = normalize(vec3(0, -1, -1));
+  sun.intensity = vec3(9, 8, 7);
+  exhibit.scene.lights.push_back(sun);
+  add_lamp({"daylight", {"light", "sun"}, {}}, exhibit.scene);
+  exhibit.lamps = {{"daylight", {{"en", "Daylight"}}}};
+  set_day({}, 0, int(exhibit.scene.lights.size()) - 1, exhibit);
 }
 
 inline StorytellerPlace& add_storyteller(Exhibit& exhibit, const std::string& id, dvec3 position) {

@@ -249,11 +249,19 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
     EXPECT_EQ(unpack_rgb9e5(layers[0][i]), vec3(0));
   }
   for (int lamp : {0, 1}) {
-    const char on[] = {lamp == 0, lamp == 1};
+    LampLevels on(2, 0);
+    on[size_t(lamp)] = lamp_full;
     auto alone = relit(*map, on);
     for (size_t i = 0; i < map->light.size(); i++) {
       vec3 layer = unpack_rgb9e5(layers[size_t(lamp) + 1][i]);
       ASSERT_LT(length(unpack_rgb9e5(alone->light[i]) - layer), 0.005f * length(layer) + 1e-6f);
+    }
+    on[size_t(lamp)] = level_of(0.25f);
+    const float dim = brightness_of(on[size_t(lamp)]);
+    auto dimmed = relit(*map, on);
+    for (size_t i = 0; i < map->light.size(); i++) {
+      vec3 layer = dim * unpack_rgb9e5(layers[size_t(lamp) + 1][i]);
+      ASSERT_LT(length(unpack_rgb9e5(dimmed->light[i]) - layer), 0.005f * length(layer) + 1e-6f);
     }
     Baked other(make_two_lamps(lamp == 0, lamp == 1), few);
     auto expected = other.map(48);
@@ -271,7 +279,7 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
     EXPECT_NEAR(sum / wanted, 1, 0.05) << lamp;
     EXPECT_LT(differ / wanted, 0.2) << lamp;
   }
-  const char none[] = {0, 0};
+  const LampLevels none{0, 0};
   auto dark = relit(*map, none);
   for (uint32_t light : dark->light) EXPECT_EQ(unpack_rgb9e5(light), vec3(0));
 }

@@ -46,8 +46,8 @@ struct Switched {
     if (technique) find_technique(technique)->prepare(*world, std::span(&place, 1), all);
   }
   Lights light(bool lamp, bool spot) {
-    world->switch_lamp(0, lamp);
-    world->switch_lamp(1, spot);
+    world->set_lamp(0, lamp ? lamp_full : 0);
+    world->set_lamp(1, spot ? lamp_full : 0);
     return relit(all, *world);
   }
 };
@@ -82,17 +82,56 @@ TEST(SwitchedLamps, LightIsThatOfASceneWithoutThem) {
     }
 }
 
+// Of a dimmed lamp as of one that the scene has so.
+TEST(SwitchedLamps, DimmedLightIsThatOfASceneWithDarkerLamps) {
+  Switched switched("gather");
+  constexpr LampLevel lamp = 90, spot = 200;
+  switched.world->set_lamp(0, lamp), switched.world->set_lamp(1, spot);
+  const Lights dimmed = relit(switched.all, *switched.world);
+  Scene other = make_box(true, true, true);
+  for (Material& material : other.materials) material.emission *= brightness_of(lamp);
+  other.lights[0].intensity *= brightness_of(spot);
+  World world(other);
+  Lights lights = make_lights(world);
+  vec3 place(0, 0.27f, 0.3f);
+  find_technique("gather")->prepare(world, std::span(&place, 1), lights);
+  for (const char* name : {"path", "gather", "instant_radiosity"})
+    expect_same(mean_of(*find_technique(name), *switched.world, dimmed),
+                mean_of(*find_technique(name), world, lights), name);
+}
+
+TEST(SwitchedLamps, FullLampsAreTheSceneBitForBit) {
+  Switched switched("gather");
+  for (int lamp : {0, 1}) switched.world->set_lamp(lamp, 100);
+  for (int lamp : {0, 1}) switched.world->set_lamp(lamp, lamp_full);
+  const Lights again = relit(switched.all, *switched.world);
+  const LightTables &now = *again.tables, &all = *switched.all.tables;
+  EXPECT_EQ(now.emitter_power, all.emitter_power);
+  ASSERT_EQ(now.punctual.size(), all.punctual.size());
+  EXPECT_EQ(now.punctual[0].intensity, all.punctual[0].intensity);
+  for (size_t i = 0; i < all.emitters.size(); i++)
+    EXPECT_EQ(now.emitters[i].emission, all.emitters[i].emission);
+  for (size_t i = 0; i < switched.scene.instances.size(); i++) {
+    const size_t material =
+        size_t(switched.scene.meshes[size_t(switched.scene.instances[i].mesh)].material);
+    EXPECT_EQ(switched.world->material_of(uint32_t(i)).emission,
+              switched.scene.materials[material].emission);
+  }
+  const Switched other("gather");
+  EXPECT_EQ(again.grid->light, relit(other.all, *other.world).grid->light);
+}
+
 TEST(SwitchedLamps, WithoutAnyOtherLightItIsDarkAndFinite) {
   Scene scene = make_box(true, true, false);
   add_lamp({"all", {"lamp", "spot"}, {}}, scene);
   World world(scene);
   Lights all = make_lights(world);
-  world.switch_lamp(0, false);
+  world.set_lamp(0, 0);
   Lights dark = relit(all, world);
   for (const Technique& technique : techniques())
     EXPECT_EQ(mean_of(technique, world, dark).mean, 0) << technique.name;
   EXPECT_EQ(dark.bad_samples->load(), 0u);
-  world.switch_lamp(0, true);
+  world.set_lamp(0, lamp_full);
   EXPECT_GT(mean_of(*find_technique("path"), world, relit(all, world)).mean, 0);
 }
 
@@ -125,7 +164,7 @@ TEST(SwitchedLamps, KeptLightIsThatOfASceneWithoutThem) {
 
 TEST(SwitchedLamps, AChangeIsToldWhereItIs) {
   Switched switched("gather");
-  const char both[] = {1, 1}, without_spot[] = {1, 0}, none[] = {0, 0};
+  const LampLevels both{lamp_full, lamp_full}, without_spot{lamp_full, 0}, none{0, 0};
   LightChange nothing(switched.scene, switched.all, both, both);
   LightChange spot(switched.scene, switched.all, both, without_spot);
   LightChange back(switched.scene, switched.all, without_spot, both);
@@ -145,6 +184,19 @@ TEST(SwitchedLamps, AChangeIsToldWhereItIs) {
   // What comes back is what went: of radiance scattered by a known reflectance.
   for (int c = 0; c < 3; c++) EXPECT_GT(added[c], 0.2f);
   EXPECT_LT(left.x, 1);
+  // Half of the light is half of what goes.
+  const LampLevels half_spot{lamp_full, level_of(0.5f)};
+  LightChange half(switched.scene, switched.all, both, half_spot);
+  LightChange on(switched.scene, switched.all, half_spot, both);
+  vec3 half_kept(1), half_added(0);
+  ASSERT_TRUE(half.changes(lit, floor, half_kept, half_added));
+  EXPECT_EQ(half_added, vec3(0));
+  for (int c = 0; c < 3; c++) EXPECT_NEAR(1 - half_kept[c], 0.5f * (1 - left[c]), 0.01f);
+  const vec3 whole = added;
+  half_kept = vec3(1), half_added = vec3(0);
+  ASSERT_TRUE(on.changes(lit, floor, half_kept, half_added));
+  EXPECT_EQ(half_kept, vec3(1));
+  for (int c = 0; c < 3; c++) EXPECT_NEAR(half_added[c], 0.5f * whole[c], 0.02f * whole[c]);
   kept = vec3(1);
   ASSERT_TRUE(all.changes(corner, wall, kept, added));
   EXPECT_LT(luminance(kept), 0.6f);

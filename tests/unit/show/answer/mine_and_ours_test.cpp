@@ -8,7 +8,6 @@
 #include "show/exhibit/exhibit_lamps.h"
 #include "unit/show/show_stage.h"
 #include "wire/json.h"
-#include "world/load/lamp.h"
 
 namespace wellspring {
 namespace {
@@ -23,7 +22,7 @@ Exhibit make_shared_room(bool shared) {
     place.name = {{"en", i == 0 ? "Anna" : "Otto"}};
   }
   exhibit.shared_storyteller = shared;
-  add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
+  add_day(exhibit);
   exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}, true, shared}};
   return exhibit;
 }
@@ -66,6 +65,7 @@ const std::vector<std::string> orders = {
     R"({"type":"storyteller","action":"stop"})",
     R"({"type":"ask","text":"What is this?"})",
     R"({"type":"lamp","name":"ceiling","on":false})",
+    R"({"type":"hour","value":20})",
     R"({"type":"play","name":"door","on":true})",
     R"({"type":"group","action":"lead"})",
     R"({"type":"kiosk","showing":"book","touched":true,"playing":true})",

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <tuple>
+
+#include "show/exhibit/exhibit_lamps.h"
 #include "unit/show/exhibit/room_package.h"
 
 namespace wellspring {
@@ -142,6 +146,72 @@ TEST(ExhibitLights, ThereAreAFewAtMost) {
   LightsPackage package(many.dump());
   package.read();
   EXPECT_EQ(package.says("/lights", "more than 16"), 1) << package.told();
+}
+
+struct DayPackage : RoomPackage {
+  explicit DayPackage(const std::string& day) : RoomPackage(with_sun()) {
+    manifest["lamps"] = json::parse(
+        R"([{"id": "day", "title": "Day", "nodes": ["Sun", "Fire"]},
+            {"id": "room", "title": "Room", "nodes": ["Lamp", "Other Sun"]}])");
+    manifest["day"] = json::parse(day);
+  }
+  static Asset with_sun() {
+    Asset asset = two_lamps();
+    json& lights = asset.root["extensions"]["KHR_lights_punctual"]["lights"];
+    // 45 degrees up, and lying down.
+    for (auto [name, x] : {std::pair("Sun", -0.3826834f), std::pair("Other Sun", 0.0f)}) {
+      lights.push_back({{"type", "directional"}, {"intensity", 10}});
+      asset.add_node({{"name", name},
+                      {"rotation", {x, 0, 0, std::sqrt(1 - x * x)}},
+                      {"extensions", {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}}}});
+    }
+    return asset;
+  }
+};
+
+TEST(ExhibitDay, SunAndSkyArePartedAndOneSwitchIsLeft) {
+  DayPackage package(R"({"lamp": "day", "sun": "Sun", "at": 11.5, "latitude_deg": 48, "from": 6})");
+  const Exhibit exhibit = package.read();
+  EXPECT_EQ(package.told(), "");
+  ASSERT_TRUE(exhibit.day);
+  EXPECT_EQ(exhibit.day->settings.at, 11.5);
+  EXPECT_EQ(exhibit.day->settings.from, 6);
+  EXPECT_EQ(exhibit.day->settings.to, 22);
+  EXPECT_EQ(exhibit.lamps.size(), 2u);
+  ASSERT_EQ(exhibit.scene.lamps.size(), 3u);
+  EXPECT_EQ(exhibit.day->lamp, 0);
+  EXPECT_EQ(exhibit.day->sun_lamp, 2);
+  EXPECT_EQ(exhibit.scene.lamps[0].lights, std::vector<int>{1});
+  EXPECT_EQ(exhibit.scene.lamps[2].lights, std::vector<int>{2});
+  EXPECT_EQ(first_levels(exhibit), LampLevels(3, lamp_full));
+  Scene scene = exhibit.scene;
+  put_sun(*exhibit.day, 17, scene);
+  EXPECT_EQ(scene.lights[2].direction, eval_sun(*exhibit.day, 17).direction);
+}
+
+TEST(ExhibitDay, EveryProblemIsToldWithItsPlace) {
+  const std::tuple<const char*, const char*, const char*> cases[] = {
+      {R"({"lamp": "night", "sun": "Sun", "at": 12})", "/day/lamp", "no lamp 'night'"},
+      {R"({"lamp": "day", "sun": "Son", "at": 12})", "/day/sun", "did you mean 'Sun'"},
+      {R"({"lamp": "day", "sun": "Fire", "at": 12})", "/day/sun", "is no sun"},
+      {R"({"lamp": "day", "sun": "Other Sun", "at": 12})", "/day/sun", "the lamp 'room'"},
+      {R"({"lamp": "room", "sun": "Other Sun", "at": 12})", "/day", "10 at least"},
+      {R"({"lamp": "day", "sun": "Sun", "at": 6})", "/day", "at the hour 6"},
+      {R"({"lamp": "day", "sun": "Sun", "at": 4})", "/day/at", "between"},
+      {R"({"lamp": "day", "sun": "Sun", "at": 12, "from": 12, "to": 11})", "/day/to", "later"},
+      {R"({"lamp": "day", "sun": "Sun", "at": 25})", "/day/at", "from 0 to 24"},
+      {R"({"lamp": "day", "sun": "Sun", "at": 12, "latitude_deg": 80})", "/day/latitude_deg", "66"},
+      {R"({"lamp": "day", "sun": "Sun"})", "/day/at", "missing"},
+      {R"({"lamp": "day", "sun": "Sun", "at": 12, "noon": 1})", "/day/noon", "ignored"}};
+  for (const auto& [day, where, what] : cases) {
+    DayPackage package(day);
+    package.read();
+    EXPECT_EQ(package.says(where, what), 1) << day << "\n" << package.told();
+  }
+  DayPackage twice(R"({"lamp": "day", "sun": "Sun", "at": 12})");
+  twice.manifest["lights"] = json::parse(R"([{"node": "Sun", "flicker": {}}])");
+  twice.read();
+  EXPECT_EQ(twice.says("/day/sun", "\"lights\" already"), 1) << twice.told();
 }
 
 }  // namespace

@@ -88,13 +88,14 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   ASSERT_TRUE(steps.empty());
   for (int i = 0; i < 50 && steps.empty(); i++) step();  // all are drawn in the same tick
   ASSERT_EQ(steps.size(), 1u);
-  const std::vector<char> lit{0, 1};
+  const LampLevels lit{0, lamp_full};
   for (const Visitor& visitor : show->visitors) EXPECT_EQ(visitor.picture.lamps, lit);
   step();
   EXPECT_TRUE(steps.empty());
 
   // Who has missed a switch before has another way to go.
-  const std::vector<char> known[] = {{1, 1}, {1, 0}, {1, 1}, {1, 0}};
+  constexpr LampLevel full = lamp_full;
+  const LampLevels known[] = {{full, full}, {full, 0}, {full, full}, {full, 0}};
   size_t i = 0;
   for (Visitor& visitor : show->visitors) visitor.picture.lamps = known[i++];
   for (Visitor& visitor : show->visitors) follow_lamps(*show, visitor);
@@ -142,7 +143,7 @@ TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {
   lamp(0, "moon", false);
   run(0.1);
   EXPECT_EQ(last("error")["code"], "unknown_lamp");
-  EXPECT_TRUE(show->world->is_on(0));
+  EXPECT_EQ(show->world->lamp_levels()[0], lamp_full);
   lamp(0, "ceiling", true);  // it is
   run(0.1);
   EXPECT_EQ(show->totals.lamps_switched, 0u);
@@ -152,7 +153,7 @@ TEST_F(Lamps, WhatIsOffAtFirstIsOffForStillsAndForWhoComes) {
   begin(make_lit_exhibit(false), 1, "path");
   run(0.2);
   EXPECT_EQ(last("welcome")["lamps"][0]["on"], false);
-  EXPECT_FALSE(show->world->is_on(0));
+  EXPECT_EQ(show->world->lamp_levels()[0], 0);
   run(0.5);
   double dark = level(0);
   lamp(0, "ceiling", true);
@@ -167,15 +168,15 @@ TEST_F(Lamps, TheLightChangesAFewTimesASecondAtMost) {
   run(1);
   int changes = 0;
   for (int i = 0; i < 50; i++) {
-    bool before = show->world->is_on(0);
+    const LampLevel before = show->world->lamp_levels()[0];
     lamp(0, "ceiling", i % 2 == 1);
     step();
-    changes += before != show->world->is_on(0);
+    changes += before != show->world->lamp_levels()[0];
   }
   EXPECT_LE(changes, 6);
   EXPECT_GE(changes, 1);
   run(0.4);
-  EXPECT_TRUE(show->world->is_on(0));
+  EXPECT_EQ(show->world->lamp_levels()[0], lamp_full);
 }
 
 // Requests of the old light are out, and some are answered, when the lamp is switched.
@@ -192,7 +193,7 @@ TEST_F(Lamps, AnswersOfTheOldLightAreNotTaken) {
   Answer old{*piece, show->pose_number, std::vector<Sample>(piece->requests.size())};
   lamp(0, "ceiling", false);
   run(0.2);
-  EXPECT_EQ(visitor.picture.lamps, std::vector<char>{0});
+  EXPECT_EQ(visitor.picture.lamps, LampLevels{0});
   EXPECT_FALSE(visitor.picture.broker.answer(old));
   EXPECT_TRUE(visitor.picture.broker.collect().empty());
 }

@@ -71,16 +71,22 @@ TEST(Lamp, WhatIsSharedBecomesItsOwnAndLooksAsBefore) {
   World world(row.scene);
   for (int i = 0; i < 4; i++) EXPECT_EQ(shown(world, i), light[i]) << i;
   for (int lamp = 0; lamp < 3; lamp++) {
-    world.switch_lamp(lamp, false);
-    EXPECT_FALSE(world.is_on(lamp));
+    world.set_lamp(lamp, 0);
+    EXPECT_EQ(world.lamp_levels()[size_t(lamp)], 0);
     for (int i = 0; i < 4; i++) {
       bool dark = lamp == 0 ? i == 1 : lamp == 1 ? i == 0 || i == 2 : i == 3;
       EXPECT_EQ(shown(world, i), dark ? vec3(0) : light[i]) << lamp << " " << i;
     }
-    world.switch_lamp(lamp, true);
+    world.set_lamp(lamp, 100);
+    for (int i = 0; i < 4; i++) {
+      const bool dim = lamp == 0 ? i == 1 : lamp == 1 ? i == 0 || i == 2 : i == 3;
+      EXPECT_LT(length(shown(world, i) - (dim ? brightness_of(100) : 1) * light[i]), 1e-5f)
+          << lamp << " " << i;
+    }
+    world.set_lamp(lamp, lamp_full);
     for (int i = 0; i < 4; i++) EXPECT_EQ(shown(world, i), light[i]) << i;
   }
-  EXPECT_THROW(world.switch_lamp(3, true), std::out_of_range);
+  EXPECT_THROW(world.set_lamp(3, lamp_full), std::out_of_range);
 }
 
 TEST(Lamp, WhatIsNoPartOfOneIsToldByName) {
