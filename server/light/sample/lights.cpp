@@ -134,12 +134,11 @@ TransportPlan make_plan(const World& world) {
   return make_transport_plan(world.scene(), moving);
 }
 
-Lights make_lights(const World& world) { return make_lights(world, make_plan(world)); }
-
 namespace {
 
 // What is chosen among, and how likely each is: all that emit light of the sources.
-void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTables& tables) {
+void choose_sources(const Scene& scene, const EmittingSources& emitting,
+                    std::span<const PunctualLight> more, LightTables& tables) {
   using enum TransportPart;
   const TransportPlan& plan = tables.plan;
   tables.emitter_choice =
@@ -160,16 +159,13 @@ void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTa
   std::vector<float> punctual_powers;
   tables.punctual.clear(), tables.cones.clear(), tables.punctual_index.clear();
   uint32_t index = 0;
-  for (size_t i = 0; i < scene.lights.size(); i++) {
-    const PunctualLight& light = scene.lights[i];
-    if (!plan.uses(punctual_lights)) break;
+  auto add = [&](const PunctualLight& light, float brightness) {
     float p = power_of(light, radius);
     bool finite =
         is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
-    if (!(p > 0) || !std::isfinite(p) || !finite) continue;
+    if (!(p > 0) || !std::isfinite(p) || !finite) return;
     index++;
-    const float brightness = emitting.lights[i];
-    if (!(brightness > 0)) continue;
+    if (!(brightness > 0)) return;
     p *= brightness;
     tables.punctual.push_back(light);
     tables.punctual.back().intensity *= brightness;
@@ -177,6 +173,10 @@ void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTa
     tables.cones.push_back(make_spot_cone(light));
     punctual_powers.push_back(p);
     punctual_power += double(p);
+  };
+  if (plan.uses(punctual_lights)) {
+    for (size_t i = 0; i < scene.lights.size(); i++) add(scene.lights[i], emitting.lights[i]);
+    for (const PunctualLight& light : more) add(light, 1);
   }
   float sky_power =
       luminance(sky.radiance) > 0 ? sky.mean_luminance * 4 * pi * pi * radius * radius : 0.0f;
@@ -188,7 +188,15 @@ void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTa
 
 }  // namespace
 
-Lights make_lights(const World& world, const TransportPlan& plan) {
+Lights make_lights(const World& world, std::span<const PunctualLight> more) {
+  TransportPlan plan = make_plan(world);
+  if (!more.empty())
+    plan.decisions[size_t(TransportPart::punctual_lights)] = {true, "lights beside the scene's"};
+  return make_lights(world, plan, more);
+}
+
+Lights make_lights(const World& world, const TransportPlan& plan,
+                   std::span<const PunctualLight> more) {
   using enum TransportPart;
   const Scene& scene = world.scene();
   auto tables = std::make_shared<LightTables>();
@@ -201,7 +209,7 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   tables->bounds = scene_bounds(scene);
   if (plan.uses(TransportPart::environment))
     tables->environment = make_environment_light(scene, plan.uses(environment_importance));
-  choose_sources(scene, find_emitting(world), *tables);
+  choose_sources(scene, find_emitting(world), more, *tables);
 
   for (size_t i = 0; i < scene.materials.size(); i++) {
     const Material& m = scene.materials[i];
@@ -232,7 +240,7 @@ std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& sc
     tables->emitter_power[i] *= brightness;
   }
   if (!emitting.sky) tables->environment = {};
-  choose_sources(scene, emitting, *tables);
+  choose_sources(scene, emitting, {}, *tables);
   return tables;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 #include <atomic>
 #include <memory>
+#include <span>
 
 #include "world/world.h"
 
@@ -30,10 +31,12 @@ struct Lights {
   std::shared_ptr<const SplatPass> splat_pass = nullptr;
 };
 
-Lights make_lights(const World& world);
+// `more`: lights beside the scene's, as they are at a moment.
+Lights make_lights(const World& world, std::span<const PunctualLight> more = {});
 // By another plan than the scene's own: tests force parts on to prove that leaving them out changes
 // nothing. Leaving out what matters is what one would expect it to be.
-Lights make_lights(const World& world, const TransportPlan& plan);
+Lights make_lights(const World& world, const TransportPlan& plan,
+                   std::span<const PunctualLight> more = {});
 TransportPlan make_plan(const World& world);  // of its scene and what moves in it
 
 // The tables of fewer or darker sources than those of `all`, which was made while all lamps were

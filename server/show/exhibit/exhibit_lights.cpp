@@ -224,7 +224,7 @@ void take_lights(Exhibit& exhibit) {
   for (ChangingLight& light : exhibit.lights)
     if (light.of_scene >= 0) taken.push_back(std::exchange(light.of_scene, -1));
   if (!taken.empty()) remove_lights(taken, exhibit.scene);
-  exhibit.scene.dynamic_lights = int(exhibit.lights.size());
+  exhibit.scene.dynamic_lights = int(exhibit.lights.size()) + (exhibit.day ? 1 : 0);
 }
 
 void put_lights(const std::vector<ChangingLight>& lights, double time, Scene& scene) {

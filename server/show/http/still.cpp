@@ -42,7 +42,13 @@ StillRoom::StillRoom(const Show& show)
   world_->commit();
   const LampLevels levels = first_levels(exhibit_);
   for (size_t i = 0; i < levels.size(); i++) world_->set_lamp(int(i), levels[i]);
-  lights_ = make_lights(*world_);
+  std::vector<PunctualLight> moving_lights;  // as they are at the show's start, too
+  for (const ChangingLight& light : exhibit_.lights) {
+    moving_lights.push_back(eval_light(light, 0));
+    if (light.lamp >= 0)
+      moving_lights.back().intensity *= brightness_of(levels[size_t(light.lamp)]);
+  }
+  lights_ = make_lights(*world_, moving_lights);
   transport_.clamp = 0;
 }
 

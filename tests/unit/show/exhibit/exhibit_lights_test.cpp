@@ -41,6 +41,7 @@ TEST(ExhibitLights, ALightOfTheSceneIsTakenOutAndKeepsItsLamp) {
   EXPECT_EQ(light.light.intensity, vec3(8));
   EXPECT_EQ(light.flicker.depth, 0.2f);
   EXPECT_EQ(light.flicker.hz, 3);
+  EXPECT_EQ(exhibit.scene.dynamic_lights, 1) << "the transport plan tells of it";
   ASSERT_EQ(exhibit.scene.lights.size(), 1u);
   EXPECT_EQ(exhibit.scene.lights[0].name, "Fire");
   EXPECT_EQ(exhibit.scene.lamps[0].lights, std::vector<int>{0}) << "it has moved up";
