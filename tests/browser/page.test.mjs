@@ -225,6 +225,36 @@ test('the storyteller is heard after the first touch, from where she stands, and
   await page.close();
 });
 
+test('the hour of the day is a slider that says the time', { skip }, async () => {
+  const { page, problems } = await open();
+  await page.locator('#menu-button').click();
+  const hour = page.getByRole('slider', { name: 'Hour of the day' });
+  assert.equal(await hour.getAttribute('aria-valuetext'), '1:30 PM');
+  await hour.focus();
+  await shot(page, 'hour-own');
+  await page.keyboard.press('End');
+  assert.equal(await hour.getAttribute('aria-valuetext'), '10:00 PM');
+  assert.equal(await page.locator('#hour-time').textContent(), '10:00 PM');
+  const sky = async () => (await look(page)).slice(0, 24 * 4)
+      .reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0);
+  const before = await sky();
+  for (const end = performance.now() + 30000; performance.now() < end; await sleep(200))
+    if (await sky() < 0.8 * before) break;
+  assert.ok(await sky() < 0.8 * before, 'it gets dark');
+  await shot(page, 'hour-late');
+  // What the server says stands when the page is loaded again.
+  await sleep(2500);
+  await page.reload();
+  await page.waitForFunction(() => document.getElementById('hour').value === '22');
+  await page.locator('#menu-button').click();
+  await hour.focus();
+  await page.keyboard.press('Home');
+  await page.waitForFunction(() =>
+      document.getElementById('hour').getAttribute('aria-valuetext') === '5:00 AM');
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
 test('lamps are switched in the menu, for oneself', { skip }, async () => {
   const { page, problems } = await open();
   const { page: other } = await open();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps over the WebSocket: who switches one is told and sent other pictures, nobody else.
+// Lamps and the hour of the day over the WebSocket: who changes one is told and sent other pictures,
+// nobody else.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Visitor, sleep, start_server } from '../server.mjs';
@@ -63,4 +64,33 @@ test('what is no lamp is refused', async () => {
   for (let i = 0; i < 50 && !switched.test(await metrics()); i++) await sleep(100);
   assert.match(await metrics(), switched);
   await visitor.close();
+});
+
+test('who chooses a late hour is told, and sees the evening', async () => {
+  const one = new Visitor(server), other = new Visitor(server);
+  const { day } = await one.hello();
+  await other.hello();
+  assert.ok(day.from < day.at && day.at < day.to && day.hour === day.at, JSON.stringify(day));
+  for (const visitor of [one, other])
+    visitor.send({ type: 'viewpoint', seq: 1, name: 'well' });
+  const of = (visitor) => ({ size: visitor.last.jpeg.length, quality: visitor.last.quality });
+  await sleep(3000);
+  const noon = of(one);
+  const told = one.message('state', (message) => message.hour === day.to);
+  one.send({ type: 'hour', value: day.to });
+  await told;
+  // A dark picture says less: its JPEG is smaller at the same quality.
+  const is_dark = () => of(one).size < 0.8 * noon.size && of(one).quality >= noon.quality;
+  for (let k = 0; k < 300 && !is_dark(); k++) await sleep(100);
+  assert.ok(is_dark(), `${JSON.stringify(noon)} at its own hour, ${JSON.stringify(of(one))} late`);
+  assert.equal((await other.message('state')).hour, day.at);
+  const error = one.message('error');
+  one.send({ type: 'hour', value: 'late' });
+  assert.equal((await error).code, 'bad_field');
+  const back = one.message('state', (message) => message.hour === day.at);
+  one.send({ type: 'hour', value: null });
+  await back;
+  const about = await (await fetch(`${server.url}/api/v1/exhibits/castle`)).json();
+  assert.deepEqual(about.day, { from: day.from, to: day.to, at: day.at });
+  for (const visitor of [one, other]) await visitor.close();
 });
