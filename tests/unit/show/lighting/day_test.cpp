@@ -34,13 +34,13 @@ double elevation(const Day& day, double hour) {
 // east and sets at 18 in the west.
 TEST(Day, TheSunTakesItsWay) {
   const Day day = day_of({.latitude = 41}, 49);
-  EXPECT_NEAR(day.declination, 0, 1e-6);
-  EXPECT_NEAR(elevation(day, 12), 49, 1e-6);
-  for (double hour : {6.0, 18.0}) EXPECT_NEAR(elevation(day, hour), 0, 1e-6);
+  EXPECT_NEAR(day.declination, 0, 1e-4);
+  EXPECT_NEAR(elevation(day, 12), 49, 1e-4);
+  for (double hour : {6.0, 18.0}) EXPECT_NEAR(elevation(day, hour), 0, 1e-4);
   // North is +Z here, so that east is -X.
   const dvec3 rises = eval_sun_place(day, 6), sets = eval_sun_place(day, 18);
-  EXPECT_NEAR(rises.x, -1, 1e-6);
-  EXPECT_NEAR(sets.x, 1, 1e-6);
+  EXPECT_NEAR(rises.x, -1, 1e-4);
+  EXPECT_NEAR(sets.x, 1, 1e-4);
   EXPECT_LT(elevation(day, 0), -45);
   for (double hour = 0; hour < 24; hour += 0.5)
     EXPECT_NEAR(glm::length(eval_sun_place(day, hour)), 1, 1e-9);
