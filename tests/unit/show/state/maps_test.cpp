@@ -128,7 +128,7 @@ TEST_F(Maps, FollowTheLampsAtOnce) {
   };
   expect(true);
   for (bool on : {false, true}) {
-    light_world(*show, {char(on)});
+    light_world(*show, {LampLevel(on ? lamp_full : 0)});
     expect(on);
   }
   // And by a visitor's word.
