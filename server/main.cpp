@@ -28,7 +28,11 @@ using namespace wellspring;
 enum Phase : int { loading, serving, written };
 volatile std::sig_atomic_t asked_to_stop = 0, asked_to_reload = 0, asked_to_reopen = 0;
 volatile std::sig_atomic_t phase = loading, seconds_to_drain = 0;
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 constexpr unsigned seconds_to_end = 4;
+#else  // all is slower, and what is lost is looked for at the end
+constexpr unsigned seconds_to_end = 60;
+#endif
 
 // The first time it ends in order, the second time at once.
 void stop(int signal) {
