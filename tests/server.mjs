@@ -14,6 +14,8 @@ export const load_module = (name) => require(name);
 
 // How many times longer than usual a deadline is: programs built with a sanitizer are slower.
 export const patience = Number(process.env.WELLSPRING_PATIENCE ?? 1);
+// Where these keep what would take each of them minutes.
+const cache = process.env.WELLSPRING_CACHE;
 
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -67,6 +69,7 @@ export function start_server(words = [],
   const args = content || words.includes('--exhibit') ? [...words]
       : ['--exhibit', 'castle', ...words];
   if (!args.includes('--least-fps')) args.push('--least-fps', '1');
+  if (cache && !args.includes('--cache')) args.push('--cache', cache);
   content ??= join(source, 'content');
   return new Promise((resolve, reject) => {
     const { child, stop } =
@@ -77,6 +80,7 @@ export function start_server(words = [],
       reject(new Error(`no address within ${60 * patience} s\n${stderr}`));
     }, 60000 * patience);
     child.stderr.on('data', (chunk) => { stderr += chunk; });
+    child.on('error', reject);  // there is no such program
     child.on('close', (status) => {
       clearTimeout(timer);
       reject(new Error(`server ended with ${status}\n${stderr}`));

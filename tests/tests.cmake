@@ -24,7 +24,7 @@ function(wellspring_sanitizer_options test log)
       "ASAN_OPTIONS=detect_stack_use_after_return=1${log}" "UBSAN_OPTIONS=print_stacktrace=1${log}"
       "TSAN_OPTIONS=suppressions=${suppressions}:die_after_fork=0${log}"
       "WELLSPRING_WEIGHTS=${PROJECT_SOURCE_DIR}/build/weights"
-      "WELLSPRING_PATIENCE=${WELLSPRING_PATIENCE}")
+      "WELLSPRING_PATIENCE=${WELLSPRING_PATIENCE}" "WELLSPRING_CACHE=${CMAKE_BINARY_DIR}/cache")
   endif()
 endfunction()
 

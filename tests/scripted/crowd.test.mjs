@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { Visitor, sleep, start_server } from '../server.mjs';
+import { Visitor, patience, sleep, start_server } from '../server.mjs';
 
 const seconds = Number(process.env.WELLSPRING_SOAK ?? 20);
 const seed = Number(process.env.WELLSPRING_SEED ?? 1);
@@ -225,7 +225,7 @@ class Onlooker extends Guest {
 }
 
 test('a crowd does what it likes, and everybody is by themselves',
-    { timeout: (seconds + 120) * 1e3 }, async () => {
+    { timeout: (seconds + 120 * patience) * 1e3 }, async () => {
   await sleep(500);
   const at_first = descriptors();
   const guests = Array.from({ length: crowd_size }, (_, n) => new Guest(n + 1));
