@@ -14,6 +14,8 @@ export const load_module = (name) => require(name);
 
 // How many times longer than usual a deadline is: programs built with a sanitizer are slower.
 export const patience = Number(process.env.WELLSPRING_PATIENCE ?? 1);
+// What such programs take of memory says nothing of others'.
+export const judges_memory = patience === 1;
 // Where these keep what would take each of them minutes.
 const cache = process.env.WELLSPRING_CACHE;
 

@@ -6,7 +6,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, patience, sleep, start_server } from '../server.mjs';
+import { Visitor, judges_memory, patience, sleep, start_server } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const many = Number(process.env.WELLSPRING_CONNECTIONS ?? 100);
@@ -134,6 +134,7 @@ test(`${many} idle links cost little, and a newcomer comes in beside them`,
       await Promise.any(links.map((one) => one.picture()));
       console.log(JSON.stringify({ many, mib: resident() / 1024, kib_a_link: grown / many,
         first_ms: Math.round(performance.now() - began) }));
-      assert.ok(grown < many * most_a_link, `${grown / many} KiB a link`);
+      if (judges_memory)
+        assert.ok(grown < many * most_a_link, `${grown / many} KiB a link`);
       await Promise.all(links.map((one) => one.close()));
     });
