@@ -33,7 +33,8 @@ if(WELLSPRING_FUZZ)
     -fno-omit-frame-pointer -gline-tables-only)
   add_link_options(-fsanitize=${WELLSPRING_SANITIZE})
 elseif(WELLSPRING_SANITIZE)
-  add_compile_options(-fsanitize=${WELLSPRING_SANITIZE} -fno-omit-frame-pointer -g)
+  add_compile_options(-fsanitize=${WELLSPRING_SANITIZE} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${WELLSPRING_SANITIZE})
 endif()
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring run: options -> load -> threads. The only place that knows both `museum` and `stream`.
+#include <atomic>
 #include <csignal>
 #include <iostream>
 #include <fmt/core.h>
@@ -26,16 +27,22 @@ using namespace wellspring;
 
 // Until it is serving there is nothing to be written before the end; sums are all that may be lost.
 enum Phase : int { loading, serving, written };
-volatile std::sig_atomic_t asked_to_stop = 0, asked_to_reload = 0, asked_to_reopen = 0;
-volatile std::sig_atomic_t phase = loading, seconds_to_drain = 0;
+// Signals are handled on any thread, and read on others.
+std::atomic<bool> asked_to_stop = false, asked_to_reload = false, asked_to_reopen = false;
+std::atomic<int> phase = loading;
+std::atomic<unsigned> seconds_to_drain = 0;
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 constexpr unsigned seconds_to_end = 4;
+#else  // all is slower, and what is lost is looked for at the end
+constexpr unsigned seconds_to_end = 60;
+#endif
 
 // The first time it ends in order, the second time at once.
 void stop(int signal) {
-  if (asked_to_stop != 0) _exit(128 + signal);
-  asked_to_stop = 1;
+  if (asked_to_stop.exchange(true)) _exit(128 + signal);
   if (phase == loading) _exit(0);
-  alarm(unsigned(seconds_to_drain) + seconds_to_end);
+  alarm(seconds_to_drain + seconds_to_end);
 }
 
 void end_late(int) {
@@ -78,7 +85,8 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   doors.joined = [&](std::shared_ptr<Link> link) { front.join(std::move(link)); };
   StreamSettings stream = options.stream;
   auto server = std::make_unique<Server>(stream, doors);
-  stream.port = server->port();  // the same, when it comes back
+  std::atomic<const Server*> counted = server.get();  // asked for by threads of its own
+  stream.port = server->port();                       // the same, when it comes back
   Museum museum(options.museum);
   AnswerSources& sources = museum.sources();
   sources.pages = &pages;
@@ -90,34 +98,35 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   sources.status = [&] { return museum.status(); };
   sources.speeds = [&] { return read_speeds(options.bench); };
   sources.stream_metrics = [&] {
-    return museum.metrics() + (server ? to_metrics(server->counters()) : std::string());
+    const Server* now = counted;
+    return museum.metrics() + (now ? to_metrics(now->counters()) : std::string());
   };
   sources.door_counts = [&] {
-    const StreamCounters counters = server ? server->counters() : StreamCounters{};
+    const Server* now = counted;
+    const StreamCounters counters = now ? now->counters() : StreamCounters{};
     return DoorCounts{counters.flood_closed, counters.accept_errors};
   };
-  sources.drains = [] { return asked_to_stop != 0; };
+  sources.drains = [] { return asked_to_stop.load(); };
   std::string said;
   double ends_at = 0;  // when it is drained
   const auto ended = [&] {
-    if (asked_to_reopen || asked_to_reload) log::reopen();
-    asked_to_reopen = 0;
-    if (asked_to_reload) {
-      asked_to_reload = 0;
+    const bool reload = asked_to_reload.exchange(false);
+    if (asked_to_reopen.exchange(false) || reload) log::reopen();
+    if (reload) {
       manager.say_reloading();
       reread();
       museum.reload();
       manager.say_ready(said);
     }
     if (museum.has_gone_on()) manager.ping(seconds_now());
-    if (asked_to_stop == 0) return false;
+    if (!asked_to_stop) return false;
     if (ends_at == 0) ends_at = seconds_now() + options.drain;
     return seconds_now() >= ends_at;
   };
   phase = serving;
   front.open(museum);
   for (bool changed = true; changed;) {
-    if (!server) server = std::make_unique<Server>(stream, doors);
+    if (!server) counted = (server = std::make_unique<Server>(stream, doors)).get();
     said = say_address(sources, stream);
     manager.say_ready(said);
     changed = museum.run(ended);
@@ -129,6 +138,7 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
     museum.give_up_stills();
     server->stop();
     if (!changed) continue;
+    counted = nullptr;
     server.reset();
     museum.take_over();
   }
@@ -143,15 +153,15 @@ int main(int argc, char** argv) {
   ServerOptions options;
   if (int status = read_options(options, argc, argv); status >= 0) return status;
   renounce_rights();
-  seconds_to_drain = options.drain;
+  seconds_to_drain = unsigned(options.drain);
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
   std::signal(SIGALRM, end_late);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGUSR1, [](int) { asked_to_reopen = 1; });
+  std::signal(SIGUSR1, [](int) { asked_to_reopen = true; });
   // A service is told to reload, a program in a terminal that the terminal is gone.
   if (isatty(STDERR_FILENO)) std::signal(SIGHUP, stop);
-  else std::signal(SIGHUP, [](int) { asked_to_reload = 1; });
+  else std::signal(SIGHUP, [](int) { asked_to_reload = true; });
   try {
     return serve(options, [&] { reread_options(options, argc, argv); });
   } catch (const ExhibitError& error) {

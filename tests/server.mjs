@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Starts the real programs for the scripted tests, and speaks to them.
+import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
@@ -11,7 +12,21 @@ const require = createRequire(join(process.env.WELLSPRING_NODE, 'index.js'));
 export const WebSocket = require('ws');
 export const load_module = (name) => require(name);
 
+// How many times longer than usual a deadline is: programs built with a sanitizer are slower.
+export const patience = Number(process.env.WELLSPRING_PATIENCE ?? 1);
+// What such programs take of memory says nothing of others'.
+export const judges_memory = patience === 1;
+// Where these keep what would take each of them minutes.
+const cache = process.env.WELLSPRING_CACHE;
+
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+// Until `holds` says so. `what` it is, text or what makes it, is told when it never does.
+export async function until(holds, what = String(holds)) {
+  for (const end = performance.now() + 60000 * patience; performance.now() < end; await sleep(50))
+    if (await holds()) return;
+  assert.fail(`never: ${what instanceof Function ? what() : what}`);
+}
 
 // For tests that judge no picture: the server leaves the cores to the browser.
 export const little_light = ['--technique', 'direct', '--still-technique', 'direct', '--no-bake',
@@ -24,7 +39,7 @@ export function run(name, args, { timeout = 60000 } = {}) {
     let stdout = '', stderr = '';
     child.stdout.on('data', (chunk) => { stdout += chunk; });
     child.stderr.on('data', (chunk) => { stderr += chunk; });
-    const timer = setTimeout(() => child.kill('SIGKILL'), timeout);
+    const timer = setTimeout(() => child.kill('SIGKILL'), patience * timeout);
     child.on('close', (status, signal) => {
       clearTimeout(timer);
       resolve({ status: signal ?? status, stdout, stderr });
@@ -56,6 +71,7 @@ export function start_server(words = [],
   const args = content || words.includes('--exhibit') ? [...words]
       : ['--exhibit', 'castle', ...words];
   if (!args.includes('--least-fps')) args.push('--least-fps', '1');
+  if (cache && !args.includes('--cache')) args.push('--cache', cache);
   content ??= join(source, 'content');
   return new Promise((resolve, reject) => {
     const { child, stop } =
@@ -63,9 +79,10 @@ export function start_server(words = [],
     let stdout = '', stderr = '';
     const timer = setTimeout(() => {
       child.kill('SIGKILL');
-      reject(new Error(`no address within 60 s\n${stderr}`));
-    }, 60000);
+      reject(new Error(`no address within ${60 * patience} s\n${stderr}`));
+    }, 60000 * patience);
     child.stderr.on('data', (chunk) => { stderr += chunk; });
+    child.on('error', reject);  // there is no such program
     child.on('close', (status) => {
       clearTimeout(timer);
       reject(new Error(`server ended with ${status}\n${stderr}`));
@@ -160,7 +177,9 @@ export class Visitor {
   // Resolves with the first item from now on that `test` accepts.
   next(test, what = 'an expected message', timeout = 15000) {
     return new Promise((resolve, reject) => {
-      const timer = setTimeout(() => reject(new Error(`no ${what} within ${timeout} ms`)), timeout);
+      const deadline = patience * timeout;
+      const late = () => reject(new Error(`no ${what} within ${deadline} ms`));
+      const timer = setTimeout(late, deadline);
       this.waiting.push((item) => {
         if (!test(item)) return false;
         clearTimeout(timer);

@@ -165,22 +165,22 @@ std::vector<std::string> exhibits_in(const std::string& content) {
 
 struct Museum::Impl {
   const MuseumSettings settings;
-  std::shared_ptr<Speaker> speaker;  // one voice program for all
-  std::unique_ptr<Ledger> ledger;    // null: no sums are kept
-  mutable std::mutex house_mutex;    // of:
-  HouseSettings house;               // of the first exhibit, and so of all
-  fs::file_time_type house_time;     // of its file
-  std::list<Room> rooms;
-  StillDesk stills;  // is closed before its rooms go
-  AnswerSources sources;
+  std::shared_ptr<Speaker> speaker;    // one voice program for all
+  std::unique_ptr<Ledger> ledger;      // null: no sums are kept
+  mutable std::mutex house_mutex;      // of:
+  HouseSettings house;                 // of the first exhibit, and so of all
+  fs::file_time_type house_time;       // of its file
   std::shared_ptr<Capacity> capacity;  // of all rooms together
+  std::list<Room> rooms;               // may be making exhibits anew, of all above, until they go
+  StillDesk stills;                    // is closed before its rooms go
+  AnswerSources sources;
   std::unique_ptr<Reception> reception;
   std::atomic<bool> stopping = false, changed = false;
 
   explicit Impl(const MuseumSettings& settings)
       : settings(settings),
-        stills(settings.stills, [this] { return somebody_draws(); }),
-        capacity(std::make_shared<Capacity>(settings.capacity)) {}
+        capacity(std::make_shared<Capacity>(settings.capacity)),
+        stills(settings.stills, [this] { return somebody_draws(); }) {}
 
   SharedParts shared() const { return {ledger.get(), sources.door_counts}; }
 

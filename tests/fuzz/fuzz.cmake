@@ -102,4 +102,5 @@ inline constexpr Target targets[] = {
   set_target_properties(fuzz_replay PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   add_test(NAME unit.fuzz_replay COMMAND fuzz_replay --gtest_brief=1)
   set_tests_properties(unit.fuzz_replay PROPERTIES TIMEOUT 900 LABELS unit)
+  wellspring_sanitizer_options(unit.fuzz_replay "")
 endif()

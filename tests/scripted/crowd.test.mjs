@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { Visitor, sleep, start_server } from '../server.mjs';
+import { Visitor, judges_memory, patience, sleep, start_server } from '../server.mjs';
 
 const seconds = Number(process.env.WELLSPRING_SOAK ?? 20);
 const seed = Number(process.env.WELLSPRING_SEED ?? 1);
@@ -225,7 +225,7 @@ class Onlooker extends Guest {
 }
 
 test('a crowd does what it likes, and everybody is by themselves',
-    { timeout: (seconds + 120) * 1e3 }, async () => {
+    { timeout: (seconds + 120 * patience) * 1e3 }, async () => {
   await sleep(500);
   const at_first = descriptors();
   const guests = Array.from({ length: crowd_size }, (_, n) => new Guest(n + 1));
@@ -261,7 +261,8 @@ test('a crowd does what it likes, and everybody is by themselves',
   assert.equal(server.child.exitCode, null);
   assert.equal((await fetch(`${server.url}/healthz`)).status, 200);
   assert.equal(await metric('bad_samples_total'), 0);
-  if (seconds >= long_enough) assert.ok(grown < may_grow, `memory grew by ${grown} MiB`);
+  if (seconds >= long_enough && judges_memory)
+    assert.ok(grown < may_grow, `memory grew by ${grown} MiB`);
   // Closed connections are given back within some seconds.
   for (let k = 0; k < 100 && descriptors() > at_first + 2; k++) await sleep(200);
   assert.ok(descriptors() <= at_first + 2, `${descriptors()} descriptors, ${at_first} at first`);

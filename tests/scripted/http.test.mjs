@@ -6,7 +6,7 @@ import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, run, source, start_server } from '../server.mjs';
+import { Visitor, patience, run, source, start_server } from '../server.mjs';
 
 const token = 'a token of the tests';
 let server;
@@ -26,7 +26,7 @@ function raw(text) {
     socket.on('data', (chunk) => { reply += chunk; if (reply.includes('\r\n')) socket.destroy(); });
     socket.on('close', () => resolve(reply.split('\r\n')[0]));
     socket.on('error', reject);
-    socket.setTimeout(20000, () => socket.destroy());
+    socket.setTimeout(20000 * patience, () => socket.destroy());
   });
 }
 

@@ -6,12 +6,11 @@ import { existsSync, mkdtempSync, readFileSync, renameSync, rmSync, writeFileSyn
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, run, sleep, start_server } from '../server.mjs';
+import { Visitor, run, sleep, start_server, until } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
 const content = join(folder, 'content'), manifest = join(content, 'giza', 'exhibit.json');
-const patience = 30000;  // milliseconds; only what fails waits so long
 before(async () => {
   const made = await run('wellspring_new', ['giza', write_pyramid(folder), '--content', content]);
   assert.equal(made.status, 0, made.stderr);
@@ -19,11 +18,6 @@ before(async () => {
 after(() => rmSync(folder, { recursive: true, force: true }));
 
 const serve = (words) => start_server(['--exhibit', 'giza', '--no-bake', ...words], { content });
-async function until(holds, what) {
-  for (const end = Date.now() + patience; Date.now() < end; await sleep(20))
-    if (await holds()) return;
-  assert.fail(`never: ${what()}`);
-}
 const healthy = async (server) => (await fetch(`${server.url}/healthz`)).ok;
 
 // A service manager's socket (Node has none of this kind): what it hears, a line each.

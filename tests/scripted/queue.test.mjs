@@ -6,7 +6,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, sleep, start_server } from '../server.mjs';
+import { Visitor, judges_memory, patience, sleep, start_server } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const many = Number(process.env.WELLSPRING_CONNECTIONS ?? 100);
@@ -113,7 +113,7 @@ test('a hidden page rests, and waits where its seat has been taken', async () =>
 });
 
 test(`${many} idle links cost little, and a newcomer comes in beside them`,
-    { timeout: 120e3 + 100 * many }, async () => {
+    { timeout: patience * (120e3 + 100 * many) }, async () => {
       const resident = () => Number(/VmRSS:\s+(\d+)/.exec(
           readFileSync(`/proc/${server.child.pid}/status`, 'utf8'))[1]);
       const inside = [await come_in(), await come_in()];
@@ -134,6 +134,7 @@ test(`${many} idle links cost little, and a newcomer comes in beside them`,
       await Promise.any(links.map((one) => one.picture()));
       console.log(JSON.stringify({ many, mib: resident() / 1024, kib_a_link: grown / many,
         first_ms: Math.round(performance.now() - began) }));
-      assert.ok(grown < many * most_a_link, `${grown / many} KiB a link`);
+      if (judges_memory)
+        assert.ok(grown < many * most_a_link, `${grown / many} KiB a link`);
       await Promise.all(links.map((one) => one.close()));
     });

@@ -6,7 +6,7 @@ import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { run, start_server } from '../server.mjs';
+import { patience, run, start_server } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-rfc6455-'));
@@ -182,7 +182,8 @@ function talk(sent, wanted) {
     const input = { bytes: Buffer.alloc(0) }, frames = [];
     const pieces = [sent].flat();
     let open = false, said_close = false;
-    const timer = setTimeout(() => socket.destroy(new Error('nothing more within 30 s')), 30000);
+    const timer = setTimeout(
+        () => socket.destroy(new Error('nothing more in time')), 30000 * patience);
     const done = (error) => {
       clearTimeout(timer);
       if (error) reject(error);

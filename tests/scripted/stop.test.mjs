@@ -6,10 +6,10 @@ import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
-import { Visitor, sleep, start_program, start_server } from '../server.mjs';
+import { Visitor, patience, start_program, start_server, until } from '../server.mjs';
 
 // Five are promised of a machine that has nothing else to do.
-const soon = 15000;  // ms
+const soon = 15000 * patience;  // ms
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-stop-'));
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -21,12 +21,6 @@ async function ends(server, signal = 'SIGTERM') {
   const took = performance.now() - began;
   assert.ok(took < soon, `ended after ${took.toFixed(0)} ms`);
   return status;
-}
-
-async function until(what, holds) {
-  for (const began = performance.now(); performance.now() - began < 60000; await sleep(20))
-    if (await holds()) return;
-  assert.fail(`never: ${what}`);
 }
 
 async function metric(server, name) {
@@ -57,15 +51,15 @@ test('dear pictures are given up when nobody waits, and when the server ends', a
   const server = await start_server([...usual, '--still-seconds', '3600']);
   const leaving = new AbortController();
   const left = still(server, dear(0), { signal: leaving.signal }).catch(() => 'left');
-  await until('it is begun', async () => await metric(server, 'stills_waiting') === 1);
+  await until(async () => await metric(server, 'stills_waiting') === 1, 'it is begun');
   leaving.abort();
   assert.equal(await left, 'left');
-  await until('it is given up', async () => await metric(server, 'stills_waiting') === 0);
+  await until(async () => await metric(server, 'stills_waiting') === 0, 'it is given up');
   assert.equal(await metric(server, 'stills_given_up_total'), 1);
 
   const waiting = Array.from({ length: 10 }, (_, i) => still(server, dear(i + 1))
       .then(({ status }) => status, () => 'cut'));
-  await until('ten are waited for', async () => await metric(server, 'stills_waiting') === 10);
+  await until(async () => await metric(server, 'stills_waiting') === 10, 'ten are waited for');
   // A cheap one does not wait for them.
   const cheap = await Promise.race([still(server, 'width=64&height=36&spp=1&denoise=0'),
     ...waiting]);
@@ -111,14 +105,14 @@ test('a picture that was made is known by its tag', async () => {
 test('it ends while it loads, and a second signal ends it at once', async () => {
   const port = await free_port();
   const loading = start_program(['--exhibit', 'castle', '--no-bake', '--port', String(port)]);
-  await until('it answers', async () => (await health(port))[0] !== 0);
+  await until(async () => (await health(port))[0] !== 0, 'it answers');
   const [status, word] = await health(port);
   if (word === 'loading') assert.equal(status, 503);
   assert.equal(await ends(loading), 0);
 
   const server = await start_server([...usual, '--drain', '600']);
   server.child.kill('SIGTERM');
-  await until('it drains', async () => (await health(server.port)).join() === '503,draining');
+  await until(async () => (await health(server.port)).join() === '503,draining', 'it drains');
   const late = new Visitor(server);
   await late.hello();  // who comes all the same is served
   assert.equal(await ends(server, 'SIGINT'), 130);
@@ -145,7 +139,7 @@ test('visits go on after a restart, and with another server that has the key', a
   const port = await free_port();
   const next = start_program([...words, '--port', String(port)]);
   const place = { ws: `ws://127.0.0.1:${port}` };
-  await until('it answers', async () => (await health(port))[0] !== 0);
+  await until(async () => (await health(port))[0] !== 0, 'it answers');
   const back = new Visitor(place);
   const welcome = await back.hello({ resume: token });
   assert.equal(welcome.resumed, true);

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { Visitor, sleep, start_server } from '../server.mjs';
+import { Visitor, judges_memory, sleep, start_server } from '../server.mjs';
 
 const seconds = 1.5;    // of each count
 const least_kept = 0.3;  // of the pictures: half would be the other's by right
@@ -85,7 +85,8 @@ test('the last order of a storm wins', async () => {
 });
 
 // Kiosks' pages: nothing is kept of them for coming back.
-test('memory of those who have left goes back to the system', async () => {
+test('memory of those who have left goes back to the system', { skip: !judges_memory },
+    async () => {
   const resident = () => Number(/^RssAnon:\s+(\d+)/m.exec(
       readFileSync(`/proc/${server.child.pid}/status`, 'utf8'))[1]) / 1024;
   const begin = resident();

@@ -11,7 +11,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import tls from 'node:tls';
 import { launch, skip } from '../browser/chromium.mjs';
-import { Visitor, run, sleep, source, start_server } from '../server.mjs';
+import { Visitor, patience, run, source, start_server, until } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-tls-'));
@@ -126,11 +126,11 @@ test('the page opens its visit over TLS, too', { skip }, async () => {
     const problems = [];
     page.on('pageerror', (error) => problems.push(String(error)));
     page.on('console', (said) => { if (said.type() === 'error') problems.push(said.text()); });
-    const visit = page.waitForEvent('websocket', { timeout: 60000 });
+    const visit = page.waitForEvent('websocket', { timeout: 60000 * patience });
     await page.goto(`${server.url}/`);
     const socket = await visit;
     assert.ok(socket.url().startsWith('wss://127.0.0.1'), socket.url());
-    await socket.waitForEvent('framereceived', { timeout: 60000,
+    await socket.waitForEvent('framereceived', { timeout: 60000 * patience,
       predicate: ({ payload }) => payload.subarray?.(0, 4).toString('latin1') === 'WSF1' });
     assert.deepEqual(problems, []);
   } finally {
@@ -143,18 +143,11 @@ test('a certificate is renewed under a visit; a bad one is refused', async () =>
   await visitor.hello();
   await visitor.picture();
   assert.equal((await shake_hands()).name, 'first');
-  const until = async (holds) => {
-    for (let i = 0; i < 200; i++) {
-      if (await holds()) return;
-      await sleep(100);
-    }
-    assert.fail(server.log());
-  };
   copyFileSync(path('second.crt'), cert);  // its key comes later: both are read then
   copyFileSync(path('second.key'), key);
-  await until(async () => (await shake_hands()).name === 'second');
+  await until(async () => (await shake_hands()).name === 'second', server.log);
   writeFileSync(cert, 'no certificate\n');
-  await until(() => server.log().includes('the old one stays'));
+  await until(() => server.log().includes('the old one stays'), server.log);
   assert.match(server.log(), /cert\.pem: no certificate in PEM/);
   assert.equal((await shake_hands()).name, 'second');
   const next = visitor.picture((picture) => picture.seq === 1);

@@ -8,7 +8,7 @@ import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, WebSocket, run, sleep, start_server } from '../server.mjs';
+import { Visitor, WebSocket, run, start_server, until } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-trust-'));
@@ -41,11 +41,6 @@ const ask = async (path, headers = {}, from = server) => {
 };
 const metric = async (pattern) =>
   Number(new RegExp(`^wellspring_${pattern} (\\S+)$`, 'm').exec((await ask('/metrics')).text)?.[1]);
-async function until(holds, what) {
-  for (const end = Date.now() + 60000; Date.now() < end; await sleep(50))
-    if (await holds()) return;
-  assert.fail(`never: ${what}`);
-}
 
 // An eye's connection: the status of its handshake, 101 where it is let in.
 function knock(headers) {

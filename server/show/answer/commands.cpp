@@ -68,7 +68,8 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   kiosk = kiosk_name(show, visitor.name);
   go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
                   visitor.kiosk ? kiosk_viewpoint(show, kiosk) : show.exhibit.start);
-  const bool goes_on = !hello.resume.empty() && come_back(show, visitor, hello.resume);
+  // Of a visitor who is here already a picture may be drawn at the moment, on another thread.
+  const bool goes_on = is_first && !hello.resume.empty() && come_back(show, visitor, hello.resume);
   if (!goes_on) show.totals.visits++;
   if (is_first) count_visit(show, visitor, goes_on);
   visitor.link->send_text(welcome_message(show, visitor, goes_on));

@@ -130,6 +130,7 @@ void carry_out(Show& show, Visitor& visitor, const WaitingOrder& order) {
 std::span<const OrderBound> order_bounds() { return bounds; }
 
 void follow_orders(Show& show, Visitor& visitor) {
+  if (visitor.left) return;  // its picture may be drawn yet, and what it says counts no more
   VisitorOrders& orders = visitor.orders;
   for (const std::string& text : visitor.link->take_texts()) {
     show.totals.messages++;

@@ -47,6 +47,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   job.seq = place.seq;
   job.moving = sees_moving(show, visitor, now);
   job.camera_cuts = place.camera_cuts;
+  job.rest = picture.rest;
   job.keep = show.settings.background;
   // The first picture of a place, while others walk, is to be there soon.
   const bool hurried = job.keep && place.camera_cuts != picture.job.camera_cuts &&

@@ -54,6 +54,7 @@ DrawingStep plan_picture(Show& show, const PictureJob& job, const Technique& tec
                          const View& lit, Visitor& visitor) {
   DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs = {};
+  costs.asked = job.rest.asked, costs.kept_samples = job.rest.samples;
   double began = seconds_now();
   plan_samples(show, job, technique, lit, work, visitor);
   double planned = seconds_now();
@@ -179,6 +180,11 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   if (costs.samples > 0 && costs.trace > 0)
     smooth(show.samples_per_second, float(costs.samples) / (0.001f * costs.trace));
   show.totals.samples += costs.samples;
+  show.totals.corrected += costs.corrected;
+  show.totals.corrective_samples += costs.corrective;
+  // A visitor whose view has changed meanwhile begins anew.
+  if (visitor.place.moved_at <= job.time)
+    picture.rest.asked = costs.asked, picture.rest.samples = costs.kept_samples;
   if (costs.given_up) {
     picture.around.drawn = false;
     show.totals.given_up++;

@@ -38,9 +38,9 @@ TransportSettings transport_of(const Show& show, const PictureJob& job) {
 
 // Where pictures are reconstructed, the first samples serve the drawn picture that it begins with;
 // later ones are spread evenly, but for some, aimed at points, to find what changes.
-bool spreads_samples(const PictureJob& job, const Technique& technique, const RestState& rest) {
-  return job.learns && !technique.begin_pass && rest.samples >= spread_from &&
-         !has_all_samples(rest);
+bool spreads_samples(const PictureJob& job, const Technique& technique) {
+  return job.learns && !technique.begin_pass && job.rest.samples >= spread_from &&
+         !has_all_samples(job.rest);
 }
 
 // So many are traced at a time.
@@ -55,14 +55,14 @@ bool corrects(const Show& show, const PictureJob& job, const Technique& techniqu
 }
 
 // Requests for what shines, asked for from coarse to fine; the rest is the cache's to plan.
-void plan_corrections(Show& show, const PictureJob& job, const View& lit, int most,
+void plan_corrections(const Show& show, const PictureJob& job, const View& lit, int most,
                       VisitorPicture& picture, std::vector<Request>& requests) {
   Corrections& corrections = picture.compositor.corrections();
   corrections.begin(lit, *show.visibility, show.shining);
   corrections.request(job.weights ? std::span(*job.weights) : std::span<const float>(), most,
                       job.seed, requests);
-  show.totals.corrected += corrections.pixels() > 0;
-  show.totals.corrective_samples += requests.size();
+  picture.costs.corrected = corrections.pixels() > 0;
+  picture.costs.corrective = requests.size();
 }
 
 // The same view in as many pixels as there are samples.
@@ -96,7 +96,7 @@ void name_pixels(const View& view, std::vector<Request>& requests) {
 
 void spread_samples(const View& view, int count, Visitor& visitor, std::vector<Request>& requests) {
   VisitorPicture& picture = visitor.picture;
-  uint64_t& asked = picture.rest.asked;
+  uint64_t& asked = picture.costs.asked;
   const PointImage& image = picture.cache.image();
   if (image.weight.empty()) {
     plan_still(view, asked, count, visitor.link->id, requests);
@@ -147,7 +147,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   if (corrects(show, job, technique))
     plan_corrections(show, job, lit, int(corrected_share * float(asked)), picture, work.corrective);
   const int planned = asked - int(work.ahead.size()) - int(work.corrective.size());
-  const bool spread = spreads_samples(job, technique, picture.rest);
+  const bool spread = spreads_samples(job, technique);
   const int aimed = spread ? samples_to_watch(planned) : planned;
   cache.plan(lit, aimed, job.seed, work.requests);
   if (spread) {
@@ -205,7 +205,7 @@ void remember_traced(const Show& show, const PictureJob& job, const Technique& t
   if (!job.still || job.coarse || !(job.learns || kept_long)) return;
   picture.compositor.follow_changes(picture.cache);
   picture.compositor.add_samples(lit, work.requests, work.samples);
-  picture.rest.samples = mean_count(picture.compositor.samples());
+  picture.costs.kept_samples = mean_count(picture.compositor.samples());
 }
 
 }  // namespace wellspring

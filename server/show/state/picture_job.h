@@ -11,6 +11,15 @@
 
 namespace wellspring {
 
+// What of a visitor's rest, since the view or the light last changed, reconstructions depend on.
+struct RestState {
+  uint64_t asked = 0;         // samples of the view's sequence (picture/still/plan_still.h)
+  double samples = 0;         // a pixel, that are kept
+  double passed_samples = 0;  // of these, in the last pass
+  double passed_at = -1e9, passed_seconds = 0;  // show time of its end; what it took
+  bool reconstructed = false;                   // its picture is the one shown
+};
+
 // All that a picture's drawing depends on besides the world and what the visitor's cache remembers.
 struct PictureJob {
   double time = 0;  // of the tick that ordered it
@@ -28,6 +37,7 @@ struct PictureJob {
   bool settled = false;       // for long: the reference takes over
   bool passing = false;       // drawn for a moment, and some around (picture/compose_drawn.h)
   bool coarse = false;        // that in coarser light
+  RestState rest;             // of the visitor, by then
   float scale = 1;            // sides of its view, in pixels, over those of the visitor's picture
   bool attention = true;
   std::shared_ptr<const std::vector<float>> weights;  // of objects; null: all are 1

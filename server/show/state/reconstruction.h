@@ -36,15 +36,6 @@ struct StillPass {
 };
 size_t memory_bytes(const StillPass& pass);
 
-// What of a visitor's rest, since the view or the light last changed, passes depend on.
-struct RestState {
-  uint64_t asked = 0;         // samples of the view's sequence (picture/still/plan_still.h)
-  double samples = 0;         // a pixel, that are kept
-  double passed_samples = 0;  // of these, in the last pass
-  double passed_at = -1e9, passed_seconds = 0;  // show time of its end; what it took
-  bool reconstructed = false;                   // its picture is the one shown
-};
-
 // Samples a pixel, on average, beyond which more would be kept no more.
 inline constexpr double most_rest_samples = 0.98 * most_still_samples;
 inline bool has_all_samples(const RestState& rest) { return rest.samples >= most_rest_samples; }

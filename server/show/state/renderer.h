@@ -33,6 +33,10 @@ namespace wellspring {
 struct PictureCosts {
   float display = 0, light = 0, trace = 0, drawing = 0, tonemap = 0;
   size_t samples = 0;
+  uint64_t asked = 0;       // RestState::asked, after it
+  double kept_samples = 0;  // RestState::samples, likewise
+  bool corrected = false;   // what shines was asked for by itself: so many of the samples
+  size_t corrective = 0;
   bool late = false;         // its samples are still to be traced
   bool given_up = false;     // there is no picture
   double guide_seconds = 0;  // for what a reconstruction begins with

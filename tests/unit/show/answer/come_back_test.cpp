@@ -86,6 +86,39 @@ TEST_F(ComeBack, AVisitWhoseLineBrokeGoesOnWithWhatItKnows) {
   EXPECT_TRUE(show->kept.empty());
 }
 
+// A picture of who is here may be drawn on another thread, so it is not exchanged for a kept one.
+TEST_F(ComeBack, WhoIsHereAlreadyTakesNoKeptVisit) {
+  begin_visit();
+  const std::string sealed = token();
+  break_line();
+  ASSERT_EQ(show->kept.size(), 1u);
+  const size_t other = join(32, 32);
+  say(json{{"type", "hello"}, {"width", 32}, {"height", 32}, {"resume", sealed}}.dump(), other);
+  run(0.2);
+  EXPECT_NE(last("welcome", other)["resumed"], true);
+  EXPECT_EQ(show->kept.size(), 1u);
+  expect_visit(come(sealed));
+  EXPECT_TRUE(show->kept.empty());
+}
+
+TEST_F(ComeBack, NorDoesWhoHasSaidGoodbye) {
+  begin_visit();
+  const std::string sealed = token();
+  break_line();
+  const size_t other = join(32, 32);
+  visitor().picture.at_work = true;  // as if the renderer drew it
+  say(R"({"type":"bye"})", other);
+  run(0.1);
+  say(json{{"type", "hello"}, {"width", 32}, {"height", 32}, {"resume", sealed}}.dump(), other);
+  run(0.2);
+  ASSERT_EQ(show->visitors.size(), 1u);
+  EXPECT_FALSE(visitor().welcomed);
+  EXPECT_EQ(show->kept.size(), 1u);
+  visitor().picture.at_work = false;
+  run(0.1);
+  EXPECT_TRUE(show->visitors.empty());
+}
+
 TEST_F(ComeBack, LaterAndAfterANewStartItIsWhereItWas) {
   begin_visit();
   const std::string code = last("group")["code"], sealed = token();

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "show/draw/make_picture_job.h"
+#include "show/draw/pace.h"
+#include "show/draw/picture.h"
 #include "show/http/report.h"
 #include "unit/show/show_stage.h"
 
@@ -67,6 +70,25 @@ TEST_F(StillPassTest, NobodyWaitsForAFade) {
   step();
   step();
   EXPECT_TRUE(visitor().picture.fade.from.rgb.empty());
+}
+
+TEST_F(StillPassTest, SamplesOfAViewThatWasLeftMeanwhileAreNotThoseOfTheNext) {
+  if (!begin()) GTEST_SKIP() << show->pass.problem;
+  Visitor& one = visitor();
+  ASSERT_TRUE(step_until([&] { return one.picture.rest.samples > 1 && !show->renderer.drawn; }));
+  for (bool leaves : {false, true}) {
+    const RestState before = one.picture.rest;
+    const PictureJob job = make_picture_job(*show, one, 1, Purpose::samples);
+    ASSERT_TRUE(job.samples_only);
+    draw_picture(*show, job, one);
+    show->time += 0.02;
+    if (leaves) one.place.view.yaw += 0.5f;
+    watch(*show, one);
+    finish_picture(*show, job, one);
+    EXPECT_EQ(one.picture.rest.samples > before.samples, !leaves);
+    EXPECT_EQ(one.picture.rest.samples == 0, leaves);
+    EXPECT_EQ(one.picture.rest.asked == 0, leaves);
+  }
 }
 
 TEST_F(StillPassTest, WhoMovesOnLeavesItBehind) {
