@@ -306,7 +306,10 @@ Museum::Museum(const MuseumSettings& settings) : impl_(std::make_unique<Impl>(se
   };
 }
 
-Museum::~Museum() = default;
+Museum::~Museum() {
+  for (Room& room : impl_->rooms)
+    if (room.rehearsal) room.rehearsal->cancel();  // all at once
+}
 
 AnswerSources& Museum::sources() { return impl_->sources; }
 
