@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring run: options -> load -> threads. The only place that knows both `museum` and `stream`.
+#include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <iostream>
 #include <fmt/core.h>
@@ -29,6 +31,7 @@ enum Phase : int { loading, serving, written };
 volatile std::sig_atomic_t asked_to_stop = 0, asked_to_reload = 0, asked_to_reopen = 0;
 volatile std::sig_atomic_t phase = loading, seconds_to_drain = 0;
 constexpr unsigned seconds_to_end = 4;
+constexpr int most_weight = 256;  // that HAProxy knows
 
 // The first time it ends in order, the second time at once.
 void stop(int signal) {
@@ -76,6 +79,11 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   doors.slow = [](const HttpQuestion& question) { return question.path.ends_with("/sums.csv"); };
   doors.admit = [&](const HttpQuestion& question) { return admit(options.access, question); };
   doors.joined = [&](std::shared_ptr<Link> link) { front.join(std::move(link)); };
+  std::atomic<const Museum*> loaded = nullptr;
+  doors.agent = [&] {
+    const Museum* museum = loaded;
+    return museum ? fmt::format("{}%", std::min(museum->seats(), most_weight)) : std::string();
+  };
   StreamSettings stream = options.stream;
   auto server = std::make_unique<Server>(stream, doors);
   stream.port = server->port();  // the same, when it comes back
@@ -106,6 +114,7 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
       asked_to_reload = 0;
       manager.say_reloading();
       reread();
+      if (server) server->reread_certificate();
       museum.reload();
       manager.say_ready(said);
     }
@@ -116,6 +125,7 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   };
   phase = serving;
   front.open(museum);
+  loaded = &museum;
   for (bool changed = true; changed;) {
     if (!server) server = std::make_unique<Server>(stream, doors);
     said = say_address(sources, stream);
