@@ -3,7 +3,9 @@
 // wellspring_; those that end in _total are counters, all others gauges.
 #pragma once
 #include <charconv>
+#include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -11,14 +13,28 @@
 
 namespace wellspring {
 
-// A number in as few digits as it needs in its own type.
+// A number in as few digits as it needs in its own type; whole ones without an exponent.
 struct MetricValue {
   std::string text;
   template <class Number>
   requires std::is_arithmetic_v<Number> MetricValue(Number number) {
+    constexpr double most_whole = 1e15;
+    if constexpr (std::same_as<Number, bool>) {
+      put(int(number));
+    } else if constexpr (std::is_floating_point_v<Number>) {
+      const bool whole = std::abs(number) < most_whole && std::trunc(number) == number;
+      if (whole) put(int64_t(number));
+      else put(number);
+    } else {
+      put(number);
+    }
+  }
+
+ private:
+  template <class Number>
+  void put(Number number) {
     char digits[64];
-    if constexpr (std::same_as<Number, bool>) text = number ? "1" : "0";
-    else text.assign(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+    text.assign(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
   }
 };
 

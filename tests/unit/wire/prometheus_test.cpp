@@ -31,6 +31,9 @@ TEST(Prometheus, NumbersAreAsShortAsTheirTypeAllows) {
   EXPECT_EQ(MetricValue(0.1f).text, "0.1");
   EXPECT_EQ(MetricValue(0.1).text, "0.1");
   EXPECT_EQ(MetricValue(size_t(3)).text, "3");
+  EXPECT_EQ(MetricValue(1e7).text, "10000000");
+  EXPECT_EQ(MetricValue(-100000.0f).text, "-100000");
+  EXPECT_EQ(MetricValue(1e300).text, "1e+300");
 }
 
 }  // namespace
