@@ -35,7 +35,7 @@ become_server() {
 become_eye() {
   export WELLSPRING_WEIGHTS="${WELLSPRING_WEIGHTS:-$here/build/weights}"
   # shellcheck disable=SC2086
-  exec "$programs/wellspring_kiosk" --server "ws://$host:$port/api/v1/eye" \
+  exec "$programs/wellspring_kiosk" --server "${WELLSPRING_EYE_SERVER:-ws://$host:$port/api/v1/eye}" \
     ${token_file:+--token-file "$token_file"} ${WELLSPRING_EYE_OPTIONS:---camera 0}
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/load_error.h"
 #include "wire/json.h"
+#include "wire/json_line.h"
 
 namespace wellspring {
 namespace {
@@ -19,12 +20,16 @@ using nlohmann::json;
 
 constexpr float degree = pi / 180;
 
-json read(const std::string& file) {
+std::string read_text(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw LoadError(file, "", "cannot be read");
   std::ostringstream text;
   text << in.rdbuf();
-  auto parsed = parse_json(text.str());
+  return text.str();
+}
+
+json parse(const std::string& file, const std::string& text) {
+  auto parsed = parse_json(text);
   if (auto* error = std::get_if<WireError>(&parsed)) throw LoadError(file, "", error->message);
   json root = std::get<json>(std::move(parsed));
   if (!root.is_object()) throw LoadError(file, "", "not an object");
@@ -35,10 +40,13 @@ json read(const std::string& file) {
 using Take = std::function<void(const json& value, const std::string& where)>;
 
 struct Reader {
-  const std::string& file;
+  const std::string &file, &written;
 
+  // What is missing has the line of what lacks it.
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
-    throw LoadError(file, where, what);
+    int line = find_json_line(written, where);
+    if (line == 0) line = find_json_line(written, where.substr(0, where.rfind('/')));
+    throw LoadError(file, "line " + std::to_string(line) + ", " + where, what);
   }
   void object(const json& value, const std::string& where,
               const std::map<std::string, Take>& known) const {
@@ -119,8 +127,9 @@ struct Reader {
 }  // namespace
 
 void load_config(const std::string& file, KioskConfig& config) {
-  const json root = read(file);
-  const Reader r{file};
+  const std::string written = read_text(file);
+  const json root = parse(file, written);
+  const Reader r{file, written};
   CameraSettings& camera = config.camera;
   PresenceSettings& presence = config.presence;
   constexpr double longest = 600;  // seconds
@@ -128,6 +137,7 @@ void load_config(const std::string& file, KioskConfig& config) {
            {{"name", r.text(config.name)},
             {"server", r.text(config.server)},
             {"token_file", r.text(config.token_file)},
+            {"ca_file", r.text(config.ca_file)},
             {"camera", r.part(r.lens(camera))},
             {"mount", r.mount(camera.mount)},
             {"cameras", [](const json&, const std::string&) {}},  // after what they have in common
@@ -141,7 +151,7 @@ void load_config(const std::string& file, KioskConfig& config) {
 }
 
 void save_mount(const std::string& file, const std::string& source, const Mount& mount) {
-  json root = std::filesystem::exists(file) ? read(file) : json::object();
+  json root = std::filesystem::exists(file) ? parse(file, read_text(file)) : json::object();
   auto rounded = [](double v) { return std::round(1000 * v) / 1000; };
   json *lens = &root["camera"], *place = &root["mount"];
   if (root.contains("cameras"))

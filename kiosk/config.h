@@ -8,7 +8,8 @@
 //   expression  true or false
 //   hands       true or false
 //   name        the kiosk's, as its page says it (/kiosk?kiosk=NAME)
-//   server      where observations go: ws://HOST[:PORT][/PATH]
+//   server      where observations go: ws://HOST[:PORT][/PATH], or wss:// for TLS
+//   ca_file     in PEM: who must have signed the server's certificate; else those of the system
 //   token_file  of the token by which a server on another machine trusts it
 #pragma once
 #include <string>
@@ -27,10 +28,11 @@ struct KioskConfig {
   std::string name;        // the kiosk's; empty: the only one of the house
   std::string server;      // empty: the file names none
   std::string token_file;  // likewise
+  std::string ca_file;     // likewise
 };
 
 // Changes what the file names. Throws LoadError naming the first thing that is unknown, of another
-// type or out of range.
+// type or out of range, and its line.
 void load_config(const std::string& file, KioskConfig& config);
 // Puts the mount of the camera `source` into the file, which keeps the rest and may be new: where
 // the file lists that camera, there, else as that of every camera. Throws LoadError.

@@ -75,6 +75,7 @@ std::unique_ptr<ServerLink> make_link(const KioskOptions& options) {
   if (!options.server_given && options.print) return nullptr;
   ServerLinkSettings settings;
   settings.token = options.token;
+  settings.ca_file = options.ca_file;
   return std::make_unique<ServerLink>(*parse_address(options.server), settings);
 }
 
@@ -309,7 +310,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (!parse_address(options.server)) {
-    std::cerr << "--server: '" << options.server << "' is not ws://HOST[:PORT][/PATH]\n";
+    std::cerr << "--server: '" << options.server << "' is not ws://HOST[:PORT][/PATH] or wss://\n";
     return 2;
   }
   log::start("kiosk");

@@ -160,6 +160,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   options.hands = config.hands;
   options.name = config.name;
   if (!config.server.empty()) options.server = config.server;
+  options.ca_file = config.ca_file;
   std::string token_file = config.token_file;
   Written written;
   written.expression = config.expression ? "on" : "off";
@@ -183,6 +184,9 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   auto* server = app.add_option("--server", options.server,
                                 "where observations go; without it and with --print nowhere")
                      ->capture_default_str();
+  app.add_option("--ca-file", options.ca_file,
+                 "of a wss:// server: file in PEM of who must have signed its certificate; without "
+                 "it one whom this system believes");
   app.add_option(
       "--token-file", token_file,
       "file of the token by which a server on another machine trusts this kiosk; without "

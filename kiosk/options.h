@@ -17,6 +17,7 @@ struct KioskOptions {
   std::vector<CameraSettings> cameras;  // one or more, but for --replay and --train
   ObserverSettings observer;            // the mount is its camera's
   std::string server = "ws://127.0.0.1:8080";
+  std::string ca_file;  // of ServerLinkSettings
   bool server_given = false, print = false, pace = true;
   std::string token;           // shown to the server; empty: none
   std::string config;          // file; empty: none

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring run: options -> load -> threads. The only place that knows both `museum` and `stream`.
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <iostream>
@@ -37,6 +38,7 @@ constexpr unsigned seconds_to_end = 4;
 #else  // all is slower, and what is lost is looked for at the end
 constexpr unsigned seconds_to_end = 60;
 #endif
+constexpr int most_weight = 256;  // that HAProxy knows
 
 // The first time it ends in order, the second time at once.
 void stop(int signal) {
@@ -83,6 +85,11 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   doors.slow = [](const HttpQuestion& question) { return question.path.ends_with("/sums.csv"); };
   doors.admit = [&](const HttpQuestion& question) { return admit(options.access, question); };
   doors.joined = [&](std::shared_ptr<Link> link) { front.join(std::move(link)); };
+  std::atomic<const Museum*> loaded = nullptr;
+  doors.agent = [&] {
+    const Museum* museum = loaded;
+    return museum ? fmt::format("{}%", std::min(museum->seats(), most_weight)) : std::string();
+  };
   StreamSettings stream = options.stream;
   auto server = std::make_unique<Server>(stream, doors);
   std::atomic<const Server*> counted = server.get();  // asked for by threads of its own
@@ -115,6 +122,7 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
     if (reload) {
       manager.say_reloading();
       reread();
+      if (server) server->reread_certificate();
       museum.reload();
       manager.say_ready(said);
     }
@@ -125,6 +133,7 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   };
   phase = serving;
   front.open(museum);
+  loaded = &museum;
   for (bool changed = true; changed;) {
     if (!server) counted = (server = std::make_unique<Server>(stream, doors)).get();
     said = say_address(sources, stream);

@@ -15,7 +15,7 @@ namespace {
 
 // What is no setting yet when it is read.
 struct Words {
-  int port = 8080;
+  int port = 8080, agent_port = 0;
   std::string token_file, kiosk_token_file, display = display_names[0];
 };
 
@@ -33,6 +33,11 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
                  "id of the only one that is served: a folder below content; without it all are");
   app.add_option("--port", words.port, "0: any free one")->check(CLI::Range(0, 65535));
   app.add_option("--host", options.stream.host, "address to listen on");
+  app.add_option(
+         "--agent-port", words.agent_port,
+         "tells HAProxy's agent-check how many visitors this machine serves, as a weight in "
+         "percent (docs/nodes.md); 0: none")
+      ->check(CLI::Range(0, 65535));
   app.add_option("--allow-origin", options.stream.allowed_origins,
                  "a further Origin whose pages may open a visit; * for any; several may be named");
   app.add_option("--allow-host", options.stream.allowed_hosts,
@@ -44,7 +49,8 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   app.add_option("--max-connections", options.stream.limits.connections, "of all kinds together")
       ->check(CLI::Range(16, 100000));
   app.add_option("--tls-cert", options.stream.certificate,
-                 "certificate in PEM, with those that sign it; read anew when it changes");
+                 "certificate in PEM, with those that sign it; read anew when it changes and at "
+                 "SIGHUP");
   app.add_option("--tls-key", options.stream.key, "its key in PEM");
   app.add_option("--content", options.museum.content, "folder of exhibit packages");
   app.add_option("--web", options.web,
@@ -138,6 +144,7 @@ void parse_options(CLI::App& app, ServerOptions& options, Words& words, int argc
   const auto display = std::find(std::begin(display_names), std::end(display_names), words.display);
   options.museum.show.display = Display(display - std::begin(display_names));
   options.stream.port = uint16_t(words.port);
+  options.stream.agent_port = uint16_t(words.agent_port);
   if (options.web.empty()) options.web = installed_share("web");
   if (options.web.empty()) options.web = "web";
   std::string& weights = options.museum.show.weights;

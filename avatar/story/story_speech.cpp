@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/cancel.h"
 #include "base/load_error.h"
 
 namespace wellspring {
@@ -46,6 +47,7 @@ std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
                                                        const std::string& file) {
   std::vector<std::shared_ptr<const Speech>> spoken;
   for (const StoryLine& line : lines) {
+    check_cancelled();
     request.text = line.text;
     request.styles = line.styles;
     std::string error;

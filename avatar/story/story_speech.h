@@ -22,7 +22,7 @@ struct StorySpeech {
 };
 
 // Every line in the voice of `request`, whose text and styles are the lines'. Throws LoadError with
-// the place in `file` of a line that cannot be spoken.
+// the place in `file` of a line that cannot be spoken. May be cancelled (base/cancel.h).
 std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
                                                        const std::vector<StoryLine>& lines,
                                                        SpeechRequest request,

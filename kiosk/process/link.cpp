@@ -11,15 +11,19 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/redirect_error.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
 #include <boost/beast/websocket.hpp>
+#include <boost/beast/websocket/ssl.hpp>
 #include <chrono>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 #include <thread>
 
 #include "base/latest.h"
@@ -47,12 +51,13 @@ auto into(error_code& ec) { return asio::redirect_error(asio::use_awaitable, ec)
 }  // namespace
 
 std::optional<ServerAddress> parse_address(const std::string& url) {
-  const std::string scheme = "ws://";
-  if (url.rfind(scheme, 0) != 0) return {};
-  std::string rest = url.substr(scheme.size());
+  ServerAddress address;
+  address.tls = url.starts_with("wss://");
+  if (!address.tls && !url.starts_with("ws://")) return {};
+  if (address.tls) address.port = "443";
+  std::string rest = url.substr(address.tls ? 6 : 5);
   for (unsigned char c : rest)
     if (c <= ' ' || c == 127 || c == '#' || c == '@' || c == '\\') return {};
-  ServerAddress address;
   size_t slash = rest.find('/');
   address.path = slash == std::string::npos ? "" : rest.substr(slash);
   if (address.path.empty() || address.path == "/") address.path = "/api/v1/eye";
@@ -90,19 +95,33 @@ struct ServerLink::Impl {
   ServerAddress address;
   ServerLinkSettings settings;
   asio::io_context io{1};
+  asio::ssl::context trust{asio::ssl::context::tls_client};  // of TLS
   asio::steady_timer wake{io};  // cancelled when there is something to send or it is time to go
   Latest<std::string> newest;
   Latest<EyeOrder> order;
   std::atomic<bool> connected{false}, leaving{false};
   std::atomic<uint64_t> sent{0}, connections{0};
   std::thread thread;
-  using Socket = websocket::stream<beast::tcp_stream>;
+  using PlainSocket = websocket::stream<beast::tcp_stream>;
+  using TlsSocket = websocket::stream<beast::ssl_stream<beast::tcp_stream>>;
+
+  // Whose certificates are believed. Throws std::runtime_error.
+  void choose_trust() {
+    SSL_CTX_set_min_proto_version(trust.native_handle(), TLS1_2_VERSION);
+    trust.set_verify_mode(asio::ssl::verify_peer);
+    error_code ec;
+    if (settings.ca_file.empty()) trust.set_default_verify_paths(ec);
+    else trust.load_verify_file(settings.ca_file, ec);
+    if (ec && !settings.ca_file.empty())
+      throw std::runtime_error(settings.ca_file + ": no certificates in PEM: " + ec.message());
+  }
 
   void nudge() {
     asio::post(io, [this] { wake.cancel(); });
   }
 
   // Reads what the server says, also so that pings are answered and a close is noticed.
+  template <class Socket>
   asio::awaitable<void> listen(std::shared_ptr<Socket> socket, std::shared_ptr<bool> open) {
     beast::flat_buffer buffer;
     error_code ec;
@@ -120,26 +139,67 @@ struct ServerLink::Impl {
   // Why the server did not open the connection.
   std::string refusal(const error_code& ec, unsigned status) const {
     if (ec != websocket::error::upgrade_declined) return ec.message();
-    if (status == 308)
-      return "it asks for TLS but of those whom it trusts: --trusted ADDRESS there";
+    if (status == 308) return "it asks for TLS: --server wss://..., or --trusted ADDRESS there";
     if (status != 401) return "HTTP status " + std::to_string(status);
     return settings.token.empty()
                ? "it trusts cameras on other machines by a kiosk token alone: --token-file FILE"
                : "it does not know this kiosk token";
   }
 
-  // One connection from its start to its end. Returns why it ended.
-  asio::awaitable<std::string> talk() {
+  // Whom the certificate must be of.
+  void expect_host(SSL* tls) const {
+    error_code no_address;
+    asio::ip::make_address(address.host, no_address);
+    if (no_address) {
+      SSL_set_tlsext_host_name(tls, address.host.c_str());
+      SSL_set1_host(tls, address.host.c_str());
+    } else {
+      X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(tls), address.host.c_str());
+    }
+  }
+
+  // Why TLS did not begin.
+  std::string distrust(const error_code& ec, SSL* tls) const {
+    const long verdict = SSL_get_verify_result(tls);
+    if (verdict != X509_V_OK)
+      return std::string("its certificate is not accepted: ") +
+             X509_verify_cert_error_string(verdict) +
+             (settings.ca_file.empty() ? "; --ca-file FILE names who has signed it" : "");
+    return "TLS does not begin: " + ec.message();
+  }
+
+  asio::awaitable<error_code> connect(beast::tcp_stream& socket) {
     error_code ec;
     tcp::resolver resolver(io);
     auto places = co_await resolver.async_resolve(address.host, address.port, into(ec));
-    if (ec) co_return ec.message();
-    auto socket = std::make_shared<Socket>(io);
-    beast::get_lowest_layer(*socket).expires_after(seconds(settings.patience));
-    co_await beast::get_lowest_layer(*socket).async_connect(places, into(ec));
-    if (ec) co_return ec.message();
+    if (ec) co_return ec;
+    socket.expires_after(seconds(settings.patience));
+    co_await socket.async_connect(places, into(ec));
     error_code ignored;
-    beast::get_lowest_layer(*socket).socket().set_option(tcp::no_delay(true), ignored);
+    if (!ec) socket.socket().set_option(tcp::no_delay(true), ignored);
+    co_return ec;
+  }
+
+  // One connection from its start to its end. Returns why it ended.
+  asio::awaitable<std::string> talk() {
+    if (!address.tls) {
+      auto socket = std::make_shared<PlainSocket>(io);
+      if (error_code ec = co_await connect(socket->next_layer())) co_return ec.message();
+      co_return co_await talk_over(socket);
+    }
+    auto socket = std::make_shared<TlsSocket>(io, trust);
+    if (error_code ec = co_await connect(beast::get_lowest_layer(*socket))) co_return ec.message();
+    SSL* tls = socket->next_layer().native_handle();
+    error_code ec;
+    expect_host(tls);
+    co_await socket->next_layer().async_handshake(asio::ssl::stream_base::client, into(ec));
+    if (ec) co_return distrust(ec, tls);
+    co_return co_await talk_over(socket);
+  }
+
+  template <class Socket>
+  asio::awaitable<std::string> talk_over(std::shared_ptr<Socket> socket) {
+    error_code ec, ignored;
     socket->read_message_max(largest_answer);
     socket->set_option(websocket::stream_base::decorator([this](websocket::request_type& request) {
       request.set(beast::http::field::user_agent, "wellspring-kiosk");
@@ -160,7 +220,8 @@ struct ServerLink::Impl {
 
     connections++;
     connected = true;
-    log::info("connected to ws://{}:{}{}", host, address.port, address.path);
+    log::info("connected to {}://{}:{}{}", address.tls ? "wss" : "ws", host, address.port,
+              address.path);
     auto open = std::make_shared<bool>(true);
     asio::co_spawn(io, listen(socket, open), asio::detached);
     while (*open && !ec) {
@@ -212,6 +273,7 @@ ServerLink::ServerLink(const ServerAddress& address, const ServerLinkSettings& s
     : impl_(std::make_unique<Impl>()) {
   impl_->address = address;
   impl_->settings = settings;
+  if (address.tls) impl_->choose_trust();
   asio::co_spawn(impl_->io, impl_->run(), asio::detached);
   impl_->thread = std::thread([impl = impl_.get()] { impl->io.run(); });
 }

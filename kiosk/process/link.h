@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way to the server: a WebSocket that is kept open in a thread of its own. The newest text
-// wins, nothing queues, no call blocks; a lost connection is tried again after a pause that doubles
-// up to a limit, with jitter so that many kiosks do not come back in step.
+// The way to the server: a WebSocket, by TLS where its address says so, that is kept open in a
+// thread of its own. The newest text wins, nothing queues, no call blocks; a lost connection is
+// tried again after a pause that doubles up to a limit, with jitter so that many kiosks do not come
+// back in step.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -14,9 +15,10 @@ namespace wellspring {
 
 struct ServerAddress {
   std::string host, port = "80", path;
+  bool tls = false;
 };
-// ws://HOST[:PORT][/PATH], an IPv6 address in brackets; no path: /api/v1/eye. Nothing for anything
-// else.
+// ws://HOST[:PORT][/PATH] or wss://, an IPv6 address in brackets; no path: /api/v1/eye; no port:
+// 80, or 443. Nothing for anything else.
 std::optional<ServerAddress> parse_address(const std::string& url);
 
 // Seconds to wait before attempt 1, 2, ...: first * 2^(attempt - 1), at most `longest`, times 0.5
@@ -27,10 +29,12 @@ struct ServerLinkSettings {
   double first_pause = 0.25, longest_pause = 5;  // seconds
   double patience = 5;                           // for connecting and for a write
   std::string token{};                           // shown to the server; empty: none
+  std::string ca_file{};  // PEM: who must have signed its certificate; empty: one of the system's
 };
 
 class ServerLink {
  public:
+  // Throws std::runtime_error that names a ca_file that cannot be used.
   explicit ServerLink(const ServerAddress& address, const ServerLinkSettings& settings = {});
   ~ServerLink();  // sends what is left and says goodbye, at most one second
   void send(std::string text);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <ctime>
-#include <fmt/core.h>
 #include <filesystem>
 #include <list>
 #include <mutex>
@@ -27,6 +26,7 @@
 #include "show/tick.h"
 #include "show/watch/problems.h"
 #include "show/watch/rehearsal.h"
+#include "wire/prometheus.h"
 
 namespace wellspring {
 
@@ -306,7 +306,10 @@ Museum::Museum(const MuseumSettings& settings) : impl_(std::make_unique<Impl>(se
   };
 }
 
-Museum::~Museum() = default;
+Museum::~Museum() {
+  for (Room& room : impl_->rooms)
+    if (room.rehearsal) room.rehearsal->cancel();  // all at once
+}
 
 AnswerSources& Museum::sources() { return impl_->sources; }
 
@@ -322,27 +325,26 @@ std::string Museum::metrics() const {
   const Reception::Standing people = impl_->reception->standing();
   const Capacity::Standing cores = impl_->capacity->standing();
   std::string text;
-  auto put = [&](const char* name, const char* type, const char* about, double value) {
-    text +=
-        fmt::format("# HELP wellspring_{0} {1}\n# TYPE wellspring_{0} {2}\nwellspring_{0} {3}\n",
-                    name, about, type, value);
-  };
-  put("visitors_waiting", "gauge", "Visitors for whom there is no seat yet",
-      double(people.waiting));
-  put("visits_resting", "gauge", "Visits that nobody is at, whose pages are open",
-      double(people.resting));
-  put("visits_turned_away_total", "counter", "Visits refused because too many waited",
-      double(people.turned_away));
-  put("seats_taken", "gauge", "Visitors who are shown pictures, of all exhibits", cores.seats);
-  put("capacity_cores", "gauge", "Cores that visitors' pictures may take", cores.cores);
-  put("capacity_cores_taken", "gauge",
-      "Cores that they take at the least rate while all visitors walk", cores.busy);
-  put("picture_shown_seconds_a_megapixel", "gauge", "Processor time of warping and encoding",
-      1e6 * cores.cost.shown);
-  put("picture_drawn_seconds_a_megapixel", "gauge", "Processor time of a whole keyframe",
-      1e6 * cores.cost.drawn);
+  add_metric(text, "visitors_waiting", "Visitors for whom there is no seat yet",
+             double(people.waiting));
+  add_metric(text, "visits_resting", "Visits that nobody is at, whose pages are open",
+             double(people.resting));
+  add_metric(text, "visits_turned_away_total", "Visits refused because too many waited",
+             double(people.turned_away));
+  add_metric(text, "seats_taken", "Visitors who are shown pictures, of all exhibits", cores.seats);
+  add_metric(text, "seats", "Visitors at 1280x720 whom this machine serves, as measured so far",
+             seats());
+  add_metric(text, "capacity_cores", "Cores that visitors' pictures may take", cores.cores);
+  add_metric(text, "capacity_cores_taken",
+             "Cores that they take at the least rate while all visitors walk", cores.busy);
+  add_metric(text, "picture_shown_seconds_a_megapixel", "Processor time of warping and encoding",
+             1e6 * cores.cost.shown);
+  add_metric(text, "picture_drawn_seconds_a_megapixel", "Processor time of a whole keyframe",
+             1e6 * cores.cost.drawn);
   return text;
 }
+
+int Museum::seats() const { return impl_->capacity->seats_for(1280 * 720); }
 
 Sums Museum::read_sums(int64_t from, int64_t to) const {
   return impl_->ledger ? impl_->ledger->read(from, to) : Sums{};

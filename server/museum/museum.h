@@ -44,6 +44,8 @@ class Museum {
   std::string status() const;             // GET /api/v1/status; from any thread
   // Prometheus lines of what all exhibits have together. From any thread.
   std::string metrics() const;
+  // How many visitors at 1280x720 this machine serves, as measured so far. From any thread.
+  int seats() const;
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
   // Ticks all shows until `ended`, which is asked ten times a second, says so: false. Or until one
   // of them has changed, where they are watched or reload() was called: true. Then take_over()

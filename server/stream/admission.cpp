@@ -11,7 +11,9 @@ static constexpr size_t most_remembered = 16384;
 
 Admission::Admission(const Limits& limits)
     : limits_(limits),
-      reserve_(size_t(std::clamp(limits.reserve, 0, std::max(0, limits.connections / 4)))) {}
+      reserve_(size_t(std::clamp(limits.reserve, 0, std::max(0, limits.connections / 4)))),
+      all_requests_{limits.all_requests_a_second, limits.all_requests_at_once},
+      all_frames_{limits.all_frames_a_second, limits.all_frames_at_once} {}
 
 Admission::Guest& Admission::guest(const Address& part) {
   auto found = guests_.find(part);
@@ -107,22 +109,26 @@ void Admission::end_waiting(uint64_t id) {
   if (const auto found = places_.find(id); found != places_.end()) stop_waiting(found->second);
 }
 
-bool Admission::take_request(const Address& from, double now) {
+Admission::Taken Admission::take_request(const Address& from, double now) {
   std::lock_guard lock(mutex_);
-  return guest(limited_part(from)).requests.take(1, now);
+  if (!guest(limited_part(from)).requests.take(1, now)) return Taken::too_many;
+  return all_requests_.take(1, now) ? Taken::yes : Taken::too_many_in_all;
 }
 
-bool Admission::take_frames(const Address& from, double frames, double now) {
+Admission::Taken Admission::take_frames(const Address& from, double frames, bool modest,
+                                        double now) {
   std::lock_guard lock(mutex_);
-  return guest(limited_part(from)).frames.take(frames, now);
+  if (!guest(limited_part(from)).frames.take(frames, now)) return Taken::too_many;
+  return all_frames_.take(frames, now) || modest ? Taken::yes : Taken::too_many_in_all;
 }
 
-bool Admission::open_websocket(const Address& from) {
+Admission::Taken Admission::open_websocket(const Address& from, double now) {
   std::lock_guard lock(mutex_);
   Guest& one = guest(limited_part(from));
-  if (one.websockets >= limits_.websockets_an_address) return false;
+  if (one.websockets >= limits_.websockets_an_address) return Taken::too_many;
+  if (!all_frames_.take(1, now)) return Taken::too_many_in_all;
   one.websockets++;
-  return true;
+  return Taken::yes;
 }
 
 void Admission::close_websocket(const Address& from) {

@@ -9,6 +9,8 @@
 //   as a WebSocket until its first message. Where places are short, in all or for one address, the
 //   stranger's connection that has waited longest makes place for the newcomer.
 // - A proxy's connections are not counted by address: what it forwards is.
+// - A flood from many addresses is bounded in all: requests of strangers beyond it are refused, and
+//   WebSockets closed that say more than a page does, until it ebbs; no new one opens meanwhile.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -33,6 +35,10 @@ struct Limits {
   int websockets_an_address = 128;
   double requests_a_second = 100, requests_at_once = 3000;  // HTTP
   double frames_a_second = 8000, frames_at_once = 16000;    // of all its WebSockets
+  // Of all strangers together: three hundred first loads at once, two hundred who walk. More than
+  // two hundred walkers are no flood, as each of them says no more than a page.
+  double all_requests_a_second = 1000, all_requests_at_once = 10000;
+  double all_frames_a_second = 20000, all_frames_at_once = 40000;
 };
 
 enum class Standing : uint8_t { stranger, proxy, trusted };
@@ -53,10 +59,12 @@ class Admission {
   void begin_waiting(uint64_t id);
   void end_waiting(uint64_t id);
 
-  // False: too much for this address.
-  bool take_request(const Address& from, double now);
-  bool take_frames(const Address& from, double frames, double now);
-  bool open_websocket(const Address& from);
+  // Too much for this address, or for all together.
+  enum class Taken : uint8_t { yes, too_many, too_many_in_all };
+  Taken take_request(const Address& from, double now);
+  // `modest`: its WebSocket says no more than a page does, so it is not closed for others' sake.
+  Taken take_frames(const Address& from, double frames, bool modest, double now);
+  Taken open_websocket(const Address& from, double now);
   void close_websocket(const Address& from);
 
   size_t connections() const;
@@ -84,6 +92,7 @@ class Admission {
   std::unordered_map<uint64_t, Place> places_;
   std::map<uint64_t, uint64_t> queue_;  // strangers who wait, oldest first: number to id
   std::map<Address, Guest> guests_;
+  RateBound all_requests_, all_frames_;
   uint64_t next_number_ = 1;
 };
 

@@ -34,7 +34,8 @@ struct Core {
   Workers health_workers{1, 16};               // for trusted addresses that ask how it is
 
   std::atomic<uint64_t> accepted{0}, refused{0}, http_requests{0}, websockets{0}, slow_closed{0},
-      flood_closed{0}, accept_errors{0}, next_link{1}, limited{0}, dropped{0}, silent_closed{0};
+      flood_closed{0}, accept_errors{0}, next_link{1}, limited{0}, limited_in_all{0}, dropped{0},
+      silent_closed{0};
   std::atomic<int> being_refused{0};  // connections that are told so
   std::atomic<bool> proxy_told{false}, host_told{false};
 

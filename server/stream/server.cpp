@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Listens, accepts, and ends everything in order.
-#include <fmt/core.h>
 #include <sys/resource.h>
 
 #include <stdexcept>
@@ -8,7 +7,9 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "stream/agent_port.h"
 #include "stream/session.h"
+#include "wire/prometheus.h"
 
 namespace wellspring {
 
@@ -22,7 +23,7 @@ static constexpr auto forced_stop = std::chrono::seconds(5);
 struct Server::Impl {
   std::shared_ptr<Core> core;
   net::executor_work_guard<net::io_context::executor_type> work;
-  tcp::acceptor acceptor;
+  tcp::acceptor acceptor, agent_acceptor;  // on one strand
   net::steady_timer certificate_pause;
   uint16_t port = 0;
   std::vector<std::thread> threads;
@@ -32,6 +33,7 @@ struct Server::Impl {
       : core(std::make_shared<Core>(settings, std::move(doors))),
         work(core->io.get_executor()),
         acceptor(net::make_strand(core->io)),
+        agent_acceptor(acceptor.get_executor()),
         certificate_pause(acceptor.get_executor()) {}
 
   void listen();
@@ -40,6 +42,7 @@ struct Server::Impl {
   void drop(uint64_t id);
   void forget(uint64_t id);
   net::awaitable<void> watch_certificate();
+  net::awaitable<void> tell_agents();
   void spawn(net::awaitable<void> (Impl::*work)());
   void stop();
   template <class Duration>
@@ -47,37 +50,12 @@ struct Server::Impl {
   void stop_sessions(bool politely);
 };
 
-// Binds and listens. Throws std::runtime_error.
-static void listen_on(net::io_context& io, const StreamSettings& settings,
-                      tcp::acceptor& acceptor) {
-  const auto throw_error = [&](const error_code& ec) {
-    throw std::runtime_error("cannot listen on " + settings.host + ":" +
-                             std::to_string(settings.port) + ": " + ec.message());
-  };
-  error_code ec;
-  tcp::resolver resolver(io);
-  const auto found = resolver.resolve(settings.host, std::to_string(settings.port),
-                                      tcp::resolver::passive | tcp::resolver::numeric_service, ec);
-  if (ec) throw_error(ec);
-  ec = net::error::host_not_found;
-  for (const auto& entry : found) {
-    const tcp::endpoint endpoint = entry.endpoint();
-    error_code ignored;
-    acceptor.close(ignored);
-    acceptor.open(endpoint.protocol(), ec);
-    if (ec) continue;
-    acceptor.set_option(net::socket_base::reuse_address(true), ignored);
-    if (endpoint.protocol() == tcp::v6()) acceptor.set_option(net::ip::v6_only(false), ignored);
-    acceptor.bind(endpoint, ec);
-    if (!ec) acceptor.listen(net::socket_base::max_listen_connections, ec);
-    if (!ec) break;
-  }
-  if (ec) throw_error(ec);
-}
-
 void Server::Impl::listen() {
-  listen_on(core->io, core->settings, acceptor);
+  const StreamSettings& settings = core->settings;
+  listen_on(core->io, settings.host, settings.port, acceptor);
   port = acceptor.local_endpoint().port();
+  if (settings.agent_port != 0)
+    listen_on(core->io, settings.host, settings.agent_port, agent_acceptor);
 }
 
 // Never ends on an error: a server that lives on with its door closed looks healthy and is not.
@@ -152,6 +130,10 @@ net::awaitable<void> Server::Impl::watch_certificate() {
   }
 }
 
+net::awaitable<void> Server::Impl::tell_agents() {
+  if (core->doors.agent) co_await tell_callers(agent_acceptor, core->doors.agent);
+}
+
 void Server::Impl::stop_sessions(bool politely) {
   std::lock_guard lock(core->mutex);
   core->stopping = true;
@@ -170,6 +152,7 @@ void Server::Impl::stop() {
     net::post(acceptor.get_executor(), [this] {
       error_code ec;
       acceptor.close(ec);
+      agent_acceptor.close(ec);
       certificate_pause.cancel();
     });
     stop_sessions(true);
@@ -222,6 +205,7 @@ Server::Server(const StreamSettings& settings, Doors doors)
   impl_->listen();
   impl_->spawn(&Impl::accept);
   impl_->spawn(&Impl::watch_certificate);
+  impl_->spawn(&Impl::tell_agents);
   for (int i = 0; i < std::max(1, settings.threads); i++)
     impl_->threads.emplace_back([core = impl_->core] {
       for (;;) {
@@ -241,6 +225,12 @@ uint16_t Server::port() const { return impl_->port; }
 
 void Server::stop() { impl_->stop(); }
 
+void Server::reread_certificate() {
+  if (impl_->core->certificate)
+    net::post(impl_->acceptor.get_executor(),
+              [core = impl_->core] { core->certificate->read_again(); });
+}
+
 StreamCounters Server::counters() const {
   Core& core = *impl_->core;
   StreamCounters counters;
@@ -252,6 +242,7 @@ StreamCounters Server::counters() const {
   counters.flood_closed = core.flood_closed;
   counters.accept_errors = core.accept_errors;
   counters.limited = core.limited;
+  counters.limited_in_all = core.limited_in_all;
   counters.dropped = core.dropped;
   counters.silent_closed = core.silent_closed;
   std::lock_guard lock(core.mutex);
@@ -261,22 +252,25 @@ StreamCounters Server::counters() const {
 
 std::string to_metrics(const StreamCounters& counters) {
   std::string text;
-  const auto line = [&](const char* name, uint64_t value) {
-    const bool total = std::string_view(name).ends_with("_total");
-    text += fmt::format("# TYPE wellspring_{0} {1}\nwellspring_{0} {2}\n", name,
-                        total ? "counter" : "gauge", value);
-  };
-  line("connections_accepted_total", counters.accepted);
-  line("connections_refused_total", counters.refused);
-  line("connections_dropped_total", counters.dropped);
-  line("connections", counters.open);
-  line("accept_errors_total", counters.accept_errors);
-  line("http_requests_total", counters.http_requests);
-  line("address_limited_total", counters.limited);
-  line("websockets_total", counters.websockets);
-  line("slow_readers_closed_total", counters.slow_closed);
-  line("floods_closed_total", counters.flood_closed);
-  line("silent_closed_total", counters.silent_closed);
+  add_metric(text, "connections_accepted_total", "Connections accepted", counters.accepted);
+  add_metric(text, "connections_refused_total", "Connections told that there is no place",
+             counters.refused);
+  add_metric(text, "connections_dropped_total", "Connections that waited and made place",
+             counters.dropped);
+  add_metric(text, "connections", "Connections now", counters.open);
+  add_metric(text, "accept_errors_total", "Connections that could not be accepted",
+             counters.accept_errors);
+  add_metric(text, "http_requests_total", "HTTP requests", counters.http_requests);
+  add_metric(text, "address_limited_total", "Refused by the limits of their address",
+             counters.limited);
+  add_metric(text, "all_limited_total", "Refused by the limits of all addresses together",
+             counters.limited_in_all);
+  add_metric(text, "websockets_total", "WebSockets opened", counters.websockets);
+  add_metric(text, "slow_readers_closed_total", "Closed since they did not read",
+             counters.slow_closed);
+  add_metric(text, "floods_closed_total", "Closed since they said too much", counters.flood_closed);
+  add_metric(text, "silent_closed_total", "WebSockets closed that said nothing",
+             counters.silent_closed);
   return text;
 }
 

@@ -25,6 +25,9 @@ inline constexpr double http_write_timeout = 30;        // seconds for a reply, 
 inline constexpr size_t file_piece_bytes = 256 * 1024;  // in memory at a time
 inline constexpr double max_frames_a_second = 400;      // WebSocket, of all kinds
 inline constexpr double max_bytes_a_second = 1 << 20;   // WebSocket
+// Likewise, as a page says at most: an input, an acknowledgement and a pong for each picture of a
+// display of 60 Hz, and some. More is too much where all together say too much.
+inline constexpr double modest_frames_a_second = 250;
 inline constexpr double burst_seconds = 2;
 inline constexpr double flood_linger = 1;  // seconds in which a peer that is closed may read why
 
@@ -153,6 +156,7 @@ class Session : public std::enable_shared_from_this<Session> {
   FrameCounter frame_counter_;
   RateBound frames_{max_frames_a_second, max_frames_a_second* burst_seconds};
   RateBound bytes_{max_bytes_a_second, max_bytes_a_second* burst_seconds};
+  RateBound modest_{modest_frames_a_second, modest_frames_a_second* burst_seconds};
 };
 
 }  // namespace wellspring

@@ -186,9 +186,11 @@ std::optional<Caller> Session::find_caller(const Request& request) const {
   return caller;
 }
 
-static HttpReply make_too_many(Core& core, const char* what) {
-  core.limited++;
-  HttpReply reply = make_refusal(429, what);
+static HttpReply make_too_many(Core& core, Admission::Taken taken, const char* what) {
+  const bool in_all = taken == Admission::Taken::too_many_in_all;
+  (in_all ? core.limited_in_all : core.limited)++;
+  HttpReply reply = in_all ? make_refusal(503, "too much is asked from everywhere")
+                           : make_refusal(429, std::string(what) + " from your address");
   reply.headers["Retry-After"] = "5";
   return reply;
 }
@@ -202,9 +204,10 @@ HttpReply Session::judge_caller(const Request& request) {
     reply.headers["Retry-After"] = "5";
     return reply;
   }
-  if (!caller_.trusted && !core_->admission.take_request(caller_.address, seconds_now()))
-    return make_too_many(*core_, "too many requests from your address");
-  return {};
+  if (caller_.trusted) return {};
+  const Admission::Taken taken = core_->admission.take_request(caller_.address, seconds_now());
+  return taken == Admission::Taken::yes ? HttpReply{}
+                                        : make_too_many(*core_, taken, "too many requests");
 }
 
 // Where this server is called by a name that is not its own, and where TLS is asked for, but not
@@ -279,8 +282,9 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
   if (core_->doors.admit) admitted_ = core_->doors.admit(question);
   if (admitted_.refusal) return *admitted_.refusal;
   if (!caller_.trusted) {
-    counted_websocket_ = core_->admission.open_websocket(caller_.address);
-    if (!counted_websocket_) return make_too_many(*core_, "too many visits from your address");
+    const Admission::Taken taken = core_->admission.open_websocket(caller_.address, seconds_now());
+    counted_websocket_ = taken == Admission::Taken::yes;
+    if (!counted_websocket_) return make_too_many(*core_, taken, "too many visits");
   }
   HttpReply reply;
   reply.status = 101;

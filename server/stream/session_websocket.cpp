@@ -154,13 +154,18 @@ bool Session::count_input(double frames, double bytes) {
   if (flooded_) return false;
   const double now = seconds_now();
   const bool own = frames_.take(frames, now) && bytes_.take(bytes, now);
-  const bool shared =
-      own && (caller_.trusted || core_->admission.take_frames(caller_.address, frames, now));
-  if (shared) return true;
+  const bool modest = modest_.take(frames, now);
+  using Taken = Admission::Taken;
+  const Taken shared = !own || caller_.trusted
+                           ? Taken::yes
+                           : core_->admission.take_frames(caller_.address, frames, modest, now);
+  if (own && shared == Taken::yes) return true;
   flooded_ = true;
   core_->flood_closed++;
   log::warn("session {}: too many messages{}, closed", caller_.name,
-            own ? " from its address" : "");
+            !own                        ? ""
+            : shared == Taken::too_many ? " from its address"
+                                        : " from all addresses together, this one among the most");
   want_close(websocket::close_code::policy_error, "too many messages");
   flood_deadline_.expires_after(seconds(flood_linger));
   flood_deadline_.async_wait([self = shared_from_this()](error_code ec) {

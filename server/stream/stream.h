@@ -19,7 +19,8 @@
 // - A WebSocket becomes a Link with its first message, which must come within
 //   first_message_timeout.
 // - Close codes of a WebSocket: 1003 binary message, 1007 not UTF-8, 1008 no first message, or more
-//   than 400 frames of any kind or 1 MiB a second for longer than a burst of two seconds' worth,
+//   than 400 frames of any kind or 1 MiB a second for longer than a burst of two seconds' worth, or
+//   250 frames where all strangers together say too much (admission.h),
 //   1009 message above 64 KiB, 1001 the server stops, 1000 the show closed the link.
 // - A peer that is silent (not even pongs) is dropped after idle_timeout + half of it at most; one
 // that does not
@@ -52,11 +53,15 @@ struct Doors {
   // Optional: questions that may take long. They get two threads and a short queue of their own, so
   // that they never keep a health check waiting. Both queues answer 503 when full.
   std::function<bool(const HttpQuestion&)> slow{};
+  // Optional: what callers of StreamSettings::agent_port are told, one line; empty: nothing yet.
+  // Runs on an I/O thread; must not block.
+  std::function<std::string()> agent{};
 };
 
 struct StreamSettings {
   std::string host = "127.0.0.1";
-  uint16_t port = 8080;  // 0: any free one
+  uint16_t port = 8080;     // 0: any free one
+  uint16_t agent_port = 0;  // for HAProxy's agent-check; 0: none
   int threads = 2;
   double header_timeout = 10;  // seconds for a request's header and body
   double write_timeout = 5;    // a WebSocket write pending longer closes the connection
@@ -75,9 +80,10 @@ struct StreamSettings {
 struct StreamCounters {  // since the start, but for open and websockets: now
   uint64_t accepted = 0, refused = 0, open = 0, http_requests = 0, websockets = 0, slow_closed = 0;
   uint64_t flood_closed = 0, accept_errors = 0;
-  uint64_t limited = 0;        // requests and WebSockets refused by their address's limits
-  uint64_t dropped = 0;        // connections that waited and made place for others
-  uint64_t silent_closed = 0;  // WebSockets that said nothing
+  uint64_t limited = 0;         // requests and WebSockets refused by their address's limits
+  uint64_t limited_in_all = 0;  // likewise, by those of all addresses together
+  uint64_t dropped = 0;         // connections that waited and made place for others
+  uint64_t silent_closed = 0;   // WebSockets that said nothing
 };
 // As Prometheus reads it.
 std::string to_metrics(const StreamCounters& counters);
@@ -89,6 +95,9 @@ class Server {
   ~Server();  // closes every connection (WebSockets with 1001) and joins
   uint16_t port() const;
   StreamCounters counters() const;
+  // Reads the certificate anew, where there is one; what is wrong is logged, and the old one stays.
+  // From any thread, returns at once.
+  void reread_certificate();
   // Idempotent: no more accepts, closes, joins; waits for answers under way. Not from within a
   // door.
   void stop();

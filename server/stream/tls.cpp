@@ -76,14 +76,17 @@ bool Certificate::look_again() {
   const Stamp now = stamp();
   const bool settled = now == seen_;
   seen_ = now;
-  if (now == used_ || !settled) return false;
-  used_ = now;
+  return now != used_ && settled && read_again();
+}
+
+bool Certificate::read_again() {
+  used_ = seen_ = stamp();
   try {
     auto context = load_context(chain_, key_);
     std::lock_guard lock(mutex_);
     context_ = std::move(context);
   } catch (const std::exception& error) {
-    log::error("the changed certificate is not used, the old one stays: {}", error.what());
+    log::error("the certificate is not read anew, the old one stays: {}", error.what());
     return false;
   }
   log::info("certificate {} read anew", chain_);

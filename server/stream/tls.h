@@ -28,6 +28,8 @@ class Certificate {
   // then: whoever renews them writes one after the other. What cannot be used is logged once, and
   // the certificate stays. True: there is a new one. To be called every few seconds.
   bool look_again();
+  // The same at once, whether they have changed or not: somebody says that they are complete.
+  bool read_again();
 
  private:
   struct Stamp {  // of both files, links followed

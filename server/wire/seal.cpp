@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
@@ -48,11 +49,18 @@ bool read_key(const std::string& file, std::array<uint8_t, 32>& key) {
   return whole;
 }
 
+// Under a name of its own, then by its name: nobody sees it half written, and none is replaced.
+// False: errno says why.
 bool write_key(const std::string& file, const std::array<uint8_t, 32>& key) {
-  const int out = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  std::string fresh = file + ".XXXXXX";
+  const int out = mkostemp(fresh.data(), O_CLOEXEC);
   if (out < 0) return false;
-  const bool whole = write(out, key.data(), key.size()) == ssize_t(key.size());
-  return close(out) == 0 && whole;
+  bool written = write(out, key.data(), key.size()) == ssize_t(key.size()) && fsync(out) == 0;
+  written = close(out) == 0 && written && link(fresh.c_str(), file.c_str()) == 0;
+  const int problem = errno;
+  unlink(fresh.c_str());
+  errno = problem;
+  return written;
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace wellspring {
 
 class Seal {
  public:
-  // The key of that file, which is made, for its owner alone, where there is none. An empty name,
+  // The key of that file, which is made, for its owner alone, where there is none: of those who
+  // make it at the same time, on other machines, too, all have the key of the first. An empty name,
   // or a file that cannot be used (which is logged): a key that ends with the process.
   explicit Seal(const std::string& file = "");
   std::string close(const std::string& text) const;

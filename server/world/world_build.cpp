@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/cancel.h"
 #include "base/log.h"
 #include "world/mesh_finish.h"
 #include "world/surface.h"
@@ -60,12 +61,25 @@ RTCDevice shared_device() {
     rtcSetDeviceErrorFunction(
         made,
         [](void*, RTCError code, const char* message) {
+          if (code == RTC_ERROR_CANCELLED) return;
           log::error("Embree error {}: {}", int(code), message ? message : "");
         },
         nullptr);
     return made;
   }();
   return device;
+}
+
+// Builds the scene's tree. Embree asks from whichever thread builds.
+static void build_tree(RTCScene scene) {
+  std::stop_token stop = cancel_token();
+  rtcSetSceneProgressMonitorFunction(
+      scene,
+      [](void* token, double) { return !static_cast<std::stop_token*>(token)->stop_requested(); },
+      &stop);
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  check_cancelled();
 }
 
 Bounds box_of(const std::vector<vec3>& positions) {
@@ -195,6 +209,7 @@ void World::Impl::build_still() {
     const Instance& instance = scene->instances[i];
     const Mesh& mesh = scene->meshes[size_t(instance.mesh)];
     if (mesh.triangles.empty()) continue;
+    check_cancelled();
     RTCGeometry geometry = nullptr;
     // Embree inverts an instance's transform; a flattened one has no inverse, so it is copied too.
     if (flat[size_t(instance.mesh)] || is_singular(instance.to_world)) {
@@ -208,7 +223,7 @@ void World::Impl::build_still() {
         RTCGeometry shared = make_geometry(mesh, nullptr, {this, i, true}, quality);
         rtcAttachGeometry(of_mesh, shared);
         rtcReleaseGeometry(shared);
-        rtcCommitScene(of_mesh);
+        build_tree(of_mesh);
       }
       geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_INSTANCE);
       rtcSetGeometryInstancedScene(geometry, of_mesh);
@@ -220,7 +235,7 @@ void World::Impl::build_still() {
     rtcReleaseGeometry(geometry);
     still_instance.push_back(i);
   }
-  rtcCommitScene(still_scene);
+  build_tree(still_scene);
 }
 
 void World::Impl::build_moving() {

@@ -19,8 +19,10 @@ const spaces = process.env.WELLSPRING_NODES_NAMESPACES === '1';
 const longest = 60000 * patience;  // milliseconds; only who fails waits so long
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
 const content = join(folder, 'content');
+const proxy_socket = join(folder, 'haproxy.sock');
 const names = ['node1', 'node2', 'node3'];
-const nodes = new Map();  // name of the cookie -> server
+const nodes = new Map();   // name of the cookie -> server
+const agents = new Map();  // -> port of its agent
 let proxy, front;
 const pages = [];
 
@@ -53,10 +55,11 @@ function make_space(name) {
 
 async function start_node(name) {
   if (spaces) make_space(name);
+  agents.set(name, await free_port());
   nodes.set(name, await start_server(
       [...little_light, '--exhibit', 'giza', '--host', host_of(name),
         '--max-visitors', String(count), '--cache', join(folder, name),
-        '--seal-key', join(folder, 'seal.key')],
+        '--seal-key', join(folder, 'seal.key'), '--agent-port', String(agents.get(name))],
       { content, prefix: spaces ? ['ip', 'netns', 'exec', space_of(name)] : [] }));
 }
 
@@ -150,7 +153,11 @@ before(async () => {
   front = { url: `http://127.0.0.1:${port}/`, ws: `ws://127.0.0.1:${port}` };
   const places = names.map((name) =>
       [name.toUpperCase(), `${host_of(name)}:${nodes.get(name).port}`]);
-  proxy = spawn('haproxy', ['-f', join(source, 'deploy', 'haproxy-nodes.cfg')], {
+  for (const name of names)
+    places.push([name.toUpperCase().replace('NODE', 'AGENT'), String(agents.get(name))]);
+  writeFileSync(join(folder, 'asked.cfg'), `global\n  stats socket ${proxy_socket} level user\n`);
+  const files = [join(source, 'deploy', 'haproxy-nodes.cfg'), join(folder, 'asked.cfg')];
+  proxy = spawn('haproxy', files.flatMap((file) => ['-f', file]), {
     stdio: ['ignore', 'ignore', 'pipe'],
     env: { ...process.env, ...Object.fromEntries(places), MUSEUM: `127.0.0.1:${port}`,
       PATH: `${process.env.PATH}:/usr/sbin` } });
@@ -168,6 +175,36 @@ after(async () => {
   for (const server of nodes.values()) await server.stop('SIGKILL');
   if (spaces) for (const name of names) spawnSync('ip', ['netns', 'del', space_of(name)]);
   rmSync(folder, { recursive: true, force: true });
+});
+
+// All that a socket says until it ends.
+function read_socket(place, words = '') {
+  return new Promise((resolve, reject) => {
+    const socket = net.connect(place, () => socket.write(words));
+    let said = '';
+    socket.on('data', (chunk) => { said += chunk; });
+    socket.on('end', () => resolve(said));
+    socket.on('error', reject);
+  });
+}
+
+test('each server weighs what it says that it serves', async () => {
+  const weights = async () => {
+    const rows = (await read_socket({ path: proxy_socket }, 'show stat\n')).split('\n')
+        .map((row) => row.split(','));
+    const column = rows[0].indexOf('weight');
+    return names.map((name) => Number(rows.find((row) => row[1] === name)[column]));
+  };
+  const said = async (name) => {
+    const line = await read_socket({ host: host_of(name), port: agents.get(name) });
+    return Number(/^(\d+)%\n$/.exec(line)[1]);
+  };
+  for (const end = Date.now() + patience; ; await sleep(100)) {
+    const known = await Promise.all(names.map(said)), now = await weights();
+    assert.ok(known.every((one) => one >= 1 && one <= count), `${known}`);
+    if (now.every((weight, i) => weight === known[i])) break;
+    assert.ok(Date.now() < end, `${now} are not ${known}`);
+  }
 });
 
 test('visitors are spread, and each stays with one server', async () => {

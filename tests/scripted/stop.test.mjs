@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a server ends, whatever it is at, and how it comes back.
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync, statSync } from 'node:fs';
+import { cpSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
-import { Visitor, patience, start_program, start_server, until } from '../server.mjs';
+import { Visitor, patience, source, start_program, start_server, until } from '../server.mjs';
 
 // Five are promised of a machine that has nothing else to do.
 const soon = 15000 * patience;  // ms
@@ -117,6 +117,18 @@ test('it ends while it loads, and a second signal ends it at once', async () => 
   await late.hello();  // who comes all the same is served
   assert.equal(await ends(server, 'SIGINT'), 130);
   assert.equal((await late.closed).code, 1006);
+});
+
+test('it ends while an exhibit is made anew', async () => {
+  const content = join(folder, 'content');
+  cpSync(join(source, 'content', 'first-room'), join(content, 'first-room'), { recursive: true });
+  const server = await start_server(usual, { content });
+  const file = join(content, 'first-room', 'exhibit.json');
+  writeFileSync(file, `${readFileSync(file, 'utf8')}\n`);
+  server.child.kill('SIGHUP');
+  await until(() => server.log().includes('first-room has changed'), 'it is read');
+  assert.equal(await ends(server), 0);
+  assert.match(server.log(), /first-room is not read anew: the server ends/);
 });
 
 test('visits go on after a restart, and with another server that has the key', async () => {

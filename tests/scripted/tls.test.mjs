@@ -2,7 +2,7 @@
 // TLS by the server itself: pages and visits, what is refused, and a certificate that is renewed
 // while visitors are there.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
+import { execFileSync, spawn } from 'node:child_process';
 import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import https from 'node:https';
@@ -138,6 +138,34 @@ test('the page opens its visit over TLS, too', { skip }, async () => {
   }
 });
 
+// Of a kiosk's program: what its log says that matches, or all of it after a long time.
+function kiosk_says(address, args, wanted) {
+  return new Promise((resolve) => {
+    const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_kiosk'),
+        ['--camera', 'synthetic', '--loop', '--server', address, ...args]);
+    let said = '';
+    const timer = setTimeout(() => child.kill('SIGKILL'), 60000);
+    child.stderr.on('data', (chunk) => {
+      said += chunk;
+      if (wanted.test(said)) child.kill('SIGTERM');
+    });
+    child.on('close', () => { clearTimeout(timer); resolve(said); });
+  });
+}
+
+test('a kiosk program comes by TLS, and only to whom it can trust', async () => {
+  const address = `wss://127.0.0.1:${server.port}`;
+  const good = /connected to wss:\/\/127\.0\.0\.1/;
+  assert.match(await kiosk_says(address, ['--ca-file', path('first.crt')], good), good);
+  for (const [where, args, wanted] of [
+    [address, [], /not accepted: self[- ]signed certificate.*--ca-file FILE/],
+    [address, ['--ca-file', path('second.crt')], /not accepted: (self[- ]signed|unable to get)/],
+    [`wss://localhost:${server.port}`, ['--ca-file', path('first.crt')],
+      /not accepted: hostname mismatch/i],
+    [address, ['--ca-file', path('first.key')], /first\.key: no certificates in PEM/],
+  ]) assert.match(await kiosk_says(where, args, wanted), wanted);
+});
+
 test('a certificate is renewed under a visit; a bad one is refused', async () => {
   const visitor = new Visitor(server, { options: { ca } });
   await visitor.hello();
@@ -146,6 +174,12 @@ test('a certificate is renewed under a visit; a bad one is refused', async () =>
   copyFileSync(path('second.crt'), cert);  // its key comes later: both are read then
   copyFileSync(path('second.key'), key);
   await until(async () => (await shake_hands()).name === 'second', server.log);
+  // Asked for, it is read whether it has changed or not.
+  const readings = () => server.log().split('read anew').length - 1;
+  const read = readings();
+  server.child.kill('SIGHUP');
+  await until(() => readings() > read, server.log);
+  assert.equal((await shake_hands()).name, 'second');
   writeFileSync(cert, 'no certificate\n');
   await until(() => server.log().includes('the old one stays'), server.log);
   assert.match(server.log(), /cert\.pem: no certificate in PEM/);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/cancel.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
@@ -231,8 +232,10 @@ Bake begin_bake(const World& world, std::span<const vec3> places, const BakeSett
   bake.tile = float(std::max(std::sqrt(area / tiles), 1e-20));
   bake.shards_done = {settings.shard};
   bake.charts = make_charts(world, bake.tile);
+  check_cancelled();
   bake.places = tile_places(bake.charts);
   std::vector<TileCells> cells = choose_cells(world, bake.charts, places, settings.gather_nodes);
+  check_cancelled();
   bake.gather = make_field(world, bake.charts, cells, int(layer_count(world.scene())));
   bake.direct = bake.gather;
   return bake;

@@ -43,7 +43,7 @@ struct Bake {
 };
 size_t memory_bytes(const Bake& bake);
 
-// Seconds for a large scene.
+// Seconds for a large scene; may be cancelled (base/cancel.h).
 Bake begin_bake(const World& world, std::span<const vec3> places,
                 const BakeSettings& settings = {});
 // Goes on, on all cores, until `stop` says so, which is asked every few milliseconds; at least one

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/cancel.h"
 #include "base/parallel.h"
 #include "light/random/place_key.h"
 #include "light/random/warp.h"
@@ -15,7 +16,7 @@
 namespace wellspring {
 namespace {
 
-constexpr int batch_paths = 1 << 16;
+constexpr int batch_paths = 1 << 14;
 constexpr int most_vertices = 12;        // of a walk that are remembered
 constexpr float lamp_cells = 2;          // times as wide as cells of light are those of lamps seen
 constexpr float clear_roughness = 0.3f;  // surfaces smoother than this mirror too clearly
@@ -217,6 +218,7 @@ std::shared_ptr<const RadianceGrid> make_radiance_grid(
   Entries entries;
   const int batch = std::max(batch_paths / int(n), 1);
   for (int first = 0; first < settings.paths && !places.empty(); first += batch) {
+    check_cancelled();
     int count = std::min(batch, settings.paths - first);
     entries.keys.assign(size_t(count) * most_vertices, 0);
     entries.albedo.assign(entries.keys.size(), vec3(0));

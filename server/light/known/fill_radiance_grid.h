@@ -20,8 +20,8 @@ struct RadianceGridSettings {
 
 // Walks start at `places` (scene coordinates: where eyes are likely to be) in all directions; every
 // surface they meet learns its light. All cores, a few seconds; the same grid whatever the thread
-// count. `parts`: tables of what belongs to no lamp, and of each lamp alone, while all are on:
-// every walk learns the light of each of them.
+// count. May be cancelled (base/cancel.h). `parts`: tables of what belongs to no lamp, and of each
+// lamp alone, while all are on: every walk learns the light of each of them.
 std::shared_ptr<const RadianceGrid> make_radiance_grid(
     const Transport& transport, std::span<const vec3> places,
     const RadianceGridSettings& settings = {},

@@ -64,11 +64,12 @@ void go_on_drawing(Show& show) {
   });
 }
 
-void begin_picture(Show& show, Visitor& visitor, int waiting, Purpose purpose) {
+void begin_picture(Show& show, Visitor& visitor, int waiting, const Decision& decision) {
   Renderer& renderer = show.renderer;
   renderer.drawn = &visitor;
-  renderer.served = visitor.picture.served = std::max(visitor.picture.served, renderer.served);
-  renderer.job = make_picture_job(show, visitor, std::max(waiting, 1), purpose);
+  renderer.served = decision.served;
+  visitor.picture.served = std::max(visitor.picture.served, renderer.served);
+  renderer.job = make_picture_job(show, visitor, std::max(waiting, 1), decision.purpose);
   renderer.surrounds = renderer.job.around && !visitor.picture.around.drawn;
   begin_world_of(show, visitor);
   visitor.picture.at_work = true;
@@ -125,7 +126,7 @@ void carry_out(Show& show, const Decision& decision, int waiting) {
       request_samples(show);
       return use_cores(show, [&show] { trace_samples(show, show.renderer); });
     case Drawing::pass: return use_cores_for_pass(show);
-    case Drawing::picture: return begin_picture(show, visitor(), waiting, decision.purpose);
+    case Drawing::picture: return begin_picture(show, visitor(), waiting, decision);
   }
 }
 

@@ -7,8 +7,9 @@
 namespace wellspring {
 namespace {
 
-constexpr double on_time = 0.0005;  // seconds that a picture may come too early
-constexpr double skin_rate = 5;     // times a second that light on what moves is found
+constexpr double on_time = 0.0005;   // seconds that a picture may come too early
+constexpr double skin_rate = 5;      // times a second that light on what moves is found
+constexpr double longest_gap = 0.5;  // seconds without a picture until a walker comes first
 // Of reconstructions.
 constexpr double first_after = 0.5;     // seconds at rest
 constexpr double least_a_pixel = 0.25;  // a pixel: of fewer it makes no better picture
@@ -42,18 +43,37 @@ int next_to_pose(double now, std::span<const VisitorDrawState> states,
   return longest_waiting(states, wants, [](const VisitorDrawState& one) { return one.posed_at; });
 }
 
+// Of those who want a picture: whose is drawn next, -1: nobody's, and the least renderer's time
+// that any of them has had.
+struct NextPicture {
+  int visitor = -1;
+  double served = 0;
+};
+
 // Where others wait, those whose picture stays do without more samples.
-int next_to_draw(double now, std::span<const VisitorDrawState> states,
-                 const RendererState& renderer) {
+NextPicture next_to_draw(double now, std::span<const VisitorDrawState> states,
+                         const RendererState& renderer) {
   auto wants = [&](int i) {
     const VisitorDrawState& state = states[size_t(i)];
     return wants_picture(now, state, renderer) && (renderer.waiting == 0 || !keeps_picture(state));
   };
+  auto served = [&](const VisitorDrawState& one) { return std::max(one.served, renderer.served); };
   // Newcomers wait since they came: they do not all come before those who are there.
   auto since = [&](const VisitorDrawState& one) {
-    return std::pair(std::max(one.served, renderer.served), std::max(one.drawn_at, one.came_at));
+    return std::pair(served(one), std::max(one.drawn_at, one.came_at));
   };
-  return longest_waiting(states, wants, since);
+  // Whose last keyframe was of no use, since it was drawn for another view, has waited as well.
+  auto without = [](const VisitorDrawState& one) { return std::max(one.shown_at, one.came_at); };
+  auto too_long = [&](int i) {
+    const VisitorDrawState& state = states[size_t(i)];
+    return wants(i) && moves(state, renderer) && now - without(state) > longest_gap;
+  };
+  const int least = longest_waiting(states, wants, since);
+  if (least < 0) return {};
+  const int first = longest_waiting(states, too_long, [&](const VisitorDrawState& one) {
+    return std::max(without(one), one.drawn_at);
+  });
+  return {first < 0 ? least : first, served(states[size_t(least)])};
 }
 
 Purpose purpose_of(double now, const VisitorDrawState& state, const RendererState& renderer) {
@@ -135,9 +155,10 @@ Decision decide(double now, std::span<const VisitorDrawState> states,
   auto asks = [](const VisitorDrawState& one) { return one.asked_seconds > 0; };
   if (std::any_of(states.begin(), states.end(), asks)) return {Drawing::samples};
   if (renderer.in_pass && renderer.waiting == 0) return {Drawing::pass};
-  int next = next_to_draw(now, states, renderer);
-  if (next < 0) return {};
-  return {Drawing::picture, next, false, purpose_of(now, states[size_t(next)], renderer)};
+  const NextPicture next = next_to_draw(now, states, renderer);
+  if (next.visitor < 0) return {};
+  const Purpose purpose = purpose_of(now, states[size_t(next.visitor)], renderer);
+  return {Drawing::picture, next.visitor, false, purpose, next.served};
 }
 
 }  // namespace wellspring

@@ -5,7 +5,11 @@
 //
 // What moves comes first, and its light, then what is begun, then samples that were asked for, then
 // the reconstruction that is under way, else a picture: of those who want one, whoever has had
-// least of the renderer's time, so that nobody has more of it than others by asking for more.
+// least of the renderer's time, so that nobody has more of it than others by asking for more. But
+// equal time is not equal pictures: where what is seen costs more, or turns away from what is
+// known, so that it cannot be warped, pictures would stay away for long. Walkers who were shown
+// none for half a second therefore come first, whoever has waited longest; when that is so for all
+// of them, each gets as many pictures.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -30,6 +34,7 @@ struct VisitorDrawState {
   bool in_pass = false;      // a reconstruction of it is under way
   double came_at = -1e9;     // when the visit began
   double drawn_at = -1e9, posed_at = -1e9;  // when the last picture, and what moves, was ordered
+  double shown_at = -1e9;                   // when the browser was sent one
   double moved_at = 0;                      // when the view changed last
   double picture_rate = 1, drawing_rate = 1, moving_rate = 1;
   double asked_seconds = 0;  // of all cores, for samples that it has asked for
@@ -74,6 +79,7 @@ struct Decision {
   int visitor = -1;    // index of the states: whose, of moving, skin, go_on and picture
   bool hurry = false;  // of go_on: others wait, so samples that are not traced yet are left out
   Purpose purpose = Purpose::shown;  // of picture
+  double served = 0;                 // of picture: Renderer::served from then on
   bool operator==(const Decision&) const = default;
 };
 

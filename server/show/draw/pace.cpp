@@ -58,6 +58,7 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.came_at = visitor.came_at;
   state.drawn_at = picture.drawn_at;
   state.posed_at = picture.posed_at;
+  state.shown_at = visitor.shown.sent_at;
   state.moved_at = place.moved_at;
   state.asked_seconds = picture.broker_seconds;
   state.served = picture.served;

@@ -2,11 +2,11 @@
 #include "show/draw/picture.h"
 
 #include <algorithm>
-#include <oneapi/tbb/info.h>
 #include <utility>
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/process_clock.h"
 #include "picture/compose_drawn.h"
 #include "picture/still/still_guides.h"
 #include "show/draw/moving.h"
@@ -56,8 +56,10 @@ DrawingStep plan_picture(Show& show, const PictureJob& job, const Technique& tec
   PictureCosts& costs = visitor.picture.costs = {};
   costs.asked = job.rest.asked, costs.kept_samples = job.rest.samples;
   double began = seconds_now();
+  const double cores_began = process_seconds_now();
   plan_samples(show, job, technique, lit, work, visitor);
   double planned = seconds_now();
+  costs.core_seconds = process_seconds_now() - cores_began;
   costs.display = float(1000 * (planned - began));
   bool more = false;
   if (begin_samples(show, job, technique, lit, work, visitor) && !show.renderer.given_up) {
@@ -82,6 +84,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs;
   double began = seconds_now();
+  const double cores_began = process_seconds_now();
   remember_traced(show, job, technique, lit, work, visitor);
   if (job.samples_only) {
     cache.end_frame();
@@ -110,6 +113,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
                   work.keyframe);
   double finished = seconds_now();
 
+  costs.core_seconds += process_seconds_now() - cores_began;
   costs.drawing = compositor.drawing_ms();
   costs.display += float(1000 * (painted - began)) - costs.drawing;
   costs.tonemap = float(1000 * (finished - painted));
@@ -216,9 +220,7 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   }
   if (!job.still)
     show.capacity->note_drawn(double(visitor.wants.width) * visitor.wants.height,
-                              0.001 * double(costs.drawing + costs.light) /
-                                  keyframe_cost(job.scale) *
-                                  oneapi::tbb::info::default_concurrency());
+                              costs.core_seconds / keyframe_cost(job.scale));
   picture.drawn_at = job.time;
   picture.broker_seconds =
       costs.late ? double(job.samples) / std::max(double(show.samples_per_second), 1.0) : 0;

@@ -2,12 +2,12 @@
 #include "show/draw/present.h"
 
 #include <algorithm>
-#include <oneapi/tbb/info.h>
 #include <utility>
 
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/process_clock.h"
 #include "frame/jpeg.h"
 #include "frame/shrink.h"
 #include "show/draw/moving.h"
@@ -202,23 +202,22 @@ void refine(Show& show, Visitor& visitor) {
 // Of a picture that was warped and has been encoded, for who asks whether there is a seat.
 void note_cost(Show& show, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
-  const double warping = std::exchange(visitor.shown.warp_seconds, 0.0);
+  const double warping = std::exchange(visitor.shown.warp_core_seconds, 0.0);
   if (warping <= 0) return;
-  show.capacity->note_shown(
-      double(visitor.shown.view.width) * visitor.shown.view.height,
-      warping * oneapi::tbb::info::default_concurrency() + encoder.processor_seconds);
+  show.capacity->note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
+                            warping + encoder.processor_seconds);
 }
 
 bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 
 // The encoder's image becomes the newest keyframe seen from `view`.
 bool warp(Show& show, Visitor& visitor, const View& view) {
-  double began = seconds_now();
+  const double began = seconds_now(), cores_began = process_seconds_now();
   const VisitorPicture& picture = visitor.picture;
   float unknown = warp_picture(picture.keyframe, picture.around.keyframe, view, most_unknown,
                                show.warp, visitor.shown.encoder->image);
-  visitor.shown.warp_seconds = seconds_now() - began;
-  smooth(visitor.times.warp, float(1000 * visitor.shown.warp_seconds));
+  visitor.shown.warp_core_seconds = process_seconds_now() - cores_began;
+  smooth(visitor.times.warp, float(1000 * (seconds_now() - began)));
   if (unknown > most_unknown) {
     show.totals.unwarpable++;
     return false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/cancel.h"
 #include "light/known/lamps.h"
 #include "light/technique/technique.h"
 #include "light/visible/guides.h"
@@ -51,6 +52,7 @@ std::optional<float> measure_exposure(const Exhibit& exhibit, World& world) {
   double sum = 0;
   int count = 0;
   for (size_t i = 0; i < std::min(exhibit.viewpoints.size(), most_viewpoints); i++) {
+    check_cancelled();
     const Viewpoint& at = exhibit.viewpoints[i].view;
     View view = make_view(exhibit.scene, at.position, at.yaw, at.pitch, at.fov, width, height);
     Frame frame = render_still(*find_technique("path"), world, lights, view, settings);

@@ -6,6 +6,7 @@
 
 #include "avatar/load/character_load.h"
 #include "avatar/face/expression_sum.h"
+#include "base/cancel.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "show/exhibit/exhibit_animations.h"
@@ -130,6 +131,7 @@ void read_figure(const Exhibit& exhibit, Fields& fields, StorytellerPlace& place
 
 void read_storyteller(Exhibit& exhibit, Fields fields, bool one_of_many,
                       std::vector<Problem>& problems) {
+  check_cancelled();
   StorytellerPlace place;
   place.id = fields.text("id", one_of_many, one_of_many ? "" : "storyteller");
   if (find_storyteller(exhibit, place.id) >= 0)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads and validates a whole exhibit package; every problem is listed with file and place, not
-// only the first. Blocks on the disk; called at start and by `./wellspring check`.
+// only the first. Blocks on the disk; called at start and by `./wellspring check`; may be cancelled
+// (base/cancel.h).
 #pragma once
 #include <string>
 #include <vector>

@@ -25,6 +25,7 @@ ShowReport make_report(const Show& show) {
   report.ready = true;
   report.time = show.time;
   report.cores = int(std::thread::hardware_concurrency());
+  report.all_visitors = size_t(show.capacity->standing().seats);
   report.exhibit_problems = show.problems.size();
   report.ticks = show.ticks;
   report.drawing_bytes = show.renderer.work_bytes + memory_bytes(show.warp);

@@ -77,6 +77,7 @@ struct ShowReport {
   bool voice_running = false;
   uint64_t voice_restarts = 0, voice_lines = 0, voice_waiting = 0, voice_failed = 0;
   std::vector<VisitorReport> visitors;
+  size_t all_visitors = 0;      // of all exhibits of the process, who share its cores
   size_t exhibit_problems = 0;  // Show::problems
   // Of all exhibits of the process; who knows it sets it, in the report of the first.
   size_t waiting = 0;        // visitors for whom there is no seat yet

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/cancel.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "light/bake/bake_file.h"
@@ -22,13 +23,15 @@ constexpr float much_better = 0.8f;     // of the last error
 
 Baker::Baker(const Scene& scene, std::shared_ptr<const RadianceGrid> grid, BakerSettings settings)
     : scene_(scene), grid_(std::move(grid)), settings_(std::move(settings)) {
-  thread_ = std::thread([this] { live(); });
+  thread_ = std::jthread([this](const std::stop_token& end) {
+    const CancelScope scope(end);
+    try {
+      live(end);
+    } catch (const Cancelled&) {}  // before there was anything to be saved
+  });
 }
 
-Baker::~Baker() {
-  end_ = true;
-  thread_.join();
-}
+Baker::~Baker() = default;
 
 std::shared_ptr<const IlluminationMap> Baker::take() {
   std::lock_guard lock(mutex_);
@@ -40,9 +43,10 @@ BakerStatus Baker::status() const {
   return status_;
 }
 
-bool Baker::wait_until_allowed() {
-  while (!allowed_ && !end_) std::this_thread::sleep_for(std::chrono::duration<double>(look_every));
-  return !end_;
+bool Baker::wait_until_allowed(const std::stop_token& end) {
+  while (!allowed_ && !end.stop_requested())
+    std::this_thread::sleep_for(std::chrono::duration<double>(look_every));
+  return !end.stop_requested();
 }
 
 void Baker::publish(const World& world, Bake& bake, uint64_t key) {
@@ -54,8 +58,8 @@ void Baker::publish(const World& world, Bake& bake, uint64_t key) {
   found_ = std::move(map);
 }
 
-void Baker::live() {
-  if (!wait_until_allowed()) return;
+void Baker::live(const std::stop_token& end) {
+  if (!wait_until_allowed(end)) return;
   const World world(scene_);
   const uint64_t key = hash_scene(scene_);
   const std::string file = settings_.file + ".bake";
@@ -78,10 +82,11 @@ void Baker::live() {
   tell(false);
   if (error <= settings_.least_error) return;
   const BakeScene scene = make_bake_scene(world, settings_.places, grid_);
-  while (wait_until_allowed() && error > settings_.least_error) {
+  while (wait_until_allowed(end) && error > settings_.least_error) {
     tell(true);
     const double began = seconds_now();
-    go_on(scene, bake, [&] { return !allowed_ || end_ || seconds_now() - began > at_a_time; });
+    go_on(scene, bake,
+          [&] { return !allowed_ || end.stop_requested() || seconds_now() - began > at_a_time; });
     if (!bake.pilot() && bake.passes > 1) error = bake_error(bake);
     if (error < much_better * shown) {
       publish(world, bake, key);

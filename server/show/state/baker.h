@@ -35,7 +35,7 @@ class Baker {
  public:
   // Borrows the scene. `grid`: cached radiance of the same scene, may be null.
   Baker(const Scene& scene, std::shared_ptr<const RadianceGrid> grid, BakerSettings settings);
-  ~Baker();  // what has been found is saved
+  ~Baker();  // what has been found is saved; tenths of a second
   Baker(const Baker&) = delete;
   Baker& operator=(const Baker&) = delete;
 
@@ -46,17 +46,17 @@ class Baker {
   BakerStatus status() const;
 
  private:
-  void live();
+  void live(const std::stop_token& end);
   void publish(const World& world, Bake& bake, uint64_t key);
-  bool wait_until_allowed();
+  bool wait_until_allowed(const std::stop_token& end);
   const Scene& scene_;
   std::shared_ptr<const RadianceGrid> grid_;
   BakerSettings settings_;
-  std::atomic<bool> allowed_ = false, end_ = false;
+  std::atomic<bool> allowed_ = false;
   mutable std::mutex mutex_;
   std::shared_ptr<const IlluminationMap> found_;
   BakerStatus status_;
-  std::thread thread_;
+  std::jthread thread_;
 };
 
 }  // namespace wellspring

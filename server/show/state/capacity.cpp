@@ -71,6 +71,13 @@ std::unique_ptr<Seat> Capacity::find_seat(double pixels) { return seat(pixels, f
 
 std::unique_ptr<Seat> Capacity::give_seat(double pixels) { return seat(pixels, true); }
 
+int Capacity::seats_for(double pixels) const {
+  std::lock_guard lock(mutex_);
+  const double each = cores_a_pixel({shown_.value, drawn_.value}, settings_.rate);
+  const double fit = cores_ / (each * weighed_pixels(pixels));
+  return int(std::clamp(fit, 1.0, double(std::max(settings_.most, 1))));
+}
+
 Capacity::Standing Capacity::standing() const {
   std::lock_guard lock(mutex_);
   const PictureCost cost{shown_.value, drawn_.value};

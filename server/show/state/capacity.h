@@ -14,8 +14,9 @@ struct CapacitySettings {
   double cores = 0;  // of the machine; 0: those that this process may use
 };
 
-// Core-seconds for each pixel of the visitor's picture: of one that is shown (warped and encoded),
-// and of a keyframe of that size.
+// Core-seconds of processor time for each pixel of the visitor's picture: of one that is shown
+// (warped and encoded), and of a keyframe of that size. A machine that is busy with other programs
+// so admits as many as before.
 struct PictureCost {
   double shown = 2.5e-8, drawn = 1e-7;
   bool operator==(const PictureCost&) const = default;
@@ -60,6 +61,9 @@ class Capacity : public std::enable_shared_from_this<Capacity> {
     PictureCost cost;
   };
   Standing standing() const;
+  // How many visitors with pictures of so many pixels there are seats for, with those who are
+  // there.
+  int seats_for(double pixels) const;
 
  private:
   friend class Seat;

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "base/cancel.h"
 #include "base/log.h"
 #include "light/bake/bake_file.h"
 #include "light/bake/map_file.h"
@@ -114,9 +115,11 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   std::vector<Problem> problems;
   show->roads = make_tour_roads(show->exhibit, *show->world, problems);
   if (!problems.empty()) throw ExhibitError(std::move(problems));
+  check_cancelled();
   show->questions = make_question_index(show->exhibit);
   show->lights = make_lights(*show->world);
   show->visibility = std::make_unique<VisibilityPass>(*show->world, show->lights);
+  check_cancelled();
   StillPass& pass = show->pass;
   if (show->settings.weights.empty()) pass.problem = "no folder of weights was named";
   else pass.denoiser = load_denoiser(NetSize::small, pass.problem, show->settings.weights);

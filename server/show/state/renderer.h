@@ -42,6 +42,7 @@ struct PictureCosts {
   double guide_seconds = 0;  // for what a reconstruction begins with
   bool backdrop = false;     // of what does not move: the rest is to be laid over it
   double seconds = 0;        // from its job on, without others' in between
+  double core_seconds = 0;   // of the process, for all but its samples (base/process_clock.h)
 };
 
 // A picture at rest is drawn in steps, so that what moves in it need not wait for all of them.
@@ -85,8 +86,8 @@ struct SkinJob {
 struct Renderer {
   DrawingWork work;
   SkinJob skin;
-  size_t work_bytes = 0;     // of it, when last finished
-  double served = 0;         // VisitorPicture::served of the last picture begun, by then
+  size_t work_bytes = 0;  // of it, when last finished
+  double served = 0;      // least VisitorPicture::served of those who wanted the last picture begun
   double work_seconds = 0;   // what the last thing in hand took
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
   DrawingStep step = DrawingStep::done;  // of that, to be done next

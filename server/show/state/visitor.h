@@ -55,14 +55,14 @@ struct Encoder {
 // What the visitor was sent, and how it goes down (show/draw/present.h).
 struct VisitorDelivery {
   std::unique_ptr<Encoder> encoder = std::make_unique<Encoder>();
-  uint32_t frame_number = 0;  // of the last picture; 0: none yet
-  uint32_t seq = 0;           // that it showed
-  View view;                  // that it showed
-  double sent_at = -1e9;      // show time of it
-  double pictured_at = -1e9;  // when it was due
-  double warp_seconds = 0;    // for the last, on all cores; 0: it was drawn for its view
-  bool lost = false;          // the browser has not what it was sent
-  double refine_at = -1e9;    // when more of a picture at rest may be sent
+  uint32_t frame_number = 0;     // of the last picture; 0: none yet
+  uint32_t seq = 0;              // that it showed
+  View view;                     // that it showed
+  double sent_at = -1e9;         // show time of it
+  double pictured_at = -1e9;     // when it was due
+  double warp_core_seconds = 0;  // for the last (process_clock.h); 0: it was drawn for its view
+  bool lost = false;             // the browser has not what it was sent
+  double refine_at = -1e9;       // when more of a picture at rest may be sent
   Flow flow;
   GiveWay way;
   float measured_fps = 0;

@@ -214,7 +214,7 @@ void judge_pictures(Judge& judge, const ShowReport& report) {
     return visitor.walks && (visitor.interval_ms > late_interval ||
                              (!line && visitor.fps > 0 && visitor.fps < least_rate));
   });
-  const size_t visitors = report.visitors.size();
+  const size_t visitors = std::max(report.visitors.size(), report.all_visitors);
   judge.judge(late,
               {.about = "late pictures",
                .grave = true,
@@ -230,7 +230,7 @@ void judge_pictures(Judge& judge, const ShowReport& report) {
   if (report.waiting > 0)
     judge.tell({.about = "waiting",
                 .what = many(report.waiting, "visitor waits", "visitors wait") + " to be let in",
-                .why = many(report.visitors.size(), "visitor is", "visitors are") +
+                .why = many(visitors, "visitor is", "visitors are") +
                        " shown as many pictures as the machine makes",
                 .remedy = "Close other programs on the server. More cores serve more visitors."},
                {.before = 5, .after = 5});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 
+#include "base/cancel.h"
 #include "base/parallel.h"
 
 namespace wellspring {
@@ -185,6 +186,7 @@ WalkMap make_walk_map(const World& world, const WalkSettings& rules, const std::
   map.depth = int(size.z / map.cell) + 1;
   map.column.assign(size_t(map.width) * size_t(map.depth), -1);
   flood(world, seeds, map);
+  check_cancelled();
 
   Cells cells{map};
   const int strip = 8;  // rows; of each strip one thread alone

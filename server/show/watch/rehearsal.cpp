@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/cancel.h"
 #include "base/clock.h"
 #include "base/latest.h"
 #include "base/log.h"
@@ -36,7 +37,8 @@ struct Rehearsal::Impl {
   std::condition_variable changed;
   const bool watch;
   std::atomic<bool> at_work = false;
-  bool end = false, asked = false, anyway = false;
+  std::stop_source end;
+  bool asked = false, anyway = false;
   std::thread thread;
 
   Impl(std::string folder_, std::function<std::unique_ptr<Show>()> make_, bool watch)
@@ -44,20 +46,25 @@ struct Rehearsal::Impl {
     thread = std::thread([this] { live(); });
   }
   ~Impl() {
+    cancel();
+    thread.join();
+  }
+
+  void cancel() {
     {
       std::lock_guard lock(mutex);
-      end = true;
+      end.request_stop();
     }
     changed.notify_all();
-    thread.join();
   }
 
   void live() {
     std::unique_lock lock(mutex);
     for (;;) {
-      if (watch) changed.wait_for(lock, pause, [this] { return end || asked; });
-      else changed.wait(lock, [this] { return end || asked; });
-      if (end) return;
+      const auto wanted = [this] { return end.stop_requested() || asked; };
+      if (watch) changed.wait_for(lock, pause, wanted);
+      else changed.wait(lock, wanted);
+      if (end.stop_requested()) return;
       const bool now = std::exchange(asked, false), in_any_case = std::exchange(anyway, false);
       lock.unlock();
       const bool is_new = now ? files.changed() : files.changed(seconds_now());
@@ -71,7 +78,10 @@ struct Rehearsal::Impl {
     at_work = true;
     Outcome found;
     try {
+      const CancelScope scope(end.get_token());
       found.show = make();
+    } catch (const Cancelled&) {
+      log::info("{} is not read anew: the server ends", folder);
     } catch (const ExhibitError& error) {
       found.problems = error.problems;
     } catch (const std::exception& error) {
@@ -89,6 +99,8 @@ struct Rehearsal::Impl {
 Rehearsal::Rehearsal(std::string folder, std::function<std::unique_ptr<Show>()> make, bool watch)
     : impl_(std::make_unique<Impl>(std::move(folder), std::move(make), watch)) {}
 Rehearsal::~Rehearsal() = default;
+
+void Rehearsal::cancel() { impl_->cancel(); }
 
 void Rehearsal::look(bool anyway) {
   {

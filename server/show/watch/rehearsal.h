@@ -15,13 +15,15 @@ struct Show;
 
 class Rehearsal {
  public:
-  // `make` runs on a thread of the rehearsal's own; throws what is wrong with the files. `watch`:
-  // look at the files all the time; else only when look() asks for it.
+  // `make` runs on a thread of the rehearsal's own, in a CancelScope; throws what is wrong with the
+  // files. `watch`: look at the files all the time; else only when look() asks for it.
   Rehearsal(std::string folder, std::function<std::unique_ptr<Show>()> make, bool watch);
-  ~Rehearsal();  // waits for a show that is being made
+  ~Rehearsal();  // cancels, and waits until that is done
 
   // Looks soon, and makes a show where the files have changed, or `anyway`. From any thread.
   void look(bool anyway);
+  // No show is made any more: one that is being made is given up. Returns at once.
+  void cancel();
   // Whether it makes a show now, and so needs the cores. From any thread.
   bool at_work() const;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/cancel.h"
 #include "gltf/data.h"
 #include "world/load/gltf_image.h"
 
@@ -249,6 +250,7 @@ class Materials {
   int image(size_t index, bool srgb) {
     auto [known, fresh] = images_.try_emplace({index, srgb}, -1);
     if (!fresh) return known->second;
+    check_cancelled();
     const std::string where = at("/images", index);
     const json& object = items(file_.root, "images")[index];
     Image made;

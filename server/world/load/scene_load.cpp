@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/cancel.h"
 #include "base/load_error.h"
 #include "gltf/attributes.h"
 #include "gltf/data.h"
@@ -77,6 +78,7 @@ class Builder {
 
  private:
   void build_node(size_t index) {
+    check_cancelled();
     const json& object = items(file_.root, "nodes")[index];
     if (find(object, "mesh")) build_mesh(index, object);
     if (const json* camera = find(object, "camera")) build_camera(index, camera->get<size_t>());

@@ -52,17 +52,29 @@ TEST_F(ConfigFile, SaysWhatDiffers) {
 TEST_F(ConfigFile, NamesWhatIsWrong) {
   EXPECT_NE(problem("{").find("not JSON at line 1, column 2"), std::string::npos) << problem("{");
   EXPECT_NE(problem("[]").find("not an object"), std::string::npos);
-  EXPECT_EQ(problem(R"({"presence": {"hold": 1}})"),
-            "/presence/hold: is unknown; there are confirm_after, hold_motion, hold_person, "
-            "wake_after");
-  EXPECT_EQ(problem(R"({"camera": {"fov": 200}})"), "/camera/fov: is not a number from 10 to 170");
-  EXPECT_EQ(problem(R"({"camera": {"mirrored": 1}})"), "/camera/mirrored: is not true or false");
+  EXPECT_EQ(
+      problem(R"({"presence": {"hold": 1}})"),
+      "line 1, /presence/hold: is unknown; there are confirm_after, hold_motion, hold_person, "
+      "wake_after");
+  EXPECT_EQ(problem(R"({"camera": {"fov": 200}})"),
+            "line 1, /camera/fov: is not a number from 10 to 170");
+  EXPECT_EQ(problem(R"({"camera": {"mirrored": 1}})"),
+            "line 1, /camera/mirrored: is not true or false");
   EXPECT_EQ(problem(R"({"mount": {"offset": [1, 2]}})"),
-            "/mount/offset: is not a list of three numbers");
-  EXPECT_EQ(problem(R"({"mount": []})"), "/mount: is not an object");
+            "line 1, /mount/offset: is not a list of three numbers");
+  EXPECT_EQ(problem(R"({"mount": []})"), "line 1, /mount: is not an object");
   EXPECT_EQ(problem(R"({"presence": {"hold_person": null}})"),
-            "/presence/hold_person: is not a number from 0 to 600");
+            "line 1, /presence/hold_person: is not a number from 0 to 600");
   EXPECT_THROW(load_config(folder.file("none"), config), LoadError);
+}
+
+TEST_F(ConfigFile, NamesTheLine) {
+  EXPECT_EQ(problem("{\n  \"camera\": {\n    \"width\": 320,\n    \"fov\": 200\n  }\n}\n"),
+            "line 4, /camera/fov: is not a number from 10 to 170");
+  EXPECT_EQ(problem("{\n\"cameras\": [\n{\"source\": \"0\"},\n{\"name\": \"left\"}\n]}\n"),
+            "line 4, /cameras/1/source: is missing");
+  EXPECT_EQ(problem("{\n\"hands\": true,\n\n\"nmae\": \"hall\"}").substr(0, 21),
+            "line 4, /nmae: is unk");
 }
 
 TEST_F(ConfigFile, ListsCamerasThatDifferFromWhatTheyHaveInCommon) {
@@ -79,11 +91,11 @@ TEST_F(ConfigFile, ListsCamerasThatDifferFromWhatTheyHaveInCommon) {
   EXPECT_NEAR(config.cameras[0].mount.offset.x, -0.3f, 1e-6f);
   EXPECT_NEAR(config.cameras[1].mount.fov, pi / 3, 1e-6f);
   EXPECT_NEAR(config.cameras[1].mount.pitch, pi / 36, 1e-6f);
-  EXPECT_EQ(problem(R"({"cameras": []})"), "/cameras: is not a list of cameras");
-  EXPECT_EQ(problem(R"({"cameras": [{"name": "left"}]})"), "/cameras/0/source: is missing");
-  EXPECT_EQ(problem(R"({"cameras": [{"source": 0}]})"), "/cameras/0/source: is not a text");
+  EXPECT_EQ(problem(R"({"cameras": []})"), "line 1, /cameras: is not a list of cameras");
+  EXPECT_EQ(problem(R"({"cameras": [{"name": "left"}]})"), "line 1, /cameras/0/source: is missing");
+  EXPECT_EQ(problem(R"({"cameras": [{"source": 0}]})"), "line 1, /cameras/0/source: is not a text");
   EXPECT_EQ(problem(R"({"cameras": [{"source": "0", "mount": {"pitch": 90}}]})"),
-            "/cameras/0/mount/pitch: is not a number from -80 to 80");
+            "line 1, /cameras/0/mount/pitch: is not a number from -80 to 80");
   // The mount that is found out is that of one of them.
   std::ofstream(file) << text;
   Mount mount;

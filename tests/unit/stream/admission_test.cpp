@@ -74,6 +74,7 @@ TEST(Frames, are_counted_whatever_they_are_and_however_they_come) {
 }
 
 using Answer = Admission::Answer;
+using Taken = Admission::Taken;
 
 TEST(Admission, strangers_leave_the_reserve_to_those_who_are_trusted) {
   Admission admission({.connections = 8, .reserve = 2, .connections_an_address = 100});
@@ -144,18 +145,39 @@ TEST(Admission, rates_of_an_address_recover_with_time) {
   EXPECT_EQ(admission.enter(4, one, Standing::stranger, 0).answer, Answer::too_many);
   EXPECT_EQ(admission.enter(5, other, Standing::stranger, 0).answer, Answer::welcome);
   EXPECT_EQ(admission.enter(6, one, Standing::stranger, 0.6).answer, Answer::welcome);
-  for (int i = 0; i < 20; i++) EXPECT_TRUE(admission.take_request(one, 0));
-  EXPECT_FALSE(admission.take_request(one, 0.05));
-  EXPECT_TRUE(admission.take_request(other, 0.05));
-  EXPECT_TRUE(admission.take_request(one, 0.2));
-  EXPECT_TRUE(admission.take_frames(one, 10, 0));
-  EXPECT_FALSE(admission.take_frames(one, 1, 0));
-  EXPECT_TRUE(admission.take_frames(one, 5, 1));
-  EXPECT_TRUE(admission.open_websocket(one) && admission.open_websocket(one));
-  EXPECT_FALSE(admission.open_websocket(one));
-  EXPECT_TRUE(admission.open_websocket(other));
+  for (int i = 0; i < 20; i++) EXPECT_EQ(admission.take_request(one, 0), Taken::yes);
+  EXPECT_EQ(admission.take_request(one, 0.05), Taken::too_many);
+  EXPECT_EQ(admission.take_request(other, 0.05), Taken::yes);
+  EXPECT_EQ(admission.take_request(one, 0.2), Taken::yes);
+  EXPECT_EQ(admission.take_frames(one, 10, true, 0), Taken::yes);
+  EXPECT_EQ(admission.take_frames(one, 1, true, 0), Taken::too_many);
+  EXPECT_EQ(admission.take_frames(one, 5, true, 1), Taken::yes);
+  EXPECT_EQ(admission.open_websocket(one, 1), Taken::yes);
+  EXPECT_EQ(admission.open_websocket(one, 1), Taken::yes);
+  EXPECT_EQ(admission.open_websocket(one, 1), Taken::too_many);
+  EXPECT_EQ(admission.open_websocket(other, 1), Taken::yes);
   admission.close_websocket(one);
-  EXPECT_TRUE(admission.open_websocket(one));
+  EXPECT_EQ(admission.open_websocket(one, 1), Taken::yes);
+}
+
+TEST(Admission, many_addresses_together_are_bounded_too) {
+  Admission admission({.all_requests_a_second = 10,
+                       .all_requests_at_once = 20,
+                       .all_frames_a_second = 100,
+                       .all_frames_at_once = 200});
+  const Address loud = at("203.0.113.1"), modest = at("203.0.113.2");
+  for (int i = 0; i < 20; i++) {
+    const Address one = at(("198.51.100." + std::to_string(i)).c_str());
+    EXPECT_EQ(admission.take_request(one, 0), Taken::yes);
+  }
+  EXPECT_EQ(admission.take_request(modest, 0), Taken::too_many_in_all);
+  EXPECT_EQ(admission.take_request(modest, 0.2), Taken::yes);
+  EXPECT_EQ(admission.take_frames(loud, 200, false, 0), Taken::yes);
+  EXPECT_EQ(admission.take_frames(loud, 1, false, 0), Taken::too_many_in_all);
+  EXPECT_EQ(admission.take_frames(modest, 1, true, 0), Taken::yes) << "says no more than a page";
+  EXPECT_EQ(admission.open_websocket(modest, 0), Taken::too_many_in_all);
+  EXPECT_EQ(admission.open_websocket(modest, 0.5), Taken::yes);
+  EXPECT_EQ(admission.take_frames(loud, 40, false, 0.5), Taken::yes);
 }
 
 // What Limits promises, in numbers of connections, files and messages.
@@ -169,11 +191,11 @@ TEST(Admission, a_school_class_behind_one_address_gets_in) {
       EXPECT_EQ(entry.answer, Answer::welcome);
       EXPECT_FALSE(entry.drop);
     }
-    for (int file = 0; file < 30; file++) EXPECT_TRUE(admission.take_request(school, 0));
-    EXPECT_TRUE(admission.open_websocket(school));
+    for (int file = 0; file < 30; file++) EXPECT_EQ(admission.take_request(school, 0), Taken::yes);
+    EXPECT_EQ(admission.open_websocket(school, 0), Taken::yes);
   }
   for (int second = 1; second < 60; second++)
-    EXPECT_TRUE(admission.take_frames(school, 40 * 120, second));
+    EXPECT_EQ(admission.take_frames(school, 40 * 120, true, second), Taken::yes);
 }
 
 TEST(Admission, addresses_that_left_are_forgotten) {

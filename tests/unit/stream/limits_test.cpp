@@ -109,6 +109,43 @@ TEST(Limits, new_connections_of_an_address) {
   EXPECT_EQ(house.server.counters().refused, 1u);
 }
 
+TEST(Limits, what_all_addresses_together_may_have) {
+  auto settings = strange_settings();
+  settings.limits.all_frames_at_once = 206;  // three WebSockets, their first messages, 200 more
+  settings.limits.all_frames_a_second = 0;
+  settings.limits.all_requests_at_once = 5;
+  settings.limits.all_requests_a_second = 0;
+  House house(settings);
+  RawClient first(house.port()), loud(house.port()), modest(house.port());
+  for (RawClient* client : {&first, &loud, &modest}) ASSERT_EQ(client->join().status, 101);
+  ASSERT_TRUE(house.link(2));
+  std::string many;
+  for (int i = 0; i < 200; i++) many += frame(0x81, "x");
+  size_t arrived = 0;
+  auto arrive = [&] {
+    for (size_t i = 0; i < 3; i++) arrived += house.link(i)->take_texts().size();
+    return arrived == 200;
+  };
+  first.send(many);
+  EXPECT_TRUE(eventually(arrive));
+  RawClient late(house.port());
+  EXPECT_EQ(late.join().status, 503);
+  std::string more = many;
+  for (int i = 0; i < 590; i++) more += frame(0x81, "x");
+  loud.send(more);
+  EXPECT_EQ(loud.closed_with(), 1008);
+  arrive();  // what was taken of it before that
+  arrived = 0;
+  modest.send(many);
+  EXPECT_TRUE(eventually(arrive)) << "no more than a page says";
+  RawClient asking(house.port());
+  EXPECT_EQ(asking.ask("/a").status, 200);
+  const auto refused = RawClient(house.port()).ask("/a");
+  EXPECT_EQ(refused.status, 503);
+  EXPECT_FALSE(refused.header("Retry-After").empty());
+  EXPECT_EQ(house.server.counters().limited_in_all, 2u);
+}
+
 TEST(Limits, frames_of_all_visits_of_an_address) {
   auto settings = strange_settings();
   settings.limits.frames_at_once = 350;
@@ -218,4 +255,25 @@ TEST(Limits, settings_that_mean_nothing_are_named) {
   EXPECT_NE(message_of(settings).find("both"), std::string::npos);
   settings.key = "/nowhere/key.pem";
   EXPECT_NE(message_of(settings).find("/nowhere/cert.pem"), std::string::npos);
+}
+
+TEST(AgentPort, tells_every_caller_one_line) {
+  auto settings = quick_settings();
+  {
+    House finding;  // a port that is free, as it has just been
+    settings.agent_port = finding.port();
+  }
+  std::atomic<bool> known = false;
+  Server server(settings, {.answer = House::echo,
+                           .joined = [](std::shared_ptr<Link>) {},
+                           .agent = [&] { return known ? "18%" : std::string(); }});
+  auto told = [&] {
+    RawClient caller(settings.agent_port);
+    EXPECT_TRUE(caller.ends());
+    return caller.input;
+  };
+  EXPECT_EQ(told(), "");
+  known = true;
+  for (int i = 0; i < 3; i++) EXPECT_EQ(told(), "18%\n");
+  server.stop();
 }

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <barrier>
+#include <thread>
+
 #include "unit/folder.h"
 
 namespace wellspring {
@@ -36,6 +39,29 @@ TEST(Seal, TheKeyIsKeptForItsOwnerAlone) {
   const auto rights = std::filesystem::status(file).permissions();
   EXPECT_EQ(rights & std::filesystem::perms::all,
             std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST(Seal, WhoMakeTheKeyAtTheSameTimeHaveTheSame) {
+  test::Folder folder;
+  for (int round = 0; round < 100; round++) {
+    const std::string file = folder.file("key" + std::to_string(round));
+    constexpr int servers = 8;
+    std::vector<std::unique_ptr<Seal>> seals(servers);
+    std::barrier together(servers);
+    {
+      std::vector<std::jthread> threads;
+      for (auto& seal : seals)
+        threads.emplace_back([&] {
+          together.arrive_and_wait();
+          seal = std::make_unique<Seal>(file);
+        });
+    }
+    const std::string sealed = Seal(file).close("here");
+    for (const auto& seal : seals) ASSERT_EQ(seal->open(sealed), "here") << round;
+  }
+  size_t files = 0;
+  for ([[maybe_unused]] const auto& one : std::filesystem::directory_iterator(folder.path)) files++;
+  EXPECT_EQ(files, 100u) << "nothing is left beside the keys";
 }
 
 TEST(Seal, WithoutAFileThatHoldsAKeyItStillSeals) {

@@ -68,14 +68,19 @@ TEST(Link, addresses) {
   ASSERT_TRUE(a);
   EXPECT_EQ(a->port, "80");
   EXPECT_EQ(a->path, "/other");
+  EXPECT_FALSE(a->tls);
+  a = parse_address("wss://museum.example");
+  ASSERT_TRUE(a);
+  EXPECT_TRUE(a->tls);
+  EXPECT_EQ(a->port, "443");
   a = parse_address("ws://[::1]:9/");
   ASSERT_TRUE(a);
   EXPECT_EQ(a->host, "::1");
   EXPECT_EQ(a->port, "9");
   EXPECT_EQ(a->path, "/api/v1/eye");
-  for (const char* bad : {"", "ws://", "wss://a", "http://a", "127.0.0.1:80", "ws://a:", "ws://a:0",
-                          "ws://a:65536", "ws://a:x", "ws://:80", "ws://[::1", "ws://[::1]x",
-                          "ws://a b", "ws://::1:80", "ws://a/\r\nX: y", "ws://a@b"})
+  for (const char* bad : {"", "ws://", "wss://", "wss:/a", "http://a", "127.0.0.1:80", "ws://a:",
+                          "ws://a:0", "ws://a:65536", "ws://a:x", "ws://:80", "ws://[::1",
+                          "ws://[::1]x", "ws://a b", "ws://::1:80", "ws://a/\r\nX: y", "ws://a@b"})
     EXPECT_FALSE(parse_address(bad)) << bad;
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <ostream>
 #include <string>
@@ -31,7 +32,7 @@ using States = std::vector<VisitorDrawState>;
 VisitorDrawState walker() {
   VisitorDrawState state;
   state.welcomed = state.can_take = true;
-  state.drawn_at = now;
+  state.drawn_at = state.shown_at = now;
   state.moved_at = now;
   return state;
 }
@@ -71,6 +72,14 @@ VisitorDrawState due(VisitorDrawState state, double seconds_ago = 2) {
 // For whom what moves is due.
 VisitorDrawState moving_due(VisitorDrawState state, double seconds_ago = 2) {
   state.posed_at = now - seconds_ago;
+  return state;
+}
+
+// Who wants pictures all the time, and was shown the last one when it was drawn.
+VisitorDrawState hurried() {
+  VisitorDrawState state = walker();
+  state.picture_rate = 60;
+  state.drawn_at = state.shown_at = state.came_at = now;
   return state;
 }
 
@@ -187,11 +196,26 @@ const std::vector<Row> rows = {
        all = {due(walker(), 4), due(walker(), 2), due(walker(), 3)};
        all[0].served = 0.3, all[1].served = 0.1, all[2].served = 0.2;
      },
-     {Drawing::picture, 1}},
+     {Drawing::picture, 1, false, Purpose::shown, 0.1}},
     {"who wanted no pictures for a while has saved up no time",
      [](States& all, RendererState& renderer) {
        all = {due(walker(), 2), due(walker(), 4)};
        all[0].served = 0.1, all[1].served = renderer.served = 0.5;
+     },
+     {Drawing::picture, 1, false, Purpose::shown, 0.5}},
+    {"a walker who was shown none for half a second comes first, and keeps back nobody else",
+     [](States& all, RendererState&) {
+       all = {due(walker(), 0.7), due(walker(), 0.6), due(walker(), 2)};
+       all[0].served = 0.3, all[1].served = 0.2, all[2].served = 0.1;
+       all[0].shown_at = now - 0.55, all[1].shown_at = now - 0.4, all[2].shown_at = now - 0.2;
+       for (VisitorDrawState& one : all) one.picture_rate = 60;
+     },
+     {Drawing::picture, 0, false, Purpose::shown, 0.1}},
+    {"not one whose picture at rest is only to become better",
+     [](States& all, RendererState&) {
+       all = {due(stander(), 9), due(walker(), 2)};
+       all[0].served = 0.3, all[1].shown_at = now - 0.2;
+       all[0].shown_at = now - 9;
      },
      {Drawing::picture, 1}},
     {"of two who wait alike the first comes first",
@@ -399,6 +423,42 @@ TEST(Decide, every_rule_of_the_table) {
     row.given(states, renderer);
     EXPECT_EQ(decide(now, states, renderer), row.expected) << row.rule;
   }
+}
+
+double max_of(const std::vector<double>& all) { return *std::max_element(all.begin(), all.end()); }
+
+// Visitors whose pictures take as long as each says, drawn one after the other for a minute: the
+// longest time that each went without one.
+std::vector<double> longest_gaps(const std::vector<double>& costs) {
+  States all(costs.size(), hurried());
+  RendererState renderer;
+  std::vector<double> gaps(costs.size(), 0);
+  for (double time = now + 1; time < now + 60;) {
+    const Decision next = decide(time, all, renderer);
+    VisitorDrawState& one = all[size_t(next.visitor)];
+    renderer.served = next.served;
+    one.served = std::max(one.served, renderer.served);
+    const double cost = costs[size_t(next.visitor)];
+    one.drawn_at = time;
+    one.served += cost;
+    time += cost;
+    if (time > now + 10)
+      gaps[size_t(next.visitor)] = std::max(gaps[size_t(next.visitor)], time - one.shown_at);
+    one.shown_at = time;
+  }
+  return gaps;
+}
+
+TEST(Decide, nobody_goes_without_a_picture_for_much_longer_than_others) {
+  auto longest = [](const std::vector<double>& costs) { return max_of(longest_gaps(costs)); };
+  // Equal time alone: 1.9 s for the dear ones.
+  EXPECT_LE(longest({0.05, 0.2, 0.05, 0.05, 0.2, 0.05, 0.05, 0.05}), 0.8);
+  // Where one for each takes longer than that, each has as many: 3.8 s by equal time.
+  EXPECT_LE(longest({0.2, 0.2, 0.05, 0.4, 0.2, 0.05, 0.1, 0.1}), 1.31);
+  // Where nobody waits for long, each has as much time.
+  const std::vector<double> gaps = longest_gaps({0.02, 0.02, 0.04});
+  EXPECT_NEAR(gaps[2], 0.16, 0.01);
+  EXPECT_NEAR(gaps[0], 0.08, 0.01);
 }
 
 TEST(Demand, counts_who_waits_for_a_picture_and_not_who_gains_by_samples) {

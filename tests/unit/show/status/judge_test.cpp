@@ -144,6 +144,10 @@ TEST_F(Judged, PicturesThatAreLate) {
   ASSERT_TRUE(found("Pictures are late")) << all();
   EXPECT_NEAR(findings[0].since, since, 0.3);
   EXPECT_EQ(findings[0].why, "2 cores are not enough for 5 visitors");
+  report.all_visitors = 7;
+  wait(1);
+  EXPECT_EQ(findings[0].why, "2 cores are not enough for 7 visitors") << "two are elsewhere";
+  report.all_visitors = 0;
   report.visitors[3].walks = false;
   wait(10);
   EXPECT_NEAR(findings.at(0).since, since, 0.3) << "between two walks it is not said to be well";
