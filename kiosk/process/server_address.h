@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a kiosk's server is, as people write it.
+#pragma once
+#include <optional>
+#include <string>
+
+namespace wellspring {
+
+struct ServerAddress {
+  std::string host, port = "80", path;
+};
+// ws://HOST[:PORT][/PATH], an IPv6 address in brackets; no path: /api/v1/eye. Nothing for anything
+// else.
+std::optional<ServerAddress> parse_address(const std::string& url);
+
+}  // namespace wellspring
