@@ -54,7 +54,7 @@ run() {  # NAME: prints its row; 1: something was found
   # shellcheck disable=SC2046
   link_real_files "$build/seeds/$name" $(endings_of "$name")
   "$build/bin/fuzz_$name" "$corpus" "$here/corpus/$name" "$build/seeds/$name" -max_total_time="$seconds" \
-    -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1 -use_value_profile=1 \
+    -timeout=60 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1 -use_value_profile=1 \
     -max_len=65536 -artifact_prefix="$found/" "${dictionary[@]}" >"$log" 2>&1 ||
     { broken="$(grep -m 1 -oE 'SUMMARY: .*' "$log" || tail -n 1 "$log")"; status=1; }
   printf '%-18s %12s %9s %8s %7s  %s\n' "$name" "$(number stat::number_of_executed_units "$log")" \
