@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figures in X3D as XML.
 #include "avatar/load/x3d_humanoid.h"
-#include "fuzz/fuzz.h"
+#include "fuzz/shown_figure.h"
 
 namespace wellspring::fuzz {
 
 void fuzz_x3d_xml(Bytes bytes) {
   load([&] {
     X3dFile file = parse_x3d_xml("fuzz", text_of(bytes));
-    character_from_x3d(file);
+    show_figure(character_from_x3d(file));
   });
 }
 

@@ -7,6 +7,7 @@
 #include "frame/linear_picture.h"
 #include "frame/picture_file.h"
 #include "fuzz/lit_square.h"
+#include "fuzz/spoken.h"
 #include "ledger/sums_file.h"
 #include "light/bake/map_file.h"
 #include "light/known/radiance_grid_file.h"
@@ -171,6 +172,11 @@ void write_kept(const Corpus& corpus) {
   corpus.put_contents("cached_grid", "square.grid");
 }
 
+void write_speech(const Corpus& corpus) {
+  const std::string folder = corpus.folder.file("speech"), file = fuzz::keep_speech(folder);
+  corpus.put("kept_speech", "tower.speech", corpus.folder.read("speech/" + file));
+}
+
 void write_weights(const Corpus& corpus) {
   TzaFile weights;
   weights.add("enc.weight", {2, 1, 1, 1}, "oihw", 'h', {1, 2});
@@ -196,6 +202,7 @@ int main(int argc, char** argv) {
   write_figures(corpus);
   write_scenes(corpus);
   write_kept(corpus);
+  write_speech(corpus);
   write_weights(corpus);
   write_sums(corpus);
   return 0;

@@ -183,15 +183,21 @@ TEST_F(ComeBack, TextsThatAreNotOursChangeNothing) {
   std::string broken = sealed;
   broken[5] ^= 1;
   const std::string elsewhere = show->seal->close(R"({"exhibit":"other","day":100})");
-  const std::string no_json = show->seal->close("{");
-  for (const std::string& text : {std::string("x"), broken, elsewhere, no_json}) {
+  std::vector<std::string> texts = {"x", broken, elsewhere};
+  for (const char* text :
+       {"{", "[1]", R"({"exhibit":1,"day":100,"id":"1"})", R"({"exhibit":"tiny","id":"1"})",
+        R"({"exhibit":"tiny","day":"100","id":"1"})", R"({"exhibit":"tiny","day":100,"id":1})",
+        R"({"exhibit":"tiny","day":-9223372036854775808,"id":"1"})"})
+    texts.push_back(show->seal->close(text));
+  for (const std::string& text : texts) {
     const size_t number = come(text);
     EXPECT_EQ(last("welcome", number)["resumed"], false) << text;
     EXPECT_NE(last("state", number)["viewpoint"], "corner");
   }
   open(100 + token_days + 1);
   EXPECT_EQ(last("welcome", come(sealed))["resumed"], false) << "too old";
-  const size_t odd = come(show->seal->close(R"({"exhibit":"tiny","day":108,"place":[1]})"));
+  const size_t odd =
+      come(show->seal->close(R"({"exhibit":"tiny","day":108,"id":"1","place":[1]})"));
   EXPECT_EQ(last("welcome", odd)["resumed"], true);
   EXPECT_FALSE(told("state", odd).empty());
 }
