@@ -9,6 +9,7 @@
 #include "light_cycles.h"
 #include "light_photons.h"
 #include "light_rays.h"
+#include "splat_bench.h"
 
 namespace wellspring {
 namespace {
@@ -47,6 +48,7 @@ constexpr ReportEntry entries[] = {{"stream", bench_stream},
                                    {"light.rays", bench_light_rays},
                                    {"light.cycles", bench_light_cycles},
                                    {"light.photons", bench_light_photons},
+                                   {"splat", bench_splat},
                                    {"light.hall", bench_light_hall, true}};
 
 using Pages = std::map<std::string, std::string>;

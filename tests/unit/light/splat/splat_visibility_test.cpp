@@ -88,8 +88,7 @@ TEST(SplatVisibility, WithoutShadowsNothingIsLeftToChance) {
   stage.splat(settings);
   EXPECT_EQ(stage.picture.counters.shadow_rays, 0u);
   for (size_t i = 0; i < shadowed.size(); i++)
-    ASSERT_NEAR(shadowed[i].x / stage.picture.irradiance[i].x, 1, 0.02)
-        << i % 64 << ", " << i / 64;
+    ASSERT_NEAR(shadowed[i].x / stage.picture.irradiance[i].x, 1, 0.02) << i % 64 << ", " << i / 64;
 }
 
 TEST(SplatVisibility, BehindAWallItIsDark) {
