@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each report's page shows: its question, how to read its figures, and tables.
 #include "reports.h"
+#include "splat_bench.h"
 
 namespace wellspring {
 namespace {
@@ -395,6 +396,7 @@ std::vector<ReportPage> declared_pages() {
           load_visitors_page(),
           light_frame_page(),
           light_scaling_page(),
+          splat_page(),
           light_error_page("light.error"),
           light_error_page("light.hall"),
           light_rays_page(),

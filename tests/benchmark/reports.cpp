@@ -10,6 +10,7 @@
 #include "light_dynamic.h"
 #include "light_photons.h"
 #include "light_rays.h"
+#include "splat_bench.h"
 
 namespace wellspring {
 namespace {
@@ -49,6 +50,7 @@ constexpr ReportEntry entries[] = {{"stream", bench_stream},
                                    {"light.cycles", bench_light_cycles},
                                    {"light.photons", bench_light_photons},
                                    {"light.dynamic", bench_light_dynamic},
+                                   {"splat", bench_splat},
                                    {"light.hall", bench_light_hall, true}};
 
 using Pages = std::map<std::string, std::string>;

@@ -76,7 +76,7 @@ void splat_lights(const SplatPixels& pixels, const VirtualLights& lights,
       const size_t at = size_t(y) * size_t(pixels.view.width) + size_t(x);
       vec3 place = pixels.view.position + place_from_eye(pixels, grid, x, y);
       vec3 normal(pixels.nx[at], pixels.ny[at], pixels.nz[at]);
-      vec3 light = sum_virtual_lights(lights, place, normal);
+      vec3 light = bounded_light(sum_virtual_lights(lights, place, normal));
       to.levels[one.level].at(one.x, one.y) = {light.x, light.y, light.z, 1};
     }
   });

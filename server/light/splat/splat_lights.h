@@ -15,6 +15,13 @@ namespace wellspring {
 vec3 sum_virtual_lights(const VirtualLights& lights, vec3 position, vec3 normal,
                         float* each = nullptr);
 
+// Light that a texel can hold: sums may overflow.
+inline vec3 bounded_light(vec3 light) {
+  constexpr float most = 1e30f;
+  auto bounded = [](float v) { return v > 0 ? (v < most ? v : most) : 0.0f; };  // NaN: 0
+  return {bounded(light.x), bounded(light.y), bounded(light.z)};
+}
+
 // That of one light.
 vec3 eval_virtual_light(const VirtualLights& lights, size_t light, vec3 position, vec3 normal);
 

@@ -128,8 +128,8 @@ int rays_of(const Subsplat& one, const SplatSettings& settings) {
 // One subsplat's rays to lights chosen by what they would add: every so many-th of the running sum.
 // Neighbours in the list of lights are near each other, so those chosen are from everywhere.
 template <class Ask>
-void choose_asked(const VirtualLights& lights, const float* each, double step, float start,
-                  const Ask& ask) {
+void choose_asked(const VirtualLights& lights, const float* each, double step, int rays,
+                  float start, const Ask& ask) {
   double passed = 0, next = double(start) * step;
   for (size_t i = 0; i < size_t(lights.padded); i += lane_count) {
     const double group = double(lanes_sum(load_lanes(each + i)));
@@ -139,7 +139,7 @@ void choose_asked(const VirtualLights& lights, const float* each, double step, f
     }
     for (size_t k = i; k < i + lane_count; k++) {
       passed += double(each[k]);
-      for (; next < passed; next += step)
+      for (; next < passed && rays > 0; next += step, rays--)
         if (each[k] > 0) ask(k);
     }
   }
@@ -184,7 +184,10 @@ class ShadowedSplats {
 // Of all light, what has arrived; unknown where there is none.
 SplatShadowRoom::Share share_of(SplatShadowRoom::Share arrived, const IlluminationTexel& all) {
   if (!(all.red + all.green + all.blue > 0)) return {-1, -1, -1};
-  auto share = [](float part, float whole) { return whole > 0 ? part / whole : 1; };
+  auto share = [](float part, float whole) {
+    float s = part / whole;
+    return s >= 0 && s < 1e6f ? s : 1;  // numbers too large or too small to tell
+  };
   return {share(arrived.red, all.red), share(arrived.green, all.green),
           share(arrived.blue, all.blue)};
 }
@@ -261,7 +264,7 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
                                IlluminationPyramid& to) {
   const PixelGrid grid = make_pixel_grid(pixels);
   const int count = int(subsplats.count);
-  std::atomic<uint64_t> rays = 0;
+  std::atomic<uint64_t> all_rays = 0;
   room.shares.resize(subsplats.count);
   start_owners(pyramid, room);
   parallel_ranges(count, 64, [&](int begin, int end) {
@@ -273,18 +276,19 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
       room.shares[size_t(i)] = {0, 0, 0};
       LitPixel lit;
       if (!look_at(pixels, grid, one, lit)) continue;
-      vec3 light = sum_virtual_lights(lights, lit.place, lit.normal, each.data());
+      vec3 light = bounded_light(sum_virtual_lights(lights, lit.place, lit.normal, each.data()));
       to.levels[one.level].at(one.x, one.y) = {light.x, light.y, light.z, 1};
       owner_of(pyramid, room, one.level, one.x, one.y) = uint32_t(i);
       double sum = double(luminance(light));
       if (!(sum > 0) || !std::isfinite(sum)) continue;
-      const double step = sum / rays_of(one, settings);
+      const int rays = rays_of(one, settings);
+      const double step = sum / rays;
       ShadowOrigin from = shadow_origin(lit.place, lit.normal, lit.depth);
-      choose_asked(lights, each.data(), step, start_of(one, seed),
+      choose_asked(lights, each.data(), step, rays, start_of(one, seed),
                    [&](size_t chosen) { shadowed.ask(from, chosen, uint32_t(i), step); });
     }
     shadowed.cast();
-    rays += shadowed.rays();
+    all_rays += shadowed.rays();
     for (int i = begin; i < end; i++) {
       const Subsplat& one = subsplats.list[size_t(i)];
       room.shares[size_t(i)] =
@@ -301,7 +305,7 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
       texel.red *= share.x, texel.green *= share.y, texel.blue *= share.z;
     }
   });
-  return rays;
+  return all_rays;
 }
 
 }  // namespace wellspring

@@ -67,3 +67,44 @@ TEST(Splatter, EveryLitPixelIsOfOneSubsplat) {
     for (int x = 0; x < 150; x++)
       EXPECT_EQ(covered[size_t(y * 150 + x)], stage.lit(x, y) ? 1 : 0) << x << ", " << y;
 }
+
+TEST(Splatter, ConvergenceBuysExactnessByMoreSubsplats) {
+  SplatStage stage = make_box(256, 256);
+  SplatSettings settings = without_shadows();
+  stage.draw(settings);
+  stage.splat(settings);
+  double plain = relative_error(stage);
+  uint64_t before = stage.picture.counters.all_subsplats();
+  settings.convergence = 0.01f;
+  stage.splat(settings);
+  EXPECT_LT(relative_error(stage), 0.6 * plain);
+  EXPECT_GT(stage.picture.counters.all_subsplats(), before);
+  EXPECT_GE(stage.picture.counters.evaluations,
+            stage.picture.counters.all_subsplats() * uint64_t(stage.drawn.lights.count));
+}
+
+// Same lights, same random numbers: the same bits; and the second picture needs no memory.
+TEST(Splatter, PicturesAreRepeatedInTheSameMemory) {
+  SplatStage stage = make_box(96, 64);
+  SplatSettings settings;
+  std::vector<vec3> first;
+  std::vector<const void*> memory;
+  for (int turn = 0; turn < 3; turn++) {
+    stage.draw(settings);
+    stage.splat(settings);
+    const SplatPicture& picture = stage.picture;
+    std::vector<const void*> now = {picture.irradiance.data(),
+                                    stage.drawn.lights.x.data(),
+                                    picture.pyramid.cells.data(),
+                                    stage.drawn.map.texels.data(),
+                                    picture.illumination.levels[0].texels.data(),
+                                    picture.shadows.shares.data(),
+                                    picture.shadows.owner.data()};
+    std::vector<vec3> light(picture.irradiance.begin(), picture.irradiance.end());
+    if (turn == 0) first = light;
+    if (turn == 1) memory = now;
+    EXPECT_EQ(light, first);
+    if (turn == 1) continue;
+    EXPECT_EQ(now == memory, turn == 2);
+  }
+}
