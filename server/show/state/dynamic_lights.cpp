@@ -22,6 +22,7 @@ void add_changing(const Show& show, const std::vector<char>& lit, double time,
 
 DynamicLights dynamic_lights_of(const Show& show, const Visitor& visitor, double time) {
   DynamicLights lights;
+  add_held_lights(show.exhibit, teller_of(show, visitor).held, time, first_carried, lights);
   if (show.exhibit.lights.empty()) return lights;
   // Lamps as pictures show them, which follow what is wanted.
   const VisitorLamps& lamps = visitor.lamps;
