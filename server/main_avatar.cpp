@@ -19,6 +19,7 @@
 #include "base/log.h"
 #include "base/near_name.h"
 #include "frame/picture_file.h"
+#include "show/exhibit/exhibit_load.h"
 #include "show/storyteller/contact_sheet.h"
 
 namespace wellspring {
@@ -27,7 +28,7 @@ namespace {
 struct Options {
   std::string file, out, size = "720x1080";
   std::vector<std::string> displacers;
-  std::string gesture, motion, skinning, sheet;
+  std::string gesture, motion, skinning, sheet, exhibit, hold;
   std::vector<std::string> expressions;
   std::vector<float> point, appearance;
   std::vector<float> guest;
@@ -43,8 +44,10 @@ bool read_size(const std::string& text, PortraitShot& shot) {
          shot.width >= 16 && shot.height >= 16 && shot.width <= 8192 && shot.height <= 8192;
 }
 
-// The figure after `time` seconds of standing there, alone or before a guest.
-Pose pose_at(const Character& character, const Options& options) {
+// The figure after `time` seconds of standing there, alone or before a guest, and what it holds of
+// that exhibit's props.
+Pose pose_at(const Character& character, const Options& options, const Exhibit& exhibit,
+             HeldProp& held) {
   Pose pose = make_rest_pose(character);
   if (options.rest) return pose;
   Storyteller storyteller{&character, mat4(1)};
@@ -60,6 +63,7 @@ Pose pose_at(const Character& character, const Options& options) {
   };
   input.story.point = place(options.point);
   input.story.look = place(options.appearance);
+  input.story.held = find_held_thing(exhibit, options.hold);
   input.story.gesture = options.gesture;
   input.story.gesture_lead = 60;  // from its beginning
   if (int clip = find_gesture(options.gesture); clip >= 0)
@@ -71,6 +75,7 @@ Pose pose_at(const Character& character, const Options& options) {
     input.dt = float(std::min(step, options.time - t));
     input.time = t + double(input.dt);
     tick_storyteller(state, storyteller, input, pose, events);
+    advance_held(exhibit, storyteller, state, pose, true, input.dt, held);
   }
   return pose;
 }
@@ -187,6 +192,13 @@ int run(Options options) {
   shot.turn = options.turn * pi / 180;
   shot.spp = options.spp;
 
+  Exhibit exhibit;
+  if (!options.exhibit.empty()) {
+    exhibit = load_exhibit(options.exhibit);
+    shot.exhibit = &exhibit;
+  }
+  if (!options.hold.empty() && find_prop(exhibit, options.hold) < 0)
+    return fail("--hold: " + unknown_prop(exhibit, options.hold), 2);
   Character character = load_character(options.file);
   if (!options.skinning.empty())
     character.skinning =
@@ -199,7 +211,8 @@ int run(Options options) {
 
   if (options.motion.empty() && is_motion && !character.motions.empty())
     options.motion = character.motions[0].name;
-  Pose pose = options.motion.empty() ? pose_at(character, options) : make_rest_pose(character);
+  Pose pose = options.motion.empty() ? pose_at(character, options, exhibit, shot.held)
+                                     : make_rest_pose(character);
   if (!options.motion.empty()) {
     Motion motion = find_motion(character, options.motion);
     Retarget retarget = make_retarget(motion, character);
@@ -278,6 +291,10 @@ int main(int argc, char** argv) {
   app.add_option("--look", options.appearance, "looks at x,y,z")->delimiter(',')->expected(3);
   app.add_option("--gesture", options.gesture,
                  "motion of the gesture library, seen --time seconds after it began");
+  CLI::Option* package =
+      app.add_option("--exhibit", options.exhibit, "folder of an exhibit, for its props");
+  app.add_option("--hold", options.hold, "holds that prop of the exhibit, for --time seconds")
+      ->needs(package);
   app.add_option("--displacer", options.displacers,
                  "NAME or NAME=WEIGHT over the pose, may repeat");
   try {

@@ -6,7 +6,7 @@
 
 #include "about/version.h"
 #include "base/log.h"
-#include "show/exhibit/check_scene.h"
+#include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/house/house_file.h"
 #include "show/storyteller/recordings.h"

@@ -12,15 +12,6 @@ constexpr float head_start = 0.15f;  // the least of a clip that is played befor
 GestureRow row_of(const GestureMotion& motion) { return std::bit_cast<GestureRow>(motion); }
 GestureMotion motion_of(const GestureRow& row) { return std::bit_cast<GestureMotion>(row); }
 
-void swap_sides(GestureMotion& motion) {
-  std::swap(motion.arm[0], motion.arm[1]);
-  std::swap(motion.weight[0], motion.weight[1]);
-  std::swap(motion.finger_aim[0], motion.finger_aim[1]);
-  std::swap(motion.palm_aim[0], motion.palm_aim[1]);
-  motion.head.x = -motion.head.x, motion.head.z = -motion.head.z;
-  motion.chest.x = -motion.chest.x, motion.chest.z = -motion.chest.z;
-}
-
 // Time inside the clip: the held moment lasts `hold` seconds longer.
 float clip_time(const GestureClip& clip, float time, float hold) {
   if (clip.hold < 0 || time <= clip.hold) return time;
@@ -34,9 +25,10 @@ GestureMotion eval_clip(const GestureState& state, const GestureLibrary& library
   if (state.clip >= 0 && size_t(state.clip) < library.clips.size()) {
     const GestureClip& clip = library.clips[size_t(state.clip)];
     motion = eval_gesture(clip, clip_time(clip, time, state.hold));
+    if (state.mirrored) swap_sides(motion);
+    for (size_t s = 0; s < 2; s++) motion.weight[s] *= state.free[s];
     if (clip.aim == Aim::finger) motion.finger_aim = motion.weight;
     if (clip.aim == Aim::palm) motion.palm_aim = motion.weight;
-    if (state.mirrored) swap_sides(motion);
     motion.head *= state.size;
     motion.chest *= state.size;
     motion.shoulders *= state.size;
@@ -76,6 +68,15 @@ void begin(GestureState& state, const GestureLibrary& library, const GestureOrde
 
 }  // namespace
 
+void swap_sides(GestureMotion& motion) {
+  std::swap(motion.arm[0], motion.arm[1]);
+  std::swap(motion.weight[0], motion.weight[1]);
+  std::swap(motion.finger_aim[0], motion.finger_aim[1]);
+  std::swap(motion.palm_aim[0], motion.palm_aim[1]);
+  motion.head.x = -motion.head.x, motion.head.z = -motion.head.z;
+  motion.chest.x = -motion.chest.x, motion.chest.z = -motion.chest.z;
+}
+
 ArmPose mix(const ArmPose& a, const ArmPose& b, float t) {
   constexpr size_t n = sizeof(ArmPose) / sizeof(float);
   using Row = std::array<float, n>;
@@ -100,8 +101,9 @@ ArmPose limit_arm(const ArmPose& arm) {
 }
 
 GestureMotion tick_gesture(GestureState& state, const GestureLibrary& library,
-                           const GestureOrder& order, const std::array<ArmPose, 2>& rest,
-                           float dt) {
+                           const GestureOrder& order, const std::array<ArmPose, 2>& rest, float dt,
+                           const std::array<float, 2>& free) {
+  state.free = free;
   if (order.clip >= 0 && size_t(order.clip) < library.clips.size())
     begin(state, library, order, rest);
   if (state.clip >= 0) state.time += dt;

@@ -26,17 +26,22 @@ struct GestureState {
   float time = 0;            // since the clip began; negative: it waits for its word
   float size = 1, hold = 0;  // hold: seconds added to the held moment
   bool mirrored = false;
+  std::array<float, 2> free{1, 1};  // as last told
   // What earlier motions left, one spring a channel of GestureMotion; at rest when `blending` is
   // false.
   std::array<Spring, gesture_channels> left_over;
   bool blending = false;
 };
 
-// Advances the running clip by dt after taking `order`. `rest` are the arms without any gesture.
-// The arms of the answer are final, `weight` says how much of them is gesture, 0..1.
+// Advances the running clip by dt after taking `order`. `rest` are the arms without any gesture,
+// `free` says how far each may leave it, 0..1. The arms of the answer are final, `weight` says how
+// much of them is gesture, 0..1.
 GestureMotion tick_gesture(GestureState& state, const GestureLibrary& library,
-                           const GestureOrder& order, const std::array<ArmPose, 2>& rest, float dt);
+                           const GestureOrder& order, const std::array<ArmPose, 2>& rest, float dt,
+                           const std::array<float, 2>& free = {1, 1});
 
+// Left for right.
+void swap_sides(GestureMotion& motion);
 ArmPose mix(const ArmPose& a, const ArmPose& b, float t);
 // Within what human arms can do (American Academy of Orthopaedic Surgeons' normal ranges).
 ArmPose limit_arm(const ArmPose& arm);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "avatar/body/body.h"
+#include "avatar/body/grip.h"
 #include "avatar/face/expression_rules.h"
 #include "avatar/figure/joint_constraints.h"
 
@@ -124,8 +125,9 @@ Emotions emotions_of(const StoryCue& story) {
   return emotions;
 }
 
-// The arms without any gesture.
-std::array<ArmPose, 2> arms_at_rest(const Rig& rig, const IdleMotion& idle, float folded) {
+// The arms without any gesture; one of them may hold something.
+std::array<ArmPose, 2> arms_at_rest(const Rig& rig, const IdleMotion& idle, float folded,
+                                    size_t holding_side, const HoldingArm& holding) {
   std::array<ArmPose, 2> rest;
   for (size_t i = 0; i < 2; i++) {
     rest[i] = mix(hanging_arm(rig.arm[i].spread), folded_arm(int(i)), folded);
@@ -134,6 +136,7 @@ std::array<ArmPose, 2> arms_at_rest(const Rig& rig, const IdleMotion& idle, floa
     rest[i].elbow += idle.arm[i].z;
     rest[i].curl += idle.curl[i];
   }
+  rest[holding_side] = mix(rest[holding_side], holding.arm, holding.weight);
   return rest;
 }
 
@@ -182,10 +185,15 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   const GestureLibrary& library = storyteller.gestures ? *storyteller.gestures : default_gestures();
   GestureOrder order = choose_gesture(state.body_language, state.gesture, library, here, events,
                                       state.mood, to_here, state.rng, now);
+  tick_hold(state.hold, library, input.story.held, dt);
+  keep_to_free_arm(order, library, state.hold);
+  const HoldingArm holding = eval_hold(state.hold, library);
+  const size_t holding_side = size_t(state.hold.held.side);
   int clip = order.clip >= 0 ? order.clip : state.gesture.clip;
   bool hands_busy =
-      clip >= 0 && size_t(clip) < library.clips.size() &&
-      (library.clips[size_t(clip)].uses_arm[0] || library.clips[size_t(clip)].uses_arm[1]);
+      state.hold.clip >= 0 ||
+      (clip >= 0 && size_t(clip) < library.clips.size() &&
+       (library.clips[size_t(clip)].uses_arm[0] || library.clips[size_t(clip)].uses_arm[1]));
   bool noise = input.humanlike && seen;
   if (noise) state.work.body_noise++;
   IdleMotion idle =
@@ -202,8 +210,11 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   tick_bow(state.bow, guest ? std::optional(guest->head) : std::nullopt,
            eyes_origin(rig, state.stance.heading.value), dt);
   const float bow = state.bow.share.value;
-  GestureMotion gesture = tick_gesture(state.gesture, library, order,
-                                       arms_at_rest(rig, idle, state.idle.fold.value), dt);
+  std::array<float, 2> free{1, 1};
+  free[holding_side] = 1 - holding.weight;
+  const std::array<ArmPose, 2> rest =
+      arms_at_rest(rig, idle, state.idle.fold.value, holding_side, holding);
+  GestureMotion gesture = tick_gesture(state.gesture, library, order, rest, dt, free);
   bool points =
       gesture.finger_aim[0] + gesture.finger_aim[1] + gesture.palm_aim[0] + gesture.palm_aim[1] > 0;
   vec3 point = tick_point(state, input, to_here, points, dt);
@@ -274,6 +285,17 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
     tick_spring_bones(state.springs, character, dt, pose);
     state.work.springs++;
   }
+}
+
+std::optional<mat4> eval_grip(const StorytellerState& state, const Storyteller& storyteller,
+                              const Pose& pose) {
+  const Rig* rig = state.rig.get();
+  if (state.hold.clip < 0 || !rig || rig->character != storyteller.character ||
+      pose.rotations.size() != rig->joints)
+    return std::nullopt;
+  std::optional<mat4> grip = eval_grip(*rig, pose, state.hold.held.side);
+  if (grip) *grip = storyteller.placement * *grip;
+  return grip;
 }
 
 vec3 eval_mouth(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose) {

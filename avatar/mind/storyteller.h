@@ -13,6 +13,7 @@
 #include "avatar/face/face.h"
 #include "avatar/mind/gaze.h"
 #include "avatar/body/gesture.h"
+#include "avatar/body/hold.h"
 #include "avatar/body/idle.h"
 #include "avatar/mind/mirror.h"
 #include "avatar/figure/spring_bones.h"
@@ -41,6 +42,7 @@ struct StorytellerState {
   BlinkState blink;
   IdleState idle;
   GestureState gesture;
+  HoldState hold;
   BodyLanguageState body_language;
   StanceState stance;
   BowState bow;
@@ -56,6 +58,11 @@ struct StorytellerState {
 // One tick: notices, decides, moves. Overwrites `pose` and `events`. Never fails.
 void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
                       const StorytellerInput& input, Pose& pose, StorytellerEvents& events);
+
+// Where its hand holds what `state.hold` says: from the fist's frame (avatar/body/grip.h) to the
+// world, as posed now. Nothing while nothing is held, or for a figure without that hand.
+std::optional<mat4> eval_grip(const StorytellerState& state, const Storyteller& storyteller,
+                              const Pose& pose);
 
 // Where its voice comes from as posed now, world coordinates.
 vec3 eval_mouth(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose);

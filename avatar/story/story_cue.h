@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "avatar/body/hold.h"
 #include "base/vec.h"
 
 namespace wellspring {
@@ -17,6 +18,7 @@ struct StoryCue {
   std::optional<vec3> look;  // instead of the guest
   std::optional<vec3>
       point;  // held out at by the hand that is nearer; look too, unless told otherwise
+  HeldThing held;
   // Begins in this tick.
   std::string gesture;       // name of the library; empty: none begins
   float gesture_weight = 1;  // 0..1, how large

@@ -208,6 +208,9 @@ struct Builder {
       std::string at = need(piece, "at");
       bool none = at == "visitor" || at == "nothing";
       paragraph.marks.push_back(mark_of(piece, kind, none ? "" : at));
+    } else if (name == "hold") {
+      std::string prop = need(piece, "name");
+      paragraph.marks.push_back(mark_of(piece, StoryMarkKind::hold, prop == "nothing" ? "" : prop));
     } else if (name == "view") {
       paragraph.marks.push_back(mark_of(piece, StoryMarkKind::view, need(piece, "name")));
     } else if (name == "mark") {

@@ -16,12 +16,12 @@ namespace wellspring {
 
 struct Speech;
 
-enum class StoryMarkKind : uint8_t { emotion, gesture, look, point, view, beat, mark };
+enum class StoryMarkKind : uint8_t { emotion, gesture, look, point, hold, view, beat, mark };
 
 struct StoryMark {
   StoryMarkKind kind = StoryMarkKind::mark;
   uint32_t at = 0;   // byte of StoryLine::text that it stands before; its size: after the last word
-  std::string name;  // emotion, gesture, object, viewpoint or mark; empty: back to none
+  std::string name;  // emotion, gesture, object, prop, viewpoint or mark; empty: back to none
   float weight = 1;  // 0..1
   MarkupPlace place;  // in the file
 };

@@ -32,6 +32,7 @@ double lead_of(const StoryMark& mark) {
     }
     case StoryMarkKind::point: return point_lead;
     case StoryMarkKind::look: return look_lead;
+    case StoryMarkKind::hold: return mark.name.empty() ? 0 : hold_lead;
     default: return 0;
   }
 }
@@ -72,6 +73,7 @@ void hold(StoryHold& held, const ActionEvent& event) {
       held.point = event.name;
       if (!event.name.empty()) held.look = event.name;
       break;
+    case StoryMarkKind::hold: held.prop = event.name; break;
     default: break;
   }
 }

@@ -31,7 +31,7 @@ struct Timeline {
 
 // Hands and eyes need a moment: the stroke of a gesture is to meet the word (its clip says when
 // that is).
-inline constexpr double point_lead = 0.5, look_lead = 0.25, earliest_action = -0.2;
+inline constexpr double point_lead = 0.5, look_lead = 0.25, hold_lead = 1, earliest_action = -0.2;
 
 // `speech` gives the times of words; without one, `seconds` are shared out by characters.
 Timeline make_timeline(const StoryLine& line, const Speech* speech, double seconds);
@@ -46,6 +46,7 @@ struct StoryHold {
   std::string emotion;
   float emotion_weight = 0;
   std::string look, point;  // names; empty: the visitor, nothing
+  std::string prop;         // what a hand holds; empty: nothing
 };
 void hold(StoryHold& held, const ActionEvent& event);
 // What holds before line `index`, had all lines before it been told.

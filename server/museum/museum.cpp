@@ -17,7 +17,7 @@
 #include "museum/heartbeat.h"
 #include "museum/reception.h"
 #include "show/answer/come_back.h"
-#include "show/exhibit/check_scene.h"
+#include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/house/house_file.h"
 #include "show/state/make_show.h"

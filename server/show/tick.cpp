@@ -219,6 +219,8 @@ void behave(Show& show, Teller& teller, float dt) {
   input.viewer_distance = viewer_distance(show, teller);
   StorytellerEvents events;
   tick_storyteller(teller.mind, teller.storyteller, input, teller.pose, events);
+  advance_held(show.exhibit, teller.storyteller, teller.mind, teller.pose, teller.visible, dt,
+               teller.held);
   greet_or_part(show, teller, events);
 
   bool message_due =
@@ -231,11 +233,12 @@ void behave(Show& show, Teller& teller, float dt) {
     if (visitor.welcomed && &teller_of(show, visitor) == &teller) visitor.link->send_text(message);
 }
 
-// A visitor's own does nothing while it is silent and not to be seen; nor does the house's while
-// nobody shares it.
+// A visitor's own does nothing while it is silent, holds nothing and is not to be seen; nor does
+// the house's while nobody shares it.
 bool is_noticed(const Show& show, const Teller& teller) {
   if (&teller == &show.teller && connected_cameras(show) > 0) return true;
-  const bool news = !teller.voice.queue.empty() || teller.agent_sent_at < 0;
+  const bool news =
+      !teller.voice.queue.empty() || teller.agent_sent_at < 0 || teller.held.prop >= 0;
   return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
     if (&teller_of(show, visitor) != &teller) return false;
     return &teller == &show.teller || news || sees_figure(show, teller, visitor.place.last_view);

@@ -5,9 +5,11 @@
 <p><look at="visitor"/>Königin Adela wurde genau in <gesture name="open_arms"/>diesem Saal gekrönt, am kürzesten Tag des Winters.
 <emotion name="sadness" weight="0.4"/>Acht Steine sollte der Goldschmied fassen, doch unterwegs wurde ihm einer <emphasis>gestohlen</emphasis>.
 <emotion name="fear" weight="0.6"/>Er hatte solche Angst, dass er nicht schlafen konnte.
-<prosody volume="soft" rate="92%">Um Mitternacht <gesture name="hush" weight="0.7"/>schlich er hier herein, schnitt ein kleines Stück aus dem Fenster</prosody> und setzte es ins Gold.</p>
+<prosody volume="soft" rate="92%">Um Mitternacht <hold name="torch"/>nahm er eine Fackel von der Wand und <gesture name="hush" weight="0.7"/>schlich hier herein, <look at="paintings"/>vorbei an all diesen Gesichtern.</prosody>
+Die Flamme <look at="visitor"/>zitterte in seiner Hand, und mit ihr zitterten alle Schatten.
+<prosody volume="soft" rate="92%">So schnitt er ein <gesture name="small" weight="0.8"/>kleines Stück aus dem Fenster</prosody> und setzte es ins Gold.</p>
 
-<p><emotion name="surprise" weight="0.4"/>Am Morgen hielt der ganze Hof den Atem an.
+<p><emotion name="surprise" weight="0.4"/>Am Morgen <hold name="nothing"/>hielt der ganze Hof den Atem an.
 <break time="400ms"/><emotion name="joy" weight="0.7"/>Dann kam die <gesture name="wonder"/>Sonne herein, und die Steine glühten: <break time="150ms"/>rot <break time="150ms"/>und blau <break time="150ms"/>und grün.
 <look at="crown"/><prosody rate="85%">Und der achte leuchtete klar wie Wasser.</prosody></p>
 

@@ -5,9 +5,11 @@
 <p><look at="visitor"/>Kráľovnú Adelu korunovali práve v <gesture name="open_arms"/>tejto sále, v najkratší zimný deň.
 <emotion name="sadness" weight="0.4"/>Zlatník do nej mal vsadiť osem kameňov, no jeden mu cestou <emphasis>ukradli</emphasis>.
 <emotion name="fear" weight="0.6"/>Tak sa bál, že nemohol spať.
-<prosody volume="soft" rate="92%">O polnoci sa sem <gesture name="hush" weight="0.7"/>vkradol, vyrezal z okna malý kúsok skla</prosody> a vsadil ho do zlata.</p>
+<prosody volume="soft" rate="92%">O polnoci <hold name="torch"/>vzal zo steny fakľu a <gesture name="hush" weight="0.7"/>vkradol sa sem, <look at="paintings"/>popri všetkých týchto tvárach.</prosody>
+Plameň <look at="visitor"/>sa mu v ruke triasol a s ním sa triasli všetky tiene.
+<prosody volume="soft" rate="92%">Tak vyrezal z okna <gesture name="small" weight="0.8"/>malý kúsok skla</prosody> a vsadil ho do zlata.</p>
 
-<p><emotion name="surprise" weight="0.4"/>Ráno celý dvor zatajil dych.
+<p><emotion name="surprise" weight="0.4"/>Ráno <hold name="nothing"/>celý dvor zatajil dych.
 <break time="400ms"/><emotion name="joy" weight="0.7"/>Potom dnu zasvietilo <gesture name="wonder"/>slnko a kamene sa rozžiarili: <break time="150ms"/>načerveno, <break time="150ms"/>namodro <break time="150ms"/>a nazeleno.
 <look at="crown"/><prosody rate="85%">A ten ôsmy sa trblietal ako voda.</prosody></p>
 

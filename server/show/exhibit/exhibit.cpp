@@ -75,6 +75,12 @@ int find_lamp(const Exhibit& exhibit, std::string_view id) {
   return -1;
 }
 
+int find_prop(const Exhibit& exhibit, std::string_view id) {
+  for (size_t i = 0; i < exhibit.props.size(); i++)
+    if (exhibit.props[i].id == id) return int(i);
+  return -1;
+}
+
 const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id) {
   for (const PointOfInterest& point : exhibit.points)
     if (point.id == id) return &point;
@@ -99,6 +105,10 @@ std::string unknown_viewpoint(const Exhibit& exhibit, const std::string& name) {
 std::string unknown_storyteller(const Exhibit& exhibit, const std::string& id) {
   return nothing_called("storyteller", id, exhibit.storytellers,
                         [](const StorytellerPlace& one) { return one.id; });
+}
+
+std::string unknown_prop(const Exhibit& exhibit, const std::string& id) {
+  return nothing_called("prop", id, exhibit.props, [](const ExhibitProp& one) { return one.id; });
 }
 
 std::string unknown_object(const Exhibit& exhibit, const std::string& id) {

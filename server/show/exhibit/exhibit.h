@@ -109,6 +109,17 @@ struct PointOfInterest {
   } door;                            // to another exhibit; empty exhibit: it leads nowhere
 };
 
+// A thing that a storyteller can hold.
+struct ExhibitProp {
+  std::string id, file;
+  int side = 1;                     // of the hand that holds it: 0 left, 1 right
+  std::string gesture = "hold_up";  // how the arm holds it: of the gesture library
+  mat4 to_fist{1};                  // from the file's metres to the fist's (avatar/body/grip.h)
+  Flicker flicker;                  // of its lights
+  Scene scene;                      // of the file
+};
+inline constexpr size_t most_props = 16;
+
 // What visitors may ask the storyteller, and what the curator wants said.
 struct AnsweredQuestion {
   std::vector<LocalText> question;  // ways to ask it, one or more; the first is offered
@@ -197,6 +208,7 @@ struct Exhibit {
   int start = 0;
   std::vector<StorytellerPlace> storytellers;  // one is there at a time, the first to begin with
   bool shared_storyteller = false;             // there is one for all visitors
+  std::vector<ExhibitProp> props;
   std::vector<TourPlan> tours;
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
@@ -217,11 +229,13 @@ struct Exhibit {
 int find_viewpoint(const Exhibit& exhibit, std::string_view name);  // -1: none
 int find_storyteller(const Exhibit& exhibit, std::string_view id);  // likewise
 int find_lamp(const Exhibit& exhibit, std::string_view id);         // likewise
+int find_prop(const Exhibit& exhibit, std::string_view id);         // likewise
 const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id);
 
 // That there is none of that name, and which was perhaps meant.
 std::string unknown_viewpoint(const Exhibit& exhibit, const std::string& name);
 std::string unknown_storyteller(const Exhibit& exhibit, const std::string& id);
+std::string unknown_prop(const Exhibit& exhibit, const std::string& id);
 std::string unknown_object(const Exhibit& exhibit, const std::string& id);
 
 }  // namespace wellspring

@@ -52,12 +52,6 @@ PunctualLight read_new_light(const Exhibit& exhibit, Fields& fields) {
   return light;
 }
 
-void read_flicker(ChangingLight& light, Fields fields) {
-  light.flicker.depth = float(fields.number("depth", false, 0.3, 0, 1));
-  light.flicker.hz = float(fields.number("hz", false, 4, 0.1, most_turns));
-  fields.finish();
-}
-
 // What a key leaves out is as in the one before, in the first as in the light itself.
 void read_key(const Exhibit& exhibit, ChangingLight& light, Fields fields) {
   const bool first = light.track.empty();
@@ -146,7 +140,7 @@ void read_light(Exhibit& exhibit, Fields fields) {
   for (const ChangingLight& other : exhibit.lights)
     if (!light.name.empty() && other.name == light.name)
       fields.problem("name", "'" + light.name + "' is taken by another light");
-  fields.object("flicker", false, [&](Fields flicker) { read_flicker(light, std::move(flicker)); });
+  light.flicker = read_flicker(fields);
   read_track(exhibit, light, fields);
   if (!fields.has("flicker") && !fields.has("track"))
     fields.problem("",
@@ -211,6 +205,16 @@ void set_day(const DaySettings& settings, int lamp, int light, Exhibit& exhibit)
   exhibit.day->sun_lamp = int(scene.lamps.size());
   std::erase(scene.lamps[size_t(lamp)].lights, light);
   scene.lamps.push_back({scene.lamps[size_t(lamp)].name + ": sun", {light}, {}});
+}
+
+Flicker read_flicker(Fields& fields) {
+  Flicker flicker;
+  fields.object("flicker", false, [&](Fields said) {
+    flicker.depth = float(said.number("depth", false, 0.3, 0, 1));
+    flicker.hz = float(said.number("hz", false, 4, 0.1, most_turns));
+    said.finish();
+  });
+  return flicker;
 }
 
 void read_lights(Exhibit& exhibit, Fields& root) {

@@ -6,6 +6,9 @@
 
 namespace wellspring {
 
+// What the object "flicker" says; nothing: the light is steady.
+Flicker read_flicker(Fields& fields);
+
 // Fills exhibit.lights; what of them are lights of the scene stay there. Call when lamps are read.
 void read_lights(Exhibit& exhibit, Fields& root);
 

@@ -17,6 +17,7 @@
 #include "show/exhibit/exhibit_light.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "show/exhibit/exhibit_objects.h"
+#include "show/exhibit/exhibit_props.h"
 #include "show/exhibit/exhibit_questions.h"
 #include "show/exhibit/exhibit_story.h"
 #include "show/exhibit/json_fields.h"
@@ -239,6 +240,7 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
     root.problem("viewpoints", "there is no viewpoint here and no camera in the scene");
   exhibit.start = read_viewpoint_name(exhibit, root, "start", false);
   read_storytellers(exhibit, root, problems);
+  read_props(exhibit, root, problems);
   read_kiosks(exhibit, root);
   read_tours_and_stories(exhibit, root, problems);
   read_objects(exhibit, root);

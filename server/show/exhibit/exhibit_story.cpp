@@ -114,6 +114,8 @@ struct Checker {
     bool object = mark.kind == StoryMarkKind::look || mark.kind == StoryMarkKind::point;
     if (object && !find_point(exhibit, mark.name))
       note(line, mark.place, unknown_object(exhibit, mark.name));
+    if (mark.kind == StoryMarkKind::hold && find_prop(exhibit, mark.name) < 0)
+      note(line, mark.place, unknown_prop(exhibit, mark.name));
     if (mark.kind == StoryMarkKind::view && find_viewpoint(exhibit, mark.name) < 0)
       note(line, mark.place, unknown_viewpoint(exhibit, mark.name));
     if (mark.kind == StoryMarkKind::emotion) check_emotion(line, mark);

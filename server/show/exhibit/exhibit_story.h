@@ -19,8 +19,8 @@ LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name,
 
 VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& otherwise);
 
-// After everything is read: whether emotions, gestures, objects and viewpoints of all marks are
-// there, and languages have as many sentences as each other. What is not is not fatal.
+// After everything is read: whether emotions, gestures, objects, props and viewpoints of all marks
+// are there, and languages have as many sentences as each other. What is not is not fatal.
 void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems);
 
 }  // namespace wellspring

@@ -9,6 +9,7 @@
 #include "avatar/load/vrm_extension.h"
 #include "world/load/gltf_image.h"
 #include "world/load/gltf_material.h"
+#include "world/load/scene_join.h"
 #include "world/mesh_finish.h"
 
 namespace wellspring {
@@ -76,20 +77,7 @@ int add_file_materials(Scene& scene, const std::string& path) {
   for (const std::string& warning : file.warnings)
     if (warning.rfind("/images", 0) == 0 || warning.rfind("/textures", 0) == 0)
       scene.warnings.push_back(path + ": " + warning);
-  int first_image = int(scene.images.size()), first_texture = int(scene.textures.size());
-  int first_material = int(scene.materials.size());
-  for (Image& image : own.images) scene.images.push_back(std::move(image));
-  for (Texture& texture : own.textures) {
-    if (texture.image >= 0) texture.image += first_image;
-    scene.textures.push_back(texture);
-  }
-  for (Material& material : own.materials) {
-    each_texture(material, [&](TextureRef& use) {
-      if (use.texture >= 0) use.texture += first_texture;
-    });
-    scene.materials.push_back(std::move(material));
-  }
-  return first_material;
+  return add_materials(scene, own);
 }
 
 // Cartoon shading has no gloss; its colours are those of a Lambertian surface.

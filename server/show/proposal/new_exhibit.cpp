@@ -12,7 +12,7 @@
 #include "show/exhibit/exhibit_light.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/proposal/propose_views.h"
-#include "show/exhibit/scene_scale.h"
+#include "show/check/scene_scale.h"
 #include "world/load/scene_files.h"
 #include "world/load/scene_join.h"
 #include "world/load/scene_load.h"

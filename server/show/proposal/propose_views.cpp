@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "show/exhibit/check_scene.h"
+#include "show/check/check_scene.h"
 #include "world/fit_view.h"
 #include "world/view.h"
 

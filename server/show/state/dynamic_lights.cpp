@@ -23,6 +23,7 @@ void add_changing(const Show& show, const LampLevels& lit, double time, DynamicL
 
 DynamicLights dynamic_lights_of(const Show& show, const Visitor& visitor, double time) {
   DynamicLights lights;
+  add_held_lights(show.exhibit, teller_of(show, visitor).held, time, first_carried, lights);
   // Lamps and hour as pictures show them, which follow what is wanted.
   const VisitorLamps& now = visitor.lamps;
   const std::optional<Day>& day = show.exhibit.day;

@@ -104,14 +104,15 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   std::vector<uint32_t> moving_object;
   for (const StorytellerPlace& place : show->exhibit.storytellers)
     show->figures.push_back(make_figure(place.character, scene, moving, moving_object));
+  for (const ExhibitProp& prop : show->exhibit.props)
+    show->props.push_back(make_prop(prop, scene, moving, moving_object));
   show->movers = make_movers(show->exhibit, moving, moving_object);
   show->plays.resize(show->exhibit.animations.size());
   show->world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
   show->skin = make_skin_light(*show->world);
-  if (!show->figures.empty()) {
-    enter(*show, show->teller);
+  if (!show->figures.empty()) enter(*show, show->teller);
+  if (!show->figures.empty() || !show->props.empty())
     pose_world(*show, show->teller, show->movers.posed);
-  }
   std::vector<Problem> problems;
   show->roads = make_tour_roads(show->exhibit, *show->world, problems);
   if (!problems.empty()) throw ExhibitError(std::move(problems));

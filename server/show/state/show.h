@@ -19,6 +19,7 @@
 #include "show/moving/figure.h"
 #include "show/exhibit/problem.h"
 #include "show/moving/movers.h"
+#include "show/moving/prop.h"
 #include "show/house/announcement.h"
 #include "show/house/house.h"
 #include "show/questions/question_index.h"
@@ -115,6 +116,7 @@ struct Show {
   const Technique* still_technique = nullptr;
 
   std::vector<Figure> figures;  // of all the exhibit's storytellers; hidden but for one
+  std::vector<Prop> props;      // of each of Exhibit::props; hidden but for what is held
   Teller teller;            // of the house: kiosks' and those visitors' who have none of their own
   Movers movers;            // of the exhibit's animations
   std::vector<Play> plays;  // of each animation: the house's, and the shared ones

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "avatar/mind/storyteller.h"
+#include "show/storyteller/held_prop.h"
 #include "show/storyteller/sounding.h"
 #include "show/storyteller/voice.h"
 
@@ -20,6 +21,7 @@ struct Teller {
   Pose pose;
   Voice voice;
   Sounding sounding;
+  HeldProp held;
   bool visible = true, humanlike = true;
   double agent_sent_at = -1e9;  // show time of the last agent message
   Mood agent_mood = Mood::idle;

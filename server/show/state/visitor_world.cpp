@@ -7,10 +7,13 @@
 namespace wellspring {
 
 void pose_world(Show& show, const Teller& teller, const std::vector<double>& times) {
-  const bool moved = pose_movers(show.exhibit, times, show.movers, *show.world);
+  bool moved = pose_movers(show.exhibit, times, show.movers, *show.world);
   show.posed_as = &teller;
   for (size_t i = 0; i < show.figures.size(); i++)
     show_figure(*show.world, show.figures[i], i == teller.index && teller.visible);
+  for (size_t i = 0; i < show.props.size(); i++)
+    moved |= pose_prop(*show.world, show.props[i],
+                       pose_of(show.exhibit, teller.held, int(i), show.time));
   if (show.figures.empty() && !moved) return;
   if (teller.visible && !show.figures.empty())
     pose_figure(*show.world, show.figures[teller.index], storyteller_of(show, teller)->character,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "light/technique/technique.h"
 #include "show/moving/figure.h"
@@ -77,6 +78,14 @@ Frame render_portrait(const Character& character, const Pose& pose, const Portra
   skin(character, pose, mat4(1), scratch, positions, normals);
   vec3 low(INFINITY), high(-INFINITY);
   for (vec3 p : positions) low = glm::min(low, p), high = glm::max(high, p);
+  if (shot.exhibit && shot.held.prop >= 0) {
+    const ExhibitProp& prop = shot.exhibit->props[size_t(shot.held.prop)];
+    for (const Instance& instance : prop.scene.instances)
+      for (vec3 p : prop.scene.meshes[size_t(instance.mesh)].positions) {
+        p = vec3(shot.held.to_world * prop.to_fist * instance.to_world * vec4(p, 1));
+        low = glm::min(low, p), high = glm::max(high, p);
+      }
+  }
   if (positions.empty()) low = vec3(-0.5f, 0, -0.5f), high = vec3(0.5f, 1.8f, 0.5f);
   float height = std::max({high.y - low.y, high.x - low.x, 0.05f});
 
@@ -119,9 +128,17 @@ Frame render_portrait(const Character& character, const Pose& pose, const Portra
   std::vector<Mesh> moving;
   std::vector<uint32_t> objects;
   Figure figure = make_figure(character, scene, moving, objects);
+  std::optional<Prop> prop;
+  if (shot.exhibit && shot.held.prop >= 0) {
+    prop = make_prop(shot.exhibit->props[size_t(shot.held.prop)], scene, moving, objects);
+    DynamicLights lights;
+    add_held_lights(*shot.exhibit, shot.held, 0, 0, lights);
+    for (const DynamicLight& one : lights) scene.lights.push_back(one.light);
+  }
   warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
   World world(scene, std::move(moving), std::move(objects));
   pose_figure(world, figure, character, pose, mat4(1), scratch);
+  if (prop) pose_prop(world, *prop, pose_of(*shot.exhibit, shot.held, shot.held.prop, 0));
   world.commit();
   Lights lights = make_lights(world);
   View view = make_view_towards(scene, dvec3(eye), dvec3(centre), vec3(0, 1, 0), fov, shot.width,

@@ -5,6 +5,7 @@
 #include "avatar/figure/character.h"
 #include "avatar/figure/pose.h"
 #include "frame/frame.h"
+#include "show/storyteller/held_prop.h"
 
 namespace wellspring {
 
@@ -13,6 +14,9 @@ struct PortraitShot {
   bool close = false;  // head and shoulders instead of the whole figure
   float turn =
       0;  // camera's way round the figure, radians; 0: before its face, positive: to its left
+  // What it holds, in humanoid space, of an exhibit's props; null: nothing.
+  const Exhibit* exhibit = nullptr;
+  HeldProp held;
 };
 
 // All cores; seconds. Pictures of the figure that cannot be read are named in `warnings`.

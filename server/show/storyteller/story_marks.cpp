@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "show/storyteller/held_prop.h"
+
 namespace wellspring {
 
 namespace {
@@ -29,6 +31,7 @@ StoryCue make_cue(const Exhibit& exhibit, const Voice& voice, const VoiceEvents&
   cue.emotion_weight = voice.held.emotion_weight;
   cue.look = place_of(exhibit, voice.held.look);
   cue.point = place_of(exhibit, voice.held.point);
+  cue.held = find_held_thing(exhibit, voice.held.prop);
   if (!voice.story.empty()) cue.seed = seed_of(voice.story);
   for (const ActionEvent& act : events.acts) {
     if (act.kind == StoryMarkKind::gesture) {

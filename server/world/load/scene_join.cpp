@@ -48,15 +48,23 @@ void place_scene(Scene& scene, const ScenePlace& place) {
   }
 }
 
-void join_scene(Scene& into, Scene part) {
-  const vec3 offset = vec3(part.origin - into.origin);
+int add_materials(Scene& into, Scene& part) {
   const size_t images = into.images.size(), textures = into.textures.size(),
-               materials = into.materials.size(), meshes = into.meshes.size(),
-               objects = into.objects.size(), nodes = into.nodes.size(),
-               instances = into.instances.size();
+               materials = into.materials.size();
   for (Texture& texture : part.textures) shift(texture.image, images);
   for (Material& material : part.materials)
     each_texture(material, [&](TextureRef& use) { shift(use.texture, textures); });
+  append(into.images, part.images);
+  append(into.textures, part.textures);
+  append(into.materials, part.materials);
+  return int(materials);
+}
+
+void join_scene(Scene& into, Scene part) {
+  const vec3 offset = vec3(part.origin - into.origin);
+  const size_t meshes = into.meshes.size(), objects = into.objects.size(),
+               nodes = into.nodes.size(), instances = into.instances.size();
+  const size_t materials = size_t(add_materials(into, part));
   for (Mesh& mesh : part.meshes) shift(mesh.material, materials);
   for (Instance& instance : part.instances) {
     shift(instance.mesh, meshes);
@@ -69,9 +77,6 @@ void join_scene(Scene& into, Scene part) {
   for (PunctualLight& light : part.lights) light.position += offset;
   for (PlacedMotion& motion : part.motions)
     for (int& instance : motion.instances) shift(instance, instances);
-  append(into.images, part.images);
-  append(into.textures, part.textures);
-  append(into.materials, part.materials);
   append(into.meshes, part.meshes);
   append(into.instances, part.instances);
   append(into.objects, part.objects);

@@ -21,6 +21,9 @@ void place_scene(Scene& scene, const ScenePlace& place);
 // Adds all of `part`, nodes and names included; the environment stays that of `into`.
 void join_scene(Scene& into, Scene part);
 
+// Adds the materials of `part` with their textures and pictures; where the first of them is.
+int add_materials(Scene& into, Scene& part);
+
 // Multiplies punctual lights and what materials emit.
 void scale_light(Scene& scene, float factor);
 

@@ -25,7 +25,7 @@ TEST(GestureLibrary, HasTheWordsOfBodyLanguage) {
         "nod",         "shake_head",   "shrug",       "explain",   "large",        "small",
         "heart",       "wonder",       "hush",        "beckon",    "present_left", "present_right",
         "clap",        "hands_folded", "look_around", "laugh",     "sigh",         "open_arms",
-        "emphasize",   "stop"})
+        "emphasize",   "stop",         "hold_up"})
     EXPECT_GE(find_gesture(name), 0) << name;
   EXPECT_EQ(find_gesture("no such gesture"), -1);
   for (const GestureClip& clip : library.clips) {

@@ -50,6 +50,22 @@ TEST(Timeline, MarksComeWithTheirWords) {
   EXPECT_NEAR(look.time + double(look.event.lead), speech.words.back().end, 1e-6);
 }
 
+TEST(Timeline, WhatIsHeldIsThereWithItsWordAndUntilItIsPutAway) {
+  std::vector<StoryLine> lines =
+      read_story("One two three <hold name='torch'/>four. Five. <hold name='nothing'/>Six.", "a")
+          .lines;
+  ASSERT_EQ(lines.size(), 3u);
+  Timeline timeline = make_timeline(lines[0], nullptr, 10);
+  ASSERT_EQ(timeline.actions.size(), 1u);
+  EXPECT_EQ(timeline.actions[0].event.kind, StoryMarkKind::hold);
+  EXPECT_NEAR(timeline.actions[0].event.lead, hold_lead, 1e-6);
+  EXPECT_EQ(hold_before(lines, 0).prop, "");
+  EXPECT_EQ(hold_before(lines, 1).prop, "torch");
+  EXPECT_EQ(hold_before(lines, 2).prop, "torch") << "longer than a sentence";
+  EXPECT_EQ(hold_before(lines, 3).prop, "");
+  EXPECT_THROW(read_story("One <hold/>two.", "a"), LoadError);
+}
+
 TEST(Timeline, EventsDoNotDependOnTheStep) {
   StoryLine line =
       read_story_line("<gesture name='a'/>One <gesture name='b'/>two <gesture name='c'/>three.",

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "show/exhibit/check_scene.h"
+#include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
 #include "unit/folder.h"
 #include "unit/world/load/asset.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What check says of places, size and light.
-#include "show/exhibit/check_scene.h"
+#include "show/check/check_scene.h"
 
 #include <gtest/gtest.h>
 
 #include "show/exhibit/exhibit_light.h"
-#include "show/exhibit/scene_scale.h"
+#include "show/check/scene_scale.h"
 #include "unit/show/exhibit/room_package.h"
 #include "unit/show/tiny_exhibit.h"
 

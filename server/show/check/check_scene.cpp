@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/check_scene.h"
+#include "show/check/check_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "base/near_name.h"
 #include "show/exhibit/exhibit_light.h"
-#include "show/exhibit/scene_scale.h"
+#include "show/check/scene_scale.h"
 #include "world/view.h"
 
 namespace wellspring {

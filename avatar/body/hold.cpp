@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "avatar/body/hold.h"
+
+#include <algorithm>
+
+namespace wellspring {
+namespace {
+
+const GestureClip* clip_of(const HoldState& state, const GestureLibrary& library) {
+  const bool known = state.clip >= 0 && size_t(state.clip) < library.clips.size();
+  return known ? &library.clips[size_t(state.clip)] : nullptr;
+}
+
+bool same(const HeldThing& a, const HeldThing& b) {
+  return a.thing == b.thing && a.gesture == b.gesture && a.side == b.side;
+}
+
+}  // namespace
+
+bool can_hold(const GestureClip& clip) {
+  const float least = clip.stroke + hold_appears;
+  return clip.hold >= least && clip.seconds - clip.hold >= least;
+}
+
+void tick_hold(HoldState& state, const GestureLibrary& library, const HeldThing& wanted, float dt) {
+  const GestureClip* clip = clip_of(state, library);
+  if (!clip) {
+    state = {};
+    if (wanted.thing < 0) return;
+    state.clip = find_gesture(library, wanted.gesture);
+    clip = clip_of(state, library);
+    if (!clip || !can_hold(*clip)) return (void)(state = {});
+    state.held = wanted;
+  }
+  state.wanted = same(state.held, wanted);
+  const float left = clip->seconds - state.time;
+  if (state.time > clip->hold) state.time += std::min(dt, left);  // on its way back
+  else if (state.wanted) state.time = std::min(state.time + dt, clip->hold);
+  else if (state.time == clip->hold) state.time += std::min(std::max(dt, 1e-4f), left);
+  else state.time = std::max(state.time - dt, 0.0f);  // it was not up yet: back the same way
+  if (state.time >= clip->seconds || (state.time <= 0 && !state.wanted)) state = {};
+}
+
+HoldingArm eval_hold(const HoldState& state, const GestureLibrary& library) {
+  HoldingArm holding;
+  const GestureClip* clip = clip_of(state, library);
+  if (!clip) return holding;
+  GestureMotion motion = eval_gesture(*clip, state.time);
+  const size_t side = size_t(state.held.side);
+  if (!clip->uses_arm[side]) swap_sides(motion);
+  holding.arm = motion.arm[side];
+  holding.weight = motion.weight[side];
+  return holding;
+}
+
+float eval_held_share(const HoldState& state, const GestureLibrary& library) {
+  const GestureClip* clip = clip_of(state, library);
+  if (!clip) return 0;
+  const float nearer_end = std::min(state.time, clip->seconds - state.time);
+  return std::clamp((nearer_end - clip->stroke) / hold_appears, 0.0f, 1.0f);
+}
+
+bool is_held_up(const HoldState& state, const GestureLibrary& library) {
+  const GestureClip* clip = clip_of(state, library);
+  return clip && state.wanted && state.time <= clip->hold && eval_held_share(state, library) >= 1;
+}
+
+void keep_to_free_arm(GestureOrder& order, const GestureLibrary& library, const HoldState& state) {
+  if (order.clip < 0 || size_t(order.clip) >= library.clips.size() || !clip_of(state, library))
+    return;
+  const GestureClip& clip = library.clips[size_t(order.clip)];
+  if (clip.uses_arm[0] == clip.uses_arm[1]) return;
+  order.mirrored = clip.uses_arm[size_t(state.held.side)];
+}
+
+}  // namespace wellspring

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Holding a thing: one arm fetches it, holds it up and brings it back, under all gestures of the
+// other. How it does so is a clip of the gesture library: at the clip's `stroke` the hand takes the
+// thing, at `hold` it holds it up, and as long before the clip's end as `stroke` is after its
+// beginning the hand lets go of it.
+#pragma once
+#include <string>
+
+#include "avatar/body/gesture.h"
+
+namespace wellspring {
+
+// What a hand is to hold.
+struct HeldThing {
+  int thing = -1;       // a number of the caller's; -1: nothing
+  std::string gesture;  // of the library
+  int side = 1;         // 0: the left hand, 1: the right one
+};
+
+struct HoldState {
+  HeldThing held;       // what is fetched, held or brought back
+  int clip = -1;        // of the library; -1: nothing
+  float time = 0;       // in the clip
+  bool wanted = false;  // as last told
+};
+
+// The thing comes and goes within so many seconds.
+inline constexpr float hold_appears = 0.3f;
+// Whether a thing can be held by that clip: there is time for it to come and to go.
+bool can_hold(const GestureClip& clip);
+
+// Advances by dt towards holding what is wanted. What is held is brought back before another thing
+// is fetched. A gesture that the library lacks, or that cannot hold, holds nothing.
+void tick_hold(HoldState& state, const GestureLibrary& library, const HeldThing& wanted, float dt);
+
+// The arm of `state.held.side`, and how far it leaves its rest for that, 0..1.
+struct HoldingArm {
+  ArmPose arm;
+  float weight = 0;
+};
+HoldingArm eval_hold(const HoldState& state, const GestureLibrary& library);
+
+// How much of the thing there is in the hand, 0..1.
+float eval_held_share(const HoldState& state, const GestureLibrary& library);
+// It is held up, and is to be for now.
+bool is_held_up(const HoldState& state, const GestureLibrary& library);
+
+// A gesture that only the busy arm would make is made by the other one.
+void keep_to_free_arm(GestureOrder& order, const GestureLibrary& library, const HoldState& state);
+
+}  // namespace wellspring
