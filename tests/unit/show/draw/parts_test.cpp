@@ -15,7 +15,7 @@ namespace {
 constexpr int width = 328, height = 184;
 
 // What a browser does with what it is sent.
-struct Browser {
+struct Canvas {
   Image8 canvas{width, height, std::vector<uint8_t>(size_t(width* height * 3))};
   size_t bytes = 0, packets = 0;
 
@@ -67,7 +67,7 @@ void fill(Image8& image, const ImagePart& part, uint8_t value) {
 struct Parts : testing::Test {
   Image8 newest = waves();
   BrowserPicture has;
-  Browser browser;
+  Canvas browser;
   PartsOrder order;
   PacketHeader header;
   Packet packet;
