@@ -14,7 +14,7 @@ ReportPage splat_page();
 // Parts of it.
 void bench_splat_error(BenchReport& report, const BenchOptions& options);
 void bench_splat_choice(BenchReport& report, const BenchOptions& options);
-void bench_splat_flicker(BenchReport& report);
+void bench_splat_flicker(BenchReport& report, const BenchOptions& options);
 
 // What every pixel of a view sees, by rays.
 struct SeenPixels {

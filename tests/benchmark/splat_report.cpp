@@ -149,7 +149,7 @@ void bench_splat(BenchReport& report, const BenchOptions& options) {
   bench_triangles(report, options);
   bench_splat_error(report, options);
   bench_splat_choice(report, options);
-  bench_splat_flicker(report);
+  bench_splat_flicker(report, options);
 }
 
 ReportPage splat_page() {
@@ -186,11 +186,13 @@ ReportPage splat_page() {
                     {"triangles_ms", "subsplats", 1, "", "subsplats"}},
         .most_rows = 6},
        {.caption = "FLIP of indirect light",
-        .rows = {{"scene", "scene"}, {"passes", "passes"}},
+        .rows =
+            {{"scene", "scene"}, {"lights", "lights"}, {"choice", "choice"}, {"passes", "passes"}},
         .columns = {{"splat.flip", "with shadows (wanted: 0.10)"},
                     {"flip_without", "without shadows (wanted: 0.08)"},
                     {"flip_left_out", "shadows left out"},
-                    {"flip_direct", "no bounce at all"}},
+                    {"flip_direct", "no bounce at all"},
+                    {"splat.flip", "the reference's own noise", 1, "", "reference_flip"}},
         .most_rows = 8},
        {.caption = "Choice of 256 virtual lights, error of one picture and flicker",
         .rows = {{"choice", "choice"}},
@@ -199,9 +201,8 @@ ReportPage splat_page() {
        {.caption = "Flicker under a light that moves, Cornell box",
         .rows = {{"technique", "technique"}},
         .columns = {{"splat.flicker", "flicker"},
-                    {"splat.flicker", "processor ms", 1, "", "processor_ms"},
-                    {"splat.flicker", "samples a pixel", 1, "", "spp"}},
-        .most_rows = 2}}};
+                    {"splat.flicker", "processor ms", 1, "", "processor_ms"}},
+        .most_rows = 3}}};
 }
 
 }  // namespace wellspring

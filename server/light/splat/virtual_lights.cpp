@@ -15,8 +15,9 @@ namespace {
 // Share of the choice that does not ask for the effect: what the probes happen not to see.
 constexpr double blind = 0.1;
 
-void clear_lights(VirtualLights& lights, size_t most) {
-  most = (most + lane_count - 1) / lane_count * lane_count;
+// Room for twice as many as are wanted in the mean.
+void clear_lights(VirtualLights& lights, size_t wanted) {
+  const size_t most = (2 * wanted + 64 + lane_count - 1) / lane_count * lane_count;
   for (RawVector<float>* column :
        {&lights.x, &lights.y, &lights.z, &lights.nx, &lights.ny, &lights.nz, &lights.red,
         &lights.green, &lights.blue, &lights.radius2})
@@ -79,7 +80,7 @@ void weigh_texels(const ReflectiveShadowMap& map, VirtualLightChoice choice,
   parallel_ranges(int(weights.size()), 256, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {
       double flux = luminous(map.texels[i]);
-      weights[i] = even ? (flux > 0 ? 1 : 0) : flux;
+      weights[i] = even ? 1 : flux;
       if (effect) weights[i] *= effect_on(probes, map.texels[i], least2);
     }
   });
@@ -92,21 +93,22 @@ void weigh_texels(const ReflectiveShadowMap& map, VirtualLightChoice choice,
   }
 }
 
-// Every so many-th of the running sum of weights: neighbours in the list are neighbours in a map,
-// so that those chosen are from everywhere.
-void choose_systematically(const ReflectiveShadowMap& map, int wanted, double start, float least2,
-                           float bound2, VirtualLights& lights) {
+// Each texel by its own weight and by a number of its own, which is the golden ratio's sequence
+// along the list: neighbours in the list are neighbours in a map, so that those chosen are from
+// everywhere, and a weight that changes changes no other choice.
+void choose_by_weight(const ReflectiveShadowMap& map, int wanted, double start, float least2,
+                      float bound2, VirtualLights& lights) {
+  constexpr double golden = 0.6180339887498949;
   double sum = 0;
   for (double w : lights.weights) sum += w;
   if (!(sum > 0)) return;
-  const double step = sum / wanted;
-  double passed = 0, next = start * step;
+  double number = start;
   for (size_t i = 0; i < map.texels.size(); i++) {
-    const double weight = lights.weights[i];
-    passed += weight;
-    int times = 0;
-    for (; next < passed; next += step) times++;
-    if (times > 0) add_light(map.texels[i], times * step / weight, least2, bound2, lights);
+    number += golden;
+    number -= number >= 1 ? 1 : 0;
+    const double often = lights.weights[i] * wanted / sum;
+    const double times = std::floor(often + number);
+    if (times > 0) add_light(map.texels[i], times / often, least2, bound2, lights);
   }
 }
 
@@ -143,7 +145,7 @@ void choose_virtual_lights(const ReflectiveShadowMap& map, const SplatSettings& 
                            SplatSeed seed, std::span<const LitProbe> probes,
                            VirtualLights& lights) {
   const int wanted = std::clamp(settings.virtual_lights, 1, most_virtual_lights);
-  clear_lights(lights, size_t(wanted) + map.maps.size());
+  clear_lights(lights, size_t(wanted));
   float least = settings.least_distance > 0 ? settings.least_distance : 0.02f * map.mean_distance;
   float least2 = std::clamp(least * least, 1e-12f, 1e12f);
   float bound = std::max(settings.bound, 0.0f);
@@ -153,7 +155,7 @@ void choose_virtual_lights(const ReflectiveShadowMap& map, const SplatSettings& 
     choose_by_sequence(map, wanted, seed, start, least2, bound * bound, lights);
   } else {
     weigh_texels(map, settings.choice, probes, least2, lights.weights);
-    choose_systematically(map, wanted, double(start), least2, bound * bound, lights);
+    choose_by_weight(map, wanted, double(start), least2, bound * bound, lights);
   }
   fill_up(lights);
 }

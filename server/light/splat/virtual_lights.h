@@ -33,8 +33,8 @@ struct LitProbe {
   vec3 position{0}, normal{0, 1, 0};
 };
 
-// Of one map and seed always the same choice; where texels change little, so does it. Fewer than
-// settings.virtual_lights where fewer texels have flux. `by_effect` without probes is `by_flux`.
+// Of one map and seed always the same choice; where texels change little, so does it. About
+// settings.virtual_lights, fewer where few texels have flux. `by_effect` without probes is `by_flux`.
 void choose_virtual_lights(const ReflectiveShadowMap& map, const SplatSettings& settings,
                            SplatSeed seed, std::span<const LitProbe> probes, VirtualLights& lights);
 
