@@ -43,7 +43,7 @@ class BusyMachine {
 };
 
 TEST(BusyMachine, PicturesCostNoMoreThanTheProcessorTimeOfAll) {
-  constexpr int width = 480, height = 270, pictures = 100, guessed = 30;
+  constexpr int width = 480, height = 270, pictures = 40, guessed = 30;
   ShowStage stage;
   stage.begin(make_tiny_exhibit(), settings_for("direct", false));
   stage.join(width, height);
