@@ -47,9 +47,8 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
   // The renderer brings a picture that it draws to the light of now.
-  state.other_light =
-      show.renderer.drawn != &visitor &&
-      (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour);
+  state.other_light = show.renderer.drawn != &visitor && (picture.lamps != visitor.lamps.lit ||
+                                                          picture.hour != visitor.lamps.lit_hour);
   state.sees_moving = state.welcomed && sees_moving(show, visitor, place.last_view);
   state.drew_moving = picture.job.moving;
   state.unshown = picture.unshown;
