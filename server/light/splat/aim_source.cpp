@@ -64,7 +64,7 @@ vec3 cube_direction(int face, vec2 u) {
   }
 }
 
-void aim_punctual(const SourceAim& aim, const MapCell& cell, vec2 u, ReflectiveShadowMap::Aim& to) {
+void aim_punctual(const SourceAim& aim, const MapCell& cell, vec2 u, SourceRay& to) {
   const PunctualLight& light = aim.source.light;
   to.ray.origin = light.position;
   to.ray.t_min = aim.source.radius;
@@ -94,8 +94,7 @@ void aim_punctual(const SourceAim& aim, const MapCell& cell, vec2 u, ReflectiveS
   to.flux *= to.spread;
 }
 
-void aim_emitters(const SourceAim& aim, const MapCell& cell, Sampler& sampler,
-                  ReflectiveShadowMap::Aim& to) {
+void aim_emitters(const SourceAim& aim, const MapCell& cell, Sampler& sampler, SourceRay& to) {
   const LightTables& tables = aim.transport.tables;
   const uint32_t count = aim.source.count;
   if (!(aim.power > 0)) return;
@@ -153,8 +152,7 @@ float window_aspect(const Transport& transport, const SplatSource& source) {
   return width > 0 && height > 0 ? glm::clamp(width / height, 0.01f, 100.0f) : 1.0f;
 }
 
-void aim_at_cell(const SourceAim& aim, const MapCell& cell, Sampler& sampler,
-                 ReflectiveShadowMap::Aim& to) {
+void aim_at_cell(const SourceAim& aim, const MapCell& cell, Sampler& sampler, SourceRay& to) {
   to = {};
   to.range = std::numeric_limits<float>::infinity();
   const EnvironmentLight& sky = aim.transport.tables.environment;

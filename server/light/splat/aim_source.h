@@ -4,7 +4,8 @@
 // cells is an unbiased estimate of the cell's.
 #pragma once
 #include "light/random/sampler.h"
-#include "light/splat/reflective_shadow_map.h"
+#include "light/splat/splat_sources.h"
+#include "world/world.h"
 
 namespace wellspring {
 
@@ -20,6 +21,12 @@ struct SourceAim {
   mutable uint32_t next = 0;
   mutable double passed = 0;
 };
+struct SourceRay {
+  Ray ray;
+  vec3 flux{0};
+  float range = 0, spread = 0;  // spread: steradians, or square metres of parallel light
+  bool parallel = false;
+};
 struct MapCell {
   int face, row, column, rows, columns, faces;
 };
@@ -29,7 +36,6 @@ SourceAim aim_source(const Transport& transport, const SplatSource& source);
 float window_aspect(const Transport& transport, const SplatSource& source);
 // Cells of one row must be asked for in ascending order. `to.flux` and `to.spread`: as if the map
 // were this cell alone.
-void aim_at_cell(const SourceAim& aim, const MapCell& cell, Sampler& sampler,
-                 ReflectiveShadowMap::Aim& to);
+void aim_at_cell(const SourceAim& aim, const MapCell& cell, Sampler& sampler, SourceRay& to);
 
 }  // namespace wellspring

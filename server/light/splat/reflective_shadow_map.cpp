@@ -88,7 +88,7 @@ void add_map(const Transport& transport, const SplatSource& source, uint32_t ind
       Sampler sampler(stream, seed.pass * added.count + number);
       map.cells[added.first + uint32_t((face * shape.rows + y) * shape.columns + x)] =
           uint32_t(map.aims.size());
-      ReflectiveShadowMap::Aim& to = map.aims.emplace_back();
+      SourceRay& to = map.aims.emplace_back();
       aim_at_cell(aim, {face, y, x, shape.rows, shape.columns, shape.faces}, sampler, to);
       to.flux *= worth;
       to.spread *= worth;
@@ -104,7 +104,7 @@ vec3 matte_reflectance(const Bsdf& bsdf) {
 }
 
 // What is there, behind panes that are looked through.
-void light_texel(const Transport& transport, const ReflectiveShadowMap::Aim& aim, Hit hit,
+void light_texel(const Transport& transport, const SourceRay& aim, Hit hit,
                  ReflectiveTexel& texel) {
   texel = {};
   Ray ray = aim.ray;

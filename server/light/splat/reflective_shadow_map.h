@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "light/splat/splat_sources.h"
+#include "light/splat/aim_source.h"
 #include "light/transport_settings.h"
 #include "world/world.h"
 
@@ -36,15 +36,9 @@ struct ReflectiveShadowMap {
   std::vector<ReflectiveTexel> texels;
   std::vector<ReflectiveMap> maps;
   std::vector<uint32_t> cells;
-  float mean_distance = 0;  // of texels with flux, of sources that are somewhere
-  uint64_t rays = 0;        // cast for it
-  struct Aim {
-    Ray ray;
-    vec3 flux{0};
-    float range = 0, spread = 0;  // spread: steradians, or square metres of parallel light
-    bool parallel = false;
-  };
-  std::vector<Aim> aims;  // one a texel: workspace
+  float mean_distance = 0;      // of texels with flux, of sources that are somewhere
+  uint64_t rays = 0;            // cast for it
+  std::vector<SourceRay> aims;  // one a texel: workspace
   std::vector<double> shares;
 };
 

@@ -34,7 +34,8 @@ struct LitProbe {
 };
 
 // Of one map and seed always the same choice; where texels change little, so does it. About
-// settings.virtual_lights, fewer where few texels have flux. `by_effect` without probes is `by_flux`.
+// settings.virtual_lights, fewer where few texels have flux. `by_effect` without probes is
+// `by_flux`.
 void choose_virtual_lights(const ReflectiveShadowMap& map, const SplatSettings& settings,
                            SplatSeed seed, std::span<const LitProbe> probes, VirtualLights& lights);
 
