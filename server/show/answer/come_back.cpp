@@ -11,6 +11,7 @@
 #include "show/answer/groups.h"
 #include "show/answer/storyteller_orders.h"
 #include "show/state/lamps.h"
+#include "wire/limits.h"
 
 namespace wellspring {
 
@@ -74,14 +75,22 @@ bool is_story(const Exhibit& exhibit, const std::string& id) {
   return std::ranges::find(exhibit.stories, id, &StoryText::id) != exhibit.stories.end();
 }
 
+double within(const json& number, double least, double most) {
+  return std::clamp(number.get<double>(), least, most);
+}
+
 // What the exhibit does not have any more is left out.
 void restore(Show& show, Visitor& visitor, const json& about) {
   VisitorPlace& place = visitor.place;
   const json& at = about.at("place");
-  place.view.position = {at.at(0), at.at(1), at.at(2)};
-  place.view.yaw = at.at(3), place.view.pitch = at.at(4), place.view.fov = at.at(5);
-  place.viewpoint = about.at("viewpoint").get<int>();
-  if (place.viewpoint >= int(show.exhibit.viewpoints.size())) place.viewpoint = -1;
+  const auto angle = [&](int i) { return float(within(at.at(size_t(i)), -max_angle, max_angle)); };
+  for (int i = 0; i < 3; i++)
+    place.view.position[i] = within(at.at(size_t(i)), -max_coordinate, max_coordinate);
+  place.view.yaw = angle(3), place.view.pitch = angle(4);
+  place.view.fov = float(within(at.at(5), 0.05, 3));
+  const double viewpoint = about.at("viewpoint");
+  const bool known = viewpoint >= 0 && viewpoint < double(show.exhibit.viewpoints.size());
+  place.viewpoint = known ? int(viewpoint) : -1;
   const json lamps = about.value("lamps", json::object());
   for (const auto& [name, on] : lamps.items()) switch_lamp(show, visitor, name, on.get<bool>());
   if (about.contains("hour")) set_hour(show, visitor, about["hour"].get<double>());
@@ -106,7 +115,7 @@ void restore(Show& show, Visitor& visitor, const json& about) {
                  int(found - show.exhibit.tours.begin()), show.exhibit, show.roads, place.view);
       const int last = int(show.exhibit.tours[size_t(place.tour.tour)].stops.size()) - 1;
       go_on_from_stop(place.tour, visitor.hearing.narration.voice, show.exhibit, show.roads,
-                      std::clamp(ride.at("stop").get<int>(), 0, last));
+                      int(within(ride.at("stop"), 0, last)));
       if (ride.at("paused")) pause_tour(place.tour, visitor.hearing.narration.voice);
     }
   }
@@ -121,7 +130,7 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   if (handle_storyteller(show, visitor, order) || !is_story(show.exhibit, id)) return;
   Teller& teller = *visitor.own_teller;  // goes on with it: it was counted when it was begun
   tell(teller.voice, *std::ranges::find(show.exhibit.stories, id, &StoryText::id),
-       std::max(0, story.at("sentence").get<int>()));
+       int(within(story.at("sentence"), 0, 1e6)));
   teller.voice.asked_by = visitor.link->id;
   if (story.at("paused")) pause_voice(teller.voice);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "show/exhibit/exhibit_lamps.h"
@@ -204,6 +205,20 @@ TEST_F(ComeBack, TextsThatAreNotOursChangeNothing) {
       come(show->seal->close(R"({"exhibit":"tiny","day":108,"id":"1","place":[1]})"));
   EXPECT_EQ(last("welcome", odd)["resumed"], true);
   EXPECT_FALSE(told("state", odd).empty());
+}
+
+TEST_F(ComeBack, NumbersThatNoPlaceHasAreBounded) {
+  const size_t number = come(show->seal->close(
+      R"({"exhibit":"tiny","day":100,"id":"1","place":[1e300,-1e300,0,1e300,-1e300,1e300],)"
+      R"("viewpoint":-7,"tour":{"id":"round","stop":1e300,"paused":true}})"));
+  EXPECT_EQ(last("welcome", number)["resumed"], true);
+  const Viewpoint& view = visitor().place.view;
+  for (double value : {view.position.x, view.position.y, view.position.z, double(view.yaw),
+                       double(view.pitch), double(view.fov)})
+    EXPECT_TRUE(std::isfinite(value));
+  EXPECT_LT(view.fov, 3.1f);
+  EXPECT_EQ(visitor().place.tour.stop, 1);
+  EXPECT_FALSE(told("state", number).empty());
 }
 
 TEST_F(ComeBack, FewAreKeptAndWhatDidNotChangeIsNotToldAgain) {
