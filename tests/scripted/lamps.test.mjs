@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps and the hour of the day over the WebSocket: who changes one is told and sent other pictures,
-// nobody else.
+// Lamps and the hour of the day over the WebSocket: who changes one is told and sent other
+// pictures, nobody else.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Visitor, sleep, start_server } from '../server.mjs';
