@@ -95,7 +95,7 @@ TEST(SwitchedLamps, DimmedLightIsThatOfASceneWithDarkerLamps) {
   Lights lights = make_lights(world);
   vec3 place(0, 0.27f, 0.3f);
   find_technique("gather")->prepare(world, std::span(&place, 1), lights);
-  for (const char* name : {"path", "gather", "instant_radiosity"})
+  for (const char* name : {"path", "gather"})
     expect_same(mean_of(*find_technique(name), *switched.world, dimmed),
                 mean_of(*find_technique(name), world, lights), name);
 }
