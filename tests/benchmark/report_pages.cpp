@@ -397,6 +397,7 @@ std::vector<ReportPage> declared_pages() {
           light_frame_page(),
           light_scaling_page(),
           splat_page(),
+          splat_error_page(),
           light_error_page("light.error"),
           light_error_page("light.hall"),
           light_rays_page(),

@@ -51,6 +51,7 @@ constexpr ReportEntry entries[] = {{"stream", bench_stream},
                                    {"light.photons", bench_light_photons},
                                    {"light.dynamic", bench_light_dynamic},
                                    {"splat", bench_splat},
+                                   {"splat.error", bench_splat_error},
                                    {"light.hall", bench_light_hall, true}};
 
 using Pages = std::map<std::string, std::string>;

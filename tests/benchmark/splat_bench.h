@@ -10,11 +10,9 @@ namespace wellspring {
 
 void bench_splat(BenchReport& report, const BenchOptions& options);
 ReportPage splat_page();
-
-// Parts of it.
+// Error, choice of virtual lights, flicker.
 void bench_splat_error(BenchReport& report, const BenchOptions& options);
-void bench_splat_choice(BenchReport& report, const BenchOptions& options);
-void bench_splat_flicker(BenchReport& report, const BenchOptions& options);
+ReportPage splat_error_page();
 
 // What every pixel of a view sees, by rays.
 struct SeenPixels {

@@ -94,18 +94,7 @@ double flicker_of(const std::vector<Picture>& pictures) {
   return sum > 0 ? differs / sum : 0;
 }
 
-}  // namespace
-
-void bench_splat_error(BenchReport& report, const BenchOptions& options) {
-  using enum VirtualLightChoice;
-  const Tried all[] = {{"cornell_box", 256, by_flux},
-                       {"diffuse_hall", 256, by_flux},
-                       {"castle", 256, by_flux},
-                       {"castle", 1024, by_effect}};
-  for (const Tried& tried : all) bench_scene(report, options, tried);
-}
-
-void bench_splat_choice(BenchReport& report, const BenchOptions& options) {
+void bench_choice(BenchReport& report, const BenchOptions& options) {
   BenchScene bench = load_bench_scene(options, "castle");
   World world(bench.scene);
   Lights lights = make_lights(world);
@@ -153,7 +142,7 @@ void bench_splat_choice(BenchReport& report, const BenchOptions& options) {
 // The Cornell box by a bulb that moves by a centimetre a picture, the same random numbers in each
 // picture. A pass of instant_radiosity takes its time; splatting has the virtual lights and shadow
 // rays that it can have in about that time.
-void bench_splat_flicker(BenchReport& report, const BenchOptions& options) {
+void bench_flicker(BenchReport& report, const BenchOptions& options) {
   const BenchScene bench = load_bench_scene(options, "cornell_box");
   const char* names[] = {"direct", "multires_splatting", "instant_radiosity"};
   SplatSettings settings;
@@ -182,6 +171,19 @@ void bench_splat_flicker(BenchReport& report, const BenchOptions& options) {
     report.add("splat.flicker", flicker_of(walk), "1",
                {{"technique", name}, {"processor_ms", 1000 * quantile(seconds, 0.5)}});
   }
+}
+
+}  // namespace
+
+void bench_splat_error(BenchReport& report, const BenchOptions& options) {
+  using enum VirtualLightChoice;
+  const Tried all[] = {{"cornell_box", 256, by_flux},
+                       {"diffuse_hall", 256, by_flux},
+                       {"castle", 256, by_flux},
+                       {"castle", 1024, by_effect}};
+  for (const Tried& tried : all) bench_scene(report, options, tried);
+  bench_choice(report, options);
+  bench_flicker(report, options);
 }
 
 }  // namespace wellspring
