@@ -74,7 +74,8 @@ test('who chooses a late hour is told, and sees the evening', async () => {
   for (const visitor of [one, other])
     visitor.send({ type: 'viewpoint', seq: 1, name: 'well' });
   const of = (visitor) => ({ size: visitor.last.jpeg.length, quality: visitor.last.quality });
-  await sleep(3000);
+  for (let k = 0; k < 600 && !one.last; k++) await sleep(100);
+  await sleep(3000);  // finer ones follow
   const noon = of(one);
   const told = one.message('state', (message) => message.hour === day.to);
   one.send({ type: 'hour', value: day.to });
