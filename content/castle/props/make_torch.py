@@ -12,7 +12,7 @@ import struct
 import sys
 import zlib
 
-LIGHT_PLACE = (0.0, 0.535, 0.0)  # above the flame, which would be in its way
+LIGHT_PLACE = (0.0, 0.545, 0.0)  # above the flame, which would be in its way
 CANDELA, WARM = 7.0, (1.0, 0.58, 0.24)
 
 

@@ -49,7 +49,9 @@ void advance_held(const Exhibit& exhibit, const Storyteller& storyteller,
 
 PropPose pose_of(const Exhibit& exhibit, const HeldProp& held, int prop, double time) {
   if (prop < 0 || prop != held.prop) return {};
-  const float height = eval_flicker(exhibit.props[size_t(prop)].flicker, channel_of(prop), time);
+  // Never higher than the file has it: the light above would be inside.
+  const Flicker& flicker = exhibit.props[size_t(prop)].flicker;
+  const float height = eval_flicker(flicker, channel_of(prop), time) / (1 + flicker.depth);
   return {held.to_world, held.size, held.glow * height};
 }
 
