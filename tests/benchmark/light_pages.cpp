@@ -97,7 +97,7 @@ ReportPage light_dynamic_page() {
            "flicker: second differences of scattered light from picture to picture, over it, while "
            "the torch moves 3 cm a picture."},
           {{.caption = "",
-            .rows = {{"virtual lights", "virtual_lights"}, {"shadows", "shadows"}},
+            .rows = {{"virtual_lights", "virtual lights"}, {"shadows", "shadows"}},
             .columns = {{"picture_ms", "a picture, ms"},
                         {"picture_ms", "by the clock", 1, "", "clock_ms"},
                         {"picture_ms", "surfaces", 1, "", "surfaces_ms"},

@@ -5,7 +5,7 @@
 <p><look at="visitor"/>Queen Adela was crowned in <gesture name="open_arms"/>this very hall, on the shortest day of winter.
 <emotion name="sadness" weight="0.4"/>The goldsmith was to set eight stones, but on the road one of them was <emphasis>stolen</emphasis>.
 <emotion name="fear" weight="0.6"/>He was so afraid that he could not sleep.
-<prosody volume="soft" rate="92%">At midnight he <hold name="torch"/>took a torch from the wall and <gesture name="hush" weight="0.7"/>crept in here, <look at="paintings"/>past all these faces.</prosody>
+<prosody volume="soft" rate="92%">At midnight he <hold name="torch"/>took a torch from the wall and <gesture name="hush" weight="0.7"/>crept in here, <look at="paintings"/>past every painted face.</prosody>
 The flame <look at="visitor"/>shook in his hand, and all the shadows shook with it.
 <prosody volume="soft" rate="92%">So he cut a <gesture name="small" weight="0.8"/>little piece out of the window,</prosody> and set it in the gold.</p>
 

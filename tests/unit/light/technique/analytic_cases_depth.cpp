@@ -103,7 +103,7 @@ void add_mirrors(std::vector<AnalyticCase>& cases) {
   TransportSettings three;
   three.max_depth = 3;
   cases.push_back({"a lamp's image in a mirror", image, at_ground({0, 0, 0}), 9 * e * gray * by_pi,
-                   area_light | caustics, three, 2048});
+                   area_light | caustics, three, 2560});
 }
 
 }  // namespace

@@ -50,8 +50,11 @@ void judge_cases(const std::vector<AnalyticCase>& cases) {
       }
       Effort effort;
       effort.spp = c.spp;
-      // Pixels of a pass do not know of each other: what the eye chooses among is drawn at random.
-      if (view.width == 6) effort.spp = std::max(1, c.spp / (c.needs & chains ? 12 : 36));
+      // Pixels of a pass do not know of each other: what the eye chooses among is drawn at random,
+      // and so is direct light where it is no point lights'.
+      const bool by_itself = std::string_view(technique.name) == "multires_splatting";
+      if (view.width == 6)
+        effort.spp = std::max(1, c.spp / (by_itself ? 8 : c.needs & chains ? 12 : 36));
       TransportSettings transport = c.transport;
       transport.instant.places = 64;  // few pixels, many lights
       transport.instant.photons = 0;  // caustics are not claimed

@@ -58,7 +58,7 @@ TEST_F(Cameras, ALostOneIsListedUntilItIsForgotten) {
   EXPECT_EQ(connected_cameras(*show), 1u);
   const std::string text = write_metrics(make_report(*show));
   EXPECT_NE(text.find("wellspring_kiosk_cameras 1\n"), std::string::npos);
-  EXPECT_NE(text.find("wellspring_kiosk_camera_seconds{kiosk=\"\",camera=\"1\",name=\"hall, left\","
+  EXPECT_NE(text.find("wellspring_kiosk_camera_seconds{camera=\"1\",name=\"hall, left\","
                       "state=\"disconnected\"} 89\n"),
             std::string::npos);
   wait(lost_camera_listed - 92);

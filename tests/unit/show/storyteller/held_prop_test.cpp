@@ -57,8 +57,14 @@ struct HeldPropTest : testing::Test, ShowStage {
           "<hold name='torch'/>She took a torch and held it up high in the dark. "
           "<hold name='nothing'/>Then she put it away, and told the rest of it all "
           "without a light, which took her a long while.");
-    tick_seconds = 0.04;
+    tick_seconds = 0.1;
     ShowStage::begin(std::move(exhibit), settings_for("direct", false, 25));
+  }
+  // Somebody new, who looks away, so that their pictures cost little.
+  void join() {
+    ShowStage::join(32, 32);
+    step();
+    show->visitors.back().place.view.yaw = pi;
   }
   Visitor& visitor_number(size_t i) { return *std::next(show->visitors.begin(), long(i)); }
   DynamicLights lights(size_t i = 0) {
@@ -98,11 +104,11 @@ struct HeldPropTest : testing::Test, ShowStage {
 
 TEST_F(HeldPropTest, ItIsInTheHandAndItsLightIsOverIt) {
   begin();
-  join(32, 32);
+  join();
   EXPECT_TRUE(lights().empty());
   EXPECT_TRUE(seen().empty());
   tell("torch");
-  ASSERT_TRUE(step_until([&] { return show->visitors.front().own_teller->held.glow == 1; }));
+  ASSERT_TRUE(step_until([&] { return brightness() == 7; }));
   for (int i = 0; i < 5; i++) {
     run(0.2);
     ASSERT_EQ(lights().size(), 1u);
@@ -124,12 +130,11 @@ TEST_F(HeldPropTest, LightComesAndGoesSlowlyWhateverEndsTheStory) {
       R"({"type":"storyteller","story":"dark"})",
       R"({"type":"storyteller","teller":"otto"})",
       R"({"type":"storyteller","visible":false})",
-      R"({"type":"storyteller","action":"restart"})",
       R"({"type":"ask","text":"What is this?"})",
   };
   begin();
   for (const std::string& end : ends) {
-    join(32, 32);
+    join();
     const size_t i = show->visitors.size() - 1;
     tell("torch", i);
     std::vector<float> course = {brightness(i)};
@@ -154,7 +159,7 @@ TEST_F(HeldPropTest, LightComesAndGoesSlowlyWhateverEndsTheStory) {
 
 TEST_F(HeldPropTest, ItIsPutAwayWhereTheStorySaysSo) {
   begin();
-  join(32, 32);
+  join();
   tell("put_away");
   ASSERT_TRUE(step_until([&] { return brightness() == 7; }));
   ASSERT_TRUE(step_until([&] { return seen().empty(); }));
@@ -164,8 +169,8 @@ TEST_F(HeldPropTest, ItIsPutAwayWhereTheStorySaysSo) {
 
 TEST_F(HeldPropTest, OfTwoVisitorsEachSeesTheirOwn) {
   begin();
-  join(32, 32);
-  join(32, 32);
+  join();
+  join();
   tell("torch", 0);
   tell("dark", 1);
   ASSERT_TRUE(step_until([&] { return brightness(0) == 7; }));
@@ -184,9 +189,7 @@ TEST_F(HeldPropTest, OfTwoVisitorsEachSeesTheirOwn) {
 
 TEST_F(HeldPropTest, ItGoesOutWhileNobodyLooks) {
   begin();
-  join(32, 32);
-  Visitor& visitor = show->visitors.front();
-  visitor.place.view.yaw = pi;  // away from her
+  join();
   tell("torch");
   ASSERT_TRUE(step_until([&] { return brightness() == 7; }));
   say(R"({"type":"storyteller","action":"stop"})");
@@ -198,7 +201,8 @@ TEST(HeldProp, AFlameFlickersAtMostThreeTimesASecond) {
   Exhibit exhibit = make_tiny_exhibit();
   exhibit.props = {make_torch({0.3f, float(most_turns)})};
   HeldProp held{0, 1, 1, mat4(1)};
-  std::deque<double> flashes;
+  std::deque<double> flashes;  // of the last second
+  size_t all = 0;
   float turning = 0, least = 1e9f, most = 0;
   int way = 0;
   vec3 last_place(0);
@@ -217,16 +221,17 @@ TEST(HeldProp, AFlameFlickersAtMostThreeTimesASecond) {
     least = std::min(least, now), most = std::max(most, now);
     if (k == 0) turning = now;
     // `turning`: the extreme since the last change of a tenth.
-    if (way >= 0 && now > turning) turning = now;
-    if (way <= 0 && now < turning) turning = now;
+    if (way > 0 && now > turning) turning = now;
+    if (way < 0 && now < turning) turning = now;
     if (std::abs(now - turning) < 0.1f * most) continue;
     way = now > turning ? 1 : -1;
     turning = now;
     flashes.push_back(time);
+    all++;
     while (time - flashes.front() > 1) flashes.pop_front();
     EXPECT_LE(flashes.size(), 6u) << "changes in the second before " << time;
   }
-  EXPECT_GT(most - least, 0.15f) << "it flickers";
+  EXPECT_GT(all, 100u) << "it flickers";
   EXPECT_GT(least, 0.6f);
   EXPECT_LT(most, 1.4f);
 }
