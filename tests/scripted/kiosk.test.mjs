@@ -332,7 +332,7 @@ test('what was recorded is played again', async () => {
   writeFileSync(config, '{"presence": {"hold": 3}}');
   const wrong = await run(['--camera', 'synthetic', '--config', config]);
   assert.equal(wrong.code, 2);
-  assert.match(wrong.problem, /kiosk\.json: \/presence\/hold: is unknown/);
+  assert.match(wrong.problem, /kiosk\.json: line 1, \/presence\/hold: is unknown/);
   rmSync(folder, { recursive: true });
 });
 

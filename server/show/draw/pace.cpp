@@ -96,7 +96,7 @@ void watch(const Show& show, Visitor& visitor) {
   }
   if (note_view(place.heading, show.time, view)) place.camera_cuts++;
   place.last_view = view;
-  visitor.dynamic = dynamic_lights_of(show, visitor, show.time);
+  visitor.dynamic = dynamic_lights_in(view, dynamic_lights_of(show, visitor, show.time));
 }
 
 bool stands(const Show& show, const Visitor& visitor) {

@@ -43,6 +43,8 @@ PunctualLight read_new_light(const Exhibit& exhibit, Fields& fields) {
   light.intensity =
       vec3(glm::max(color, dvec3(0))) *
       float(fields.number(has_place(light) ? "candela" : "lux", true, 1, 0, most_candela));
+  if (has_place(light) && fields.has("reach"))
+    light.range = float(fields.number("reach", false, 10, 0.1, 1000));
   if (light.type != PunctualType::spot) return light;
   light.outer_cone = float(glm::radians(fields.number("outer_cone_deg", false, 45, 1, 90)));
   const double inner = glm::degrees(double(light.outer_cone)) / 2;

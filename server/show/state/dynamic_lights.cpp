@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/dynamic_lights.h"
 
+#include <cmath>
+
+#include "show/state/in_view.h"
 #include "show/state/lamps.h"
 
 namespace wellspring {
@@ -31,6 +34,15 @@ DynamicLights dynamic_lights_of(const Show& show, const Visitor& visitor, double
     add(eval_sun(*day, *now.lit_hour), sun_of_the_day, lights);
   if (!show.exhibit.lights.empty())
     add_changing(show, now.lit.empty() ? lamps_of(show, visitor) : now.lit, time, lights);
+  return lights;
+}
+
+DynamicLights dynamic_lights_in(const View& view, DynamicLights lights) {
+  std::erase_if(lights, [&](const DynamicLight& one) {
+    const PunctualLight& light = one.light;
+    const bool ends = light.type != PunctualType::directional && std::isfinite(light.range);
+    return ends && !in_view(view, light.position, light.range);
+  });
   return lights;
 }
 

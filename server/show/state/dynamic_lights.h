@@ -12,5 +12,7 @@ inline constexpr uint32_t first_changing_light = 1, sun_of_the_day = 1000, first
 
 // As they are at `time`, seconds of the show. Empty, at no cost, where the exhibit has none.
 DynamicLights dynamic_lights_of(const Show& show, const Visitor& visitor, double time);
+// Those that may shine on what the view shows: one of finite range only within that.
+DynamicLights dynamic_lights_in(const View& view, DynamicLights lights);
 
 }  // namespace wellspring

@@ -110,6 +110,24 @@ TEST_F(DynamicPictures, BecomeDarkAgain) {
   EXPECT_LT(pictures().size(), before + 15) << "nothing moves any more";
 }
 
+// One of a reach is not computed for pictures that it does not touch.
+TEST_F(DynamicPictures, PayNothingForLightOutOfReach) {
+  ChangingLight near = torch(), behind = torch();
+  near.track.clear(), behind.track.clear();
+  near.flicker = behind.flicker = {0.5f, 4};
+  near.light.range = behind.light.range = 1.5f;
+  behind.light.position = {-2, 1.6f, 5.5f};
+  behind.name = "behind";
+  begin_with({near, behind});  // the visitor stands at (-2, 1.6, 3) and looks down -z
+  run(2);
+  ASSERT_EQ(visitor().dynamic.size(), 1u);
+  EXPECT_EQ(visitor().dynamic[0].id, first_changing_light);
+  begin_with({behind});
+  run(3);
+  EXPECT_TRUE(visitor().dynamic.empty());
+  EXPECT_EQ(memory_bytes(show->renderer.work.dynamic), 0u);
+}
+
 // Without such lights nothing of them is computed, and no memory is held for them.
 TEST_F(DynamicPictures, CostNothingWhereThereAreNone) {
   begin_with({});

@@ -63,7 +63,8 @@ TEST(ExhibitLights, AreBackInAPictureOfOneMoment) {
 TEST(ExhibitLights, NewOnesAreMadeAndMove) {
   LightsPackage package(R"([
     {"name": "Moth", "type": "spot", "position": [1, 2, 0], "direction": [0, -2, 0], "candela": 4,
-     "color": [1, 0.5, 0.25], "outer_cone_deg": 30, "inner_cone_deg": 10, "lamp": "hearth",
+     "color": [1, 0.5, 0.25], "reach": 6, "outer_cone_deg": 30, "inner_cone_deg": 10,
+     "lamp": "hearth",
      "track": [{"time": 0}, {"time": 2, "position": [1, 2, 1], "intensity": 0.5},
                {"time": 4, "position": [1, 2, 0], "intensity": 1}]},
     {"name": "Moon", "type": "sun", "direction": [0, -1, 0], "lux": 2, "flicker": {}}])");
@@ -77,6 +78,8 @@ TEST(ExhibitLights, NewOnesAreMadeAndMove) {
   EXPECT_LT(glm::length(moth.light.direction - vec3(0, -1, 0)), 1e-6f);
   EXPECT_NEAR(moth.light.outer_cone, pi / 6, 1e-5);
   EXPECT_NEAR(moth.light.inner_cone, pi / 18, 1e-5);
+  EXPECT_EQ(moth.light.range, 6);
+  EXPECT_TRUE(std::isinf(exhibit.lights[1].light.range));
   EXPECT_EQ(moth.lamp, 0);
   EXPECT_EQ(vec3(exhibit.scene.origin) + moth.track[1].position, vec3(1, 2, 1));
   EXPECT_EQ(moth.track[0].position, moth.light.position);
