@@ -48,6 +48,7 @@ export function make_description(element) {
 
   async function say() {
     if (!viewpoints) await load();
+    if (!view) return;  // a new welcome came meanwhile
     const parts = [], at = nearest(viewpoints, view.position);
     if (at)
       parts.push(word(lang, at.here ? 'scene_at' : 'scene_near')
