@@ -4,9 +4,9 @@
 // the warp shows.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fmt/core.h>
 
+#include "base/process_clock.h"
 #include "cache_visit_stage.h"
 #include "drawn_picture.h"
 #include "frame/flip.h"
@@ -45,12 +45,6 @@ double displaced_share(const Image8& test, const Image8& reference) {
   return double(displaced) / (double(reference.width - 2) * (reference.height - 2));
 }
 
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return double(time.tv_sec) + double(time.tv_nsec) * 1e-9;
-}
-
 double mean_flip(const Image8& test, const Image8& reference) {
   return eval_flip(test, reference).mean;
 }
@@ -77,11 +71,11 @@ void bench_cache_warp(BenchReport& report, const BenchOptions& options) {
         draw_picture(visibility, view, now);
         draw_picture(visibility, old, held);
         draw_picture(visibility, keyframe_view(old), before);
-        double began = processor_seconds();
+        double began = process_seconds_now();
         make_keyframe(keyframe_view(old), before.image, before.depth, keyframe);
-        double made = processor_seconds();
+        double made = process_seconds_now();
         unknown += double(warp_picture(keyframe, view, 1, scratch, warped)) / instants;
-        seconds += (processor_seconds() - made) / instants;
+        seconds += (process_seconds_now() - made) / instants;
         making += (made - began) / instants;
         flip += mean_flip(warped, now.image) / instants;
         hold += mean_flip(held.image, now.image) / instants;

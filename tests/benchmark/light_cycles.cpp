@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/load_error.h"
+#include "base/process_clock.h"
 #include "cycles_job.h"
 #include "light/technique/technique.h"
 #include "light_scenes.h"
@@ -34,12 +35,6 @@ constexpr Case cases[] = {{"cornell_box", false, false},
                           {"castle", true, false},
                           {"castle_metals", true, true}};
 
-double processor_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
 // A folder that goes when its owner does.
 struct Workspace {
   fs::path folder = fs::temp_directory_path() / ("wellspring_cycles_" + std::to_string(getpid()));
@@ -57,13 +52,13 @@ PicturePair render_ours(const World& world, const Lights& lights, const View& vi
   settings.spp = spp;
   settings.transport.max_depth = max_depth;
   settings.seed = seed;
-  double began = seconds_now(), began_processor = processor_seconds();
+  double began = seconds_now(), began_processor = process_seconds_now();
   PicturePair pair;
   pair.a = render_still(*find_technique("path"), world, lights, view, settings);
   settings.seed = seed + 1;
   pair.b = render_still(*find_technique("path"), world, lights, view, settings);
   pair.seconds = (seconds_now() - began) / 2;
-  pair.processor_seconds = (processor_seconds() - began_processor) / 2;
+  pair.processor_seconds = (process_seconds_now() - began_processor) / 2;
   return pair;
 }
 

@@ -2,10 +2,10 @@
 #include "light_dynamic.h"
 
 #include <cmath>
-#include <ctime>
 #include <functional>
 
 #include "base/clock.h"
+#include "base/process_clock.h"
 #include "frame/flip.h"
 #include "light/dynamic/dynamic_image.h"
 #include "light/technique/technique.h"
@@ -19,13 +19,6 @@ namespace {
 constexpr int width = 1280, height = 720;
 constexpr int judged_width = 320, judged_height = 180;
 constexpr float exposure = 1.5f;
-
-// Of all threads of the process: the machine may have other work.
-double processor_now() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 DynamicLight torch_at(double place) {
   DynamicLight torch;
@@ -73,9 +66,9 @@ void time_picture(const World& world, const Lights& lights, const VisibilityPass
                   const DynamicLight& torch, const SplatSettings& settings, DynamicImage& image,
                   Stages& cpu, std::vector<double>& clock) {
   auto timed = [](std::vector<double>& to, const std::function<void()>& work) {
-    const double began = processor_now();
+    const double began = process_seconds_now();
     work();
-    to.push_back(1000 * (processor_now() - began));
+    to.push_back(1000 * (process_seconds_now() - began));
   };
   Image8 picture;
   std::vector<uint8_t> peaks;
