@@ -65,9 +65,7 @@ inline RunDynamic find_dynamic(const DynamicImage* image, const View& view, cons
                                const RunPixels& p) {
   RunDynamic found;
   found.any = image != nullptr;
-  if (image)
-    read_dynamic_light(*image, view, {run.x, run.y, run.count, run.depth, run.object, &p.surface},
-                       found.light);
+  if (image) read_dynamic_light(*image, view, run, p.surface, found.light);
   return found;
 }
 

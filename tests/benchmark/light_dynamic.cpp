@@ -44,8 +44,7 @@ Frame draw_light(const VisibilityPass& visibility, const DynamicImage& image, co
     RunPixels p;
     describe_run(run, p);
     RunKnown light;
-    read_dynamic_light(image, view, {run.x, run.y, run.count, run.depth, run.object, &p.surface},
-                       light);
+    read_dynamic_light(image, view, run, p.surface, light);
     for (int i = 0; i < run.count; i++)
       frame.color[size_t(run.y) * size_t(view.width) + size_t(run.x + i)] =
           run.object[i] == 0 ? vec3(0)

@@ -81,8 +81,8 @@ void compute_dynamic_light(const World& world, const Lights& lights,
   light_surfaces(world, lights, from, image.surfaces, settings, image.bounce, image.light);
 }
 
-void read_dynamic_light(const DynamicImage& image, const View& view, const DynamicRun& run,
-                        RunKnown& to) {
+void read_dynamic_light(const DynamicImage& image, const View& view, const VisibleRun& run,
+                        const RunSurface& surface, RunKnown& to) {
   const View& lit = image.surfaces.view;
   const float* planes[] = {image.light.red.data(), image.light.green.data(),
                            image.light.blue.data()};
@@ -99,8 +99,8 @@ void read_dynamic_light(const DynamicImage& image, const View& view, const Dynam
                          size_t(row.second) * size_t(lit.width)};
   for (int i = 0; i < run.count; i++) {
     const TapPair column = tap_pair(run.x + i, lit.width);
-    const SeenPoint seen = seen_point(run.depth[i], run.object[i], *run.surface, i,
-                                      own.at(float(run.x + i), float(run.y)));
+    const SeenPoint seen =
+        seen_point(run.depth[i], run.object[i], surface, i, own.at(float(run.x + i), float(run.y)));
     TapWeights weights;
     if (seen.depth < std::numeric_limits<float>::infinity())
       weights = weigh_taps(image.surfaces, grid, column, row, seen);

@@ -44,15 +44,9 @@ void compute_dynamic_light(const World& world, const Lights& lights,
                            std::span<const DynamicLight> from, const SplatSettings& settings,
                            DynamicImage& image);
 
-// Radiance of white diffuse surfaces at pixels [x, x + count) of row y of a picture of `view`,
-// which compute_dynamic_light() was called for. `run`: that show these, with normals.
-struct DynamicRun {
-  int x = 0, y = 0, count = 0;
-  const float* depth = nullptr;
-  const uint32_t* object = nullptr;
-  const RunSurface* surface = nullptr;
-};
-void read_dynamic_light(const DynamicImage& image, const View& view, const DynamicRun& run,
-                        RunKnown& to);
+// Radiance of white diffuse surfaces at the pixels of a run of a picture of `view`, which
+// compute_dynamic_light() was called for. `surface`: of the run, with normals.
+void read_dynamic_light(const DynamicImage& image, const View& view, const VisibleRun& run,
+                        const RunSurface& surface, RunKnown& to);
 
 }  // namespace wellspring

@@ -57,8 +57,7 @@ std::vector<vec3> draw_dynamic(const Scene& scene, const View& view,
     RunPixels p;
     describe_run(run, p);
     RunKnown light;
-    read_dynamic_light(image, view, {run.x, run.y, run.count, run.depth, run.object, &p.surface},
-                       light);
+    read_dynamic_light(image, view, run, p.surface, light);
     for (int i = 0; i < run.count; i++)
       picture[size_t(run.y) * size_t(view.width) + size_t(run.x + i)] =
           run.object[i] == 0 ? vec3(0)
