@@ -33,12 +33,6 @@ struct RunMapped {
   RunKnown unit;
 };
 
-// What lights that move or change add to a run.
-struct RunDynamic {
-  bool any = false;
-  RunKnown light;  // radiance of white diffuse surfaces
-};
-
 // Eight of a run's bits, from lane `i` on, which may begin before it.
 inline unsigned bits_at(uint64_t bits, int i) {
   return unsigned(i < 0 ? bits << -i : bits >> i) & 0xff;
@@ -64,8 +58,7 @@ inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
 inline RunDynamic find_dynamic(const DynamicImage* image, const View& view, const VisibleRun& run,
                                const RunPixels& p) {
   RunDynamic found;
-  found.any = image != nullptr;
-  if (image) read_dynamic_light(*image, view, run, p.surface, found.light);
+  if (image) read_dynamic_light(*image, view, run, p.surface, found);
   return found;
 }
 
@@ -75,6 +68,9 @@ inline void add_dynamic(const RunPixels& p, const RunDynamic& dynamic, int i, Sh
   c.r += lanes_at(p.surface.red, i) * lanes_at(dynamic.light.red, i);
   c.g += lanes_at(p.surface.green, i) * lanes_at(dynamic.light.green, i);
   c.b += lanes_at(p.surface.blue, i) * lanes_at(dynamic.light.blue, i);
+  if (!dynamic.any_gloss) return;
+  c.r += lanes_at(dynamic.gloss.red, i), c.g += lanes_at(dynamic.gloss.green, i);
+  c.b += lanes_at(dynamic.gloss.blue, i);
 }
 
 // What of eight pixels emits light by itself. `here`: lanes that count, a bit each.

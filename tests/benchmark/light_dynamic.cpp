@@ -7,11 +7,11 @@
 #include "base/clock.h"
 #include "base/process_clock.h"
 #include "frame/flip.h"
-#include "light/dynamic/dynamic_image.h"
+#include "light/dynamic/settled_bounce.h"
 #include "light/technique/technique.h"
-#include "light/visible/describe_run.h"
 #include "light_scenes.h"
 #include "picture/relight.h"
+#include "tests/scenes/dynamic_picture.h"
 
 namespace wellspring {
 namespace {
@@ -40,17 +40,7 @@ Scene make_dark(Scene scene) {
 Frame draw_light(const VisibilityPass& visibility, const DynamicImage& image, const View& view) {
   Frame frame;
   fit_frame(view.width, view.height, frame);
-  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
-    RunPixels p;
-    describe_run(run, p);
-    RunKnown light;
-    read_dynamic_light(image, view, run, p.surface, light);
-    for (int i = 0; i < run.count; i++)
-      frame.color[size_t(run.y) * size_t(view.width) + size_t(run.x + i)] =
-          run.object[i] == 0 ? vec3(0)
-                             : vec3(light.red[i], light.green[i], light.blue[i]) *
-                                   vec3(p.surface.red[i], p.surface.green[i], p.surface.blue[i]);
-  });
+  frame.color = scenes::draw_dynamic_light(visibility, image, view);
   return frame;
 }
 
@@ -75,7 +65,7 @@ void time_picture(const World& world, const Lights& lights, const VisibilityPass
   auto put = [&] { relight(keyframe, {backdrop, image.light}, {exposure}, picture, peaks); };
   const double began = seconds_now();
   timed(cpu.whole, [&] {
-    begin_bounce(world, lights, lit, settings, image.bounce);
+    begin_bounce(world, lights, lit, settings, {}, image.bounce);
     light_surfaces(world, lights, lit, backdrop.surfaces, settings, image.bounce, image.light);
     put();
   });
@@ -83,7 +73,7 @@ void time_picture(const World& world, const Lights& lights, const VisibilityPass
   timed(cpu.put, put);
   timed(cpu.surfaces,
         [&] { see_surfaces(visibility, dynamic_light_view(keyframe.view), image.surfaces); });
-  timed(cpu.maps, [&] { begin_bounce(world, lights, lit, settings, image.bounce); });
+  timed(cpu.maps, [&] { begin_bounce(world, lights, lit, settings, {}, image.bounce); });
   SplatSettings none = settings;
   none.virtual_lights = 0;
   timed(cpu.direct, [&] {
@@ -127,6 +117,31 @@ double find_flicker(const World& world, const Lights& lights, const VisibilityPa
       level += double(seen[k][i]);
     }
   return level > 0 ? sum / level : 0;
+}
+
+// A torch that stays where it is: the light of its bounce, pass by pass.
+void bench_settled(BenchReport& report, const World& world, const Lights& lights,
+                   const VisibilityPass& visibility, const BackdropSurfaces& large,
+                   const View& judged, const Frame& truth) {
+  const SplatSettings settings = dynamic_splat_settings();
+  DynamicImage image;
+  see_surfaces(visibility, dynamic_light_view(judged), image.surfaces);
+  SettledBounce settled, timed;
+  settled.lights = timed.lights = {torch_at(0)};
+  std::vector<double> cpu;
+  for (int pass = 1; pass <= most_passes; pass++) {
+    add_pass(world, lights, image.surfaces, settings, settled, image.bounce);
+    const double began = process_seconds_now();
+    add_pass(world, lights, large.surfaces, settings, timed, image.bounce);
+    if (pass > 1) cpu.push_back(1000 * (process_seconds_now() - began));
+    if ((pass & (pass - 1)) != 0) continue;
+    clear_planes(image.surfaces, image.light);
+    add_direct_light(world, lights, DynamicLights{torch_at(0)}, image.surfaces, image.light);
+    add_settled(settled, image.light);
+    report.add("light.dynamic.settled_flip",
+               flip(draw_light(visibility, image, judged), truth, {exposure}), "",
+               {{"passes", pass}, {"pass_ms", cpu.empty() ? 0 : quantile(cpu, 0.5)}});
+  }
 }
 
 }  // namespace
@@ -187,6 +202,7 @@ void bench_light_dynamic(BenchReport& report, const BenchOptions& options) {
           find_flicker(world, lights, visibility, judged, settings, options.quick ? 8 : 24);
       report.add("light.dynamic.picture_ms", quantile(cpu.whole, 0.5), "ms", fields);
     }
+  bench_settled(report, world, lights, visibility, backdrop, judged, truths[0]);
 }
 
 }  // namespace wellspring

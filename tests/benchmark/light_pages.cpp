@@ -107,6 +107,10 @@ ReportPage light_dynamic_page() {
                         {"picture_ms", "putting over", 1, "", "put_ms"},
                         {"picture_ms", "FLIP", 1, "", "flip"},
                         {"picture_ms", "flicker", 1, "", "flicker"}},
+            .most_rows = 12},
+           {.caption = "A torch that stays where it is, by the passes that were averaged",
+            .rows = {{"passes", "passes"}},
+            .columns = {{"settled_flip", "FLIP"}, {"settled_flip", "a pass, ms", 1, "", "pass_ms"}},
             .most_rows = 12}}};
 }
 

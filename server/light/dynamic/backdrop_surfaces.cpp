@@ -57,34 +57,61 @@ void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
   visibility.see(view, vec2(0.5f), take, RasterShows::still);
 }
 
+namespace {
+
+// Light of a run of the picture, from its own resolution or between four pixels of half of it.
+struct ArrivingRun {
+  const BackdropSurfaces& backdrop;
+  int x, y;
+  TapPair row = tap_pair(y, backdrop.surfaces.view.height);
+  size_t at = size_t(y) * size_t(backdrop.view.width) + size_t(x);
+
+  float read(const float* plane, int i) const {
+    if (backdrop.shares.empty()) return plane[at + size_t(i)];
+    const int width = backdrop.surfaces.view.width;
+    const float* above = plane + size_t(row.first) * size_t(width);
+    const float* below = plane + size_t(row.second) * size_t(width);
+    const TapPair column = tap_pair(x + i, width);
+    const uint32_t shares = backdrop.shares[at + size_t(i)];
+    return (above[column.first] * float(shares & 255) +
+            above[column.second] * float(shares >> 8 & 255) +
+            below[column.first] * float(shares >> 16 & 255) +
+            below[column.second] * float(shares >> 24)) *
+           (1 / 255.0f);
+  }
+  bool any_gloss(int count) const {
+    const SurfaceBuffer& s = backdrop.surfaces;
+    if (s.gloss.empty()) return false;
+    const bool fine = backdrop.shares.empty();
+    const int first = fine ? x : tap_pair(x, s.view.width).first;
+    const int last = fine ? x + count - 1 : tap_pair(x + count - 1, s.view.width).second;
+    uint32_t any = 0;
+    for (int line : {fine ? y : row.first, fine ? y : row.second}) {
+      const uint32_t* codes = &s.gloss[size_t(line) * size_t(s.view.width)];
+      for (int i = first; i <= last; i++) any |= codes[i];
+    }
+    return any != 0;
+  }
+};
+
+}  // namespace
+
 void reflect_light(const BackdropSurfaces& backdrop, const LightPlanes& light, int x, int y,
                    int count, RunKnown& to) {
-  const size_t at = size_t(y) * size_t(backdrop.view.width) + size_t(x);
-  const View& lit = backdrop.surfaces.view;
+  const ArrivingRun run{backdrop, x, y};
   const RawVector<float>* planes[] = {&light.red, &light.green, &light.blue};
+  const RawVector<float>* gloss[] = {&light.gloss_red, &light.gloss_green, &light.gloss_blue};
+  const bool glossy = run.any_gloss(count);
   float* out[] = {to.red, to.green, to.blue};
-  const TapPair row = tap_pair(y, lit.height);
   for (size_t c = 0; c < 3; c++) {
     const float* plane = planes[c]->data();
-    const uint8_t* codes = &backdrop.reflectance[3 * at + c];
-    const float* above = plane + size_t(row.first) * size_t(lit.width);
-    const float* below = plane + size_t(row.second) * size_t(lit.width);
+    const uint8_t* codes = &backdrop.reflectance[3 * run.at + c];
     for (int i = 0; i < count; i++) {
-      float arriving;
-      if (backdrop.shares.empty()) {
-        arriving = plane[at + size_t(i)];
-      } else {
-        const TapPair column = tap_pair(x + i, lit.width);
-        const uint32_t shares = backdrop.shares[at + size_t(i)];
-        arriving = (above[column.first] * float(shares & 255) +
-                    above[column.second] * float(shares >> 8 & 255) +
-                    below[column.first] * float(shares >> 16 & 255) +
-                    below[column.second] * float(shares >> 24)) *
-                   (1 / 255.0f);
-      }
       const float root = float(codes[3 * i]) * (1 / 255.0f);
-      out[c][i] = arriving * root * root;
+      out[c][i] = run.read(plane, i) * root * root;
     }
+    if (!glossy) continue;
+    for (int i = 0; i < count; i++) out[c][i] += run.read(gloss[c]->data(), i);
   }
 }
 

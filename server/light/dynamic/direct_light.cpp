@@ -7,8 +7,10 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/simd.h"
+#include "light/material/gloss_albedo.h"
 #include "light/sample/light_tables.h"
 #include "light/sample/sample_light.h"
+#include "light/visible/gloss.h"
 #include "light/visible/pixel_grid.h"
 
 namespace wellspring {
@@ -51,6 +53,8 @@ Rows read_rows(const SurfaceBuffer& s, const PixelGrid& grid, int x, int y) {
 // What of the intensity would arrive if nothing were in between, over pi; and the shadow ray.
 struct Arriving {
   Lanes strength, dx, dy, dz, t_max;
+  Lanes ux, uy, uz;  // towards the light, unit
+  Lanes size;        // its radius over its distance
 };
 
 Arriving eval_arriving(const Lit& lit, const Rows& r, Lanes ox, Lanes oy, Lanes oz) {
@@ -61,6 +65,7 @@ Arriving eval_arriving(const Lit& lit, const Rows& r, Lanes ox, Lanes oy, Lanes 
     a.dx = all_lanes(to.x), a.dy = all_lanes(to.y), a.dz = all_lanes(to.z);
     a.strength = positive_lanes(r.nx * to.x + r.ny * to.y + r.nz * to.z) * (1 / pi);
     a.t_max = all_lanes(std::numeric_limits<float>::infinity());
+    a.ux = a.dx, a.uy = a.dy, a.uz = a.dz, a.size = all_lanes(0);
     return a;
   }
   a.dx = light.position.x - ox, a.dy = light.position.y - oy, a.dz = light.position.z - oz;
@@ -68,6 +73,8 @@ Arriving eval_arriving(const Lit& lit, const Rows& r, Lanes ox, Lanes oy, Lanes 
               lz = light.position.z - r.pz;
   const Lanes distance2 = lanes_max(lx * lx + ly * ly + lz * lz, all_lanes(1e-20f));
   const Lanes inverse = 1.0f / lanes_sqrt(distance2);
+  a.ux = lx * inverse, a.uy = ly * inverse, a.uz = lz * inverse;
+  a.size = lit.radius * inverse;
   a.t_max = positive_lanes(1.0f - lit.radius * inverse);
   a.strength = positive_lanes(r.nx * lx + r.ny * ly + r.nz * lz) * inverse /
                lanes_max(distance2, all_lanes(least_distance * least_distance)) * (1 / pi);
@@ -85,6 +92,53 @@ Arriving eval_arriving(const Lit& lit, const Rows& r, Lanes ox, Lanes oy, Lanes 
   return a;
 }
 
+// How eight pixels reflect: `matte` is the share of diffuse light.
+struct RowGloss {
+  bool any = false;
+  GlossLanes of;
+  Lanes alpha, vx, vy, vz, nv, matte;  // `v`: towards the eye, unit
+};
+
+RowGloss read_gloss(const SurfaceBuffer& s, const Rows& r, int x, int y) {
+  RowGloss g;
+  if (s.gloss.empty()) return g;
+  const size_t at = size_t(y) * size_t(s.view.width) + size_t(x);
+  const int count = std::min(wide, s.view.width - x);
+  for (int i = 0; i < count; i++) g.any |= s.gloss[at + size_t(i)] != 0;
+  if (!g.any) return g;
+  g.of = unpack_gloss(&s.gloss[at], &s.metallic[at]);
+  g.alpha = lanes_max(g.of.roughness * g.of.roughness, all_lanes(least_alpha));
+  const vec3& eye = s.view.position;
+  g.vx = eye.x - r.px, g.vy = eye.y - r.py, g.vz = eye.z - r.pz;
+  const Lanes length2 = g.vx * g.vx + g.vy * g.vy + g.vz * g.vz;
+  const Lanes inverse = 1.0f / lanes_sqrt(lanes_max(length2, all_lanes(1e-20f)));
+  g.vx *= inverse, g.vy *= inverse, g.vz *= inverse;
+  g.nv = lanes_max(r.nx * g.vx + r.ny * g.vy + r.nz * g.vz, all_lanes(1e-3f));
+  const Lanes f0 = lanes_max(lanes_max(g.of.f0[0], g.of.f0[1]), g.of.f0[2]);
+  const Lanes coat = gloss_albedo(f0, g.of.roughness, 1.0f - g.of.metallic, g.nv);
+  const LaneMask some = f0 > 0;
+  g.matte = some ? (1.0f - g.of.metallic) * (1.0f - coat) : all_lanes(1);
+  return g;
+}
+
+// GGX's distribution times its shadowing, by Smith, over four cosines, times pi: radiance over that
+// of a white diffuse surface, but for Fresnel's factor. `hl`: cosine between light and facet.
+Lanes eval_highlight(const Rows& r, const RowGloss& g, const Arriving& a, Lanes& hl) {
+  Lanes hx = a.ux + g.vx, hy = a.uy + g.vy, hz = a.uz + g.vz;
+  const Lanes inverse =
+      1.0f / lanes_sqrt(lanes_max(hx * hx + hy * hy + hz * hz, all_lanes(1e-12f)));
+  hx *= inverse, hy *= inverse, hz *= inverse;
+  hl = lanes_min(positive_lanes(hx * a.ux + hy * a.uy + hz * a.uz), all_lanes(1));
+  // A light of some size lights a wider lobe (Karis 2013, "Real shading in Unreal Engine 4").
+  const Lanes alpha = lanes_min(g.alpha + 0.5f * a.size, all_lanes(1)), alpha2 = alpha * alpha;
+  const Lanes nh = lanes_min(positive_lanes(r.nx * hx + r.ny * hy + r.nz * hz), all_lanes(1));
+  const Lanes nl = lanes_max(r.nx * a.ux + r.ny * a.uy + r.nz * a.uz, all_lanes(1e-3f));
+  const Lanes base = 1.0f - nh * nh * (1.0f - alpha2);
+  const Lanes shadowing = nl * lanes_sqrt(g.nv * g.nv * (1.0f - alpha2) + alpha2) +
+                          g.nv * lanes_sqrt(nl * nl * (1.0f - alpha2) + alpha2);
+  return 0.5f * alpha2 / (base * base * shadowing);
+}
+
 // What thin panes let through of a ray that something is in the way of.
 vec3 pass_panes(const Transport& transport, const RayPacket& rays, int i) {
   Ray ray;
@@ -95,16 +149,50 @@ vec3 pass_panes(const Transport& transport, const RayPacket& rays, int i) {
   return eval_visibility(transport, ray);
 }
 
+// Reflectance of facets under a cosine: exact of dielectrics (Cook and Torrance 1982, equation 18),
+// by Schlick of metal.
+Lanes eval_fresnel(Lanes f0, Lanes metallic, Lanes cosine) {
+  const Lanes m = 1.0f - cosine, m2 = m * m;
+  const Lanes metal = f0 + (1.0f - f0) * (m2 * m2 * m);
+  const Lanes root = lanes_min(lanes_sqrt(f0), all_lanes(0.99f));
+  const Lanes eta = (1.0f + root) / (1.0f - root);
+  const Lanes g = lanes_sqrt(eta * eta - 1.0f + cosine * cosine);
+  const Lanes first = (g - cosine) / (g + cosine);
+  const Lanes second = (cosine * (g + cosine) - 1.0f) / (cosine * (g - cosine) + 1.0f);
+  const Lanes coat = 0.5f * first * first * (1.0f + second * second);
+  const LaneMask some = f0 > 0;
+  return some ? coat + (metal - coat) * metallic : all_lanes(0);
+}
+
+// Light that arrives at eight pixels goes to what they reflect: white diffuse surfaces, and gloss.
+struct RowLight {
+  Lanes matte[3] = {}, gloss[3] = {};
+  void add(const RowGloss& g, const Lanes (&light)[3], Lanes highlight, Lanes hl) {
+    for (int c = 0; c < 3; c++) {
+      if (!g.any) {
+        matte[c] += light[c];
+        continue;
+      }
+      matte[c] += light[c] * g.matte;
+      gloss[c] += light[c] * highlight * eval_fresnel(g.of.f0[c], g.of.metallic, hl);
+    }
+  }
+};
+
 // One packet's pixels, from (x, y) on.
 void light_pixels(const Transport& transport, std::span<const Lit> lights, const SurfaceBuffer& s,
                   const PixelGrid& grid, int x, int y, LightPlanes& to) {
   Rows rows[high];
-  Lanes sum[high][3] = {};
+  RowGloss gloss[high];
+  RowLight sum[high];
   const int lines = std::min(high, s.view.height - y);
-  for (int k = 0; k < lines; k++) rows[k] = read_rows(s, grid, x, y + k);
+  for (int k = 0; k < lines; k++) {
+    rows[k] = read_rows(s, grid, x, y + k);
+    gloss[k] = read_gloss(s, rows[k], x, y + k);
+  }
   for (const Lit& lit : lights) {
     RayPacket rays;
-    Lanes strength[high];
+    Lanes strength[high], highlight[high] = {}, hl[high] = {};
     uint32_t active = 0;
     const float brightest = max_component(lit.light->intensity);
     for (int k = 0; k < lines; k++) {
@@ -113,6 +201,7 @@ void light_pixels(const Transport& transport, std::span<const Lit> lights, const
       const Arriving a = eval_arriving(lit, r, ox, oy, oz);
       const LaneMask seen = r.there & (a.strength * brightest > darkest);
       strength[k] = keep_lanes(seen, a.strength);
+      if (gloss[k].any) highlight[k] = eval_highlight(r, gloss[k], a, hl[k]);
       active |= negative_lanes(seen) << (k * wide);
       const int first = k * wide;
       store_lanes(rays.origin_x + first, ox), store_lanes(rays.origin_y + first, oy);
@@ -124,38 +213,42 @@ void light_pixels(const Transport& transport, std::span<const Lit> lights, const
     const uint32_t blocked = transport.world.occluded_packet(rays, active);
     for (int k = 0; k < lines; k++) {
       const Lanes free = keep_lanes(~lanes_of_bits(blocked >> (k * wide) & 0xff), strength[k]);
-      for (int c = 0; c < 3; c++) sum[k][c] += free * lit.light->intensity[c];
-    }
-    if (!transport.tables.any_pane) continue;
-    for (uint32_t bits = blocked & active; bits; bits &= bits - 1) {
-      const int i = std::countr_zero(bits), k = i / wide, lane = i % wide;
-      const vec3 passes = pass_panes(transport, rays, i);
-      for (int c = 0; c < 3; c++)
-        sum[k][c][lane] += strength[k][lane] * passes[c] * lit.light->intensity[c];
+      Lanes light[3] = {free, free, free};
+      if (transport.tables.any_pane)
+        for (uint32_t bits = (blocked & active) >> (k * wide) & 0xff; bits; bits &= bits - 1) {
+          const int lane = std::countr_zero(bits);
+          const vec3 passes = pass_panes(transport, rays, k * wide + lane);
+          for (int c = 0; c < 3; c++) light[c][lane] = strength[k][lane] * passes[c];
+        }
+      for (int c = 0; c < 3; c++) light[c] *= lit.light->intensity[c];
+      sum[k].add(gloss[k], light, highlight[k], hl[k]);
     }
   }
+  RawVector<float>* matte[] = {&to.red, &to.green, &to.blue};
+  RawVector<float>* shine[] = {&to.gloss_red, &to.gloss_green, &to.gloss_blue};
+  const int count = std::min(wide, s.view.width - x);
   for (int k = 0; k < lines; k++) {
     const size_t at = size_t(y + k) * size_t(s.view.width) + size_t(x);
-    const int count = std::min(wide, s.view.width - x);
-    for (int i = 0; i < count; i++) {
-      to.red[at + size_t(i)] += sum[k][0][i];
-      to.green[at + size_t(i)] += sum[k][1][i];
-      to.blue[at + size_t(i)] += sum[k][2][i];
-    }
+    for (size_t c = 0; c < 3; c++)
+      for (int i = 0; i < count; i++) {
+        (*matte[c])[at + size_t(i)] += sum[k].matte[c][i];
+        if (gloss[k].any) (*shine[c])[at + size_t(i)] += sum[k].gloss[c][i];
+      }
   }
 }
 
 }  // namespace
 
 size_t memory_bytes(const LightPlanes& planes) {
-  return bytes_of(planes.red, planes.green, planes.blue);
+  return bytes_of(planes.red, planes.green, planes.blue, planes.gloss_red, planes.gloss_green,
+                  planes.gloss_blue);
 }
 
-void clear_planes(size_t pixels, LightPlanes& planes) {
-  for (auto* plane : {&planes.red, &planes.green, &planes.blue}) {
-    plane->resize(pixels + surface_buffer_pad);
-    std::fill(plane->begin(), plane->end(), 0.0f);
-  }
+void clear_planes(const SurfaceBuffer& surfaces, LightPlanes& planes) {
+  const size_t pixels = surfaces.pixels() + surface_buffer_pad;
+  for (auto* plane : {&planes.red, &planes.green, &planes.blue}) plane->assign(pixels, 0.0f);
+  for (auto* plane : {&planes.gloss_red, &planes.gloss_green, &planes.gloss_blue})
+    plane->assign(surfaces.gloss.empty() ? 0 : pixels, 0.0f);
 }
 
 void add_direct_light(const World& world, const Lights& lights, std::span<const DynamicLight> from,

@@ -24,17 +24,9 @@ void add_irradiance(const RawVector<vec3>& irradiance, LightPlanes& to) {
 }  // namespace
 
 size_t memory_bytes(const DynamicImage& image) {
-  const ReflectiveShadowMap& map = image.bounce.lights.map;
-  const VirtualLights& lights = image.bounce.lights.lights;
-  const SplatPicture& picture = image.bounce.picture;
-  size_t sum = bytes_of(map.texels, map.maps, map.cells, map.aims, map.shares) +
-               bytes_of(lights.x, lights.y, lights.z, lights.nx, lights.ny, lights.nz, lights.red,
-                        lights.green, lights.blue, lights.radius2, lights.target, lights.weights) +
-               bytes_of(picture.irradiance, picture.pyramid.cells, picture.subsplats.list,
-                        picture.subsplats.first, picture.room.joined);
-  for (const IlluminationLevel& level : picture.illumination.levels) sum += bytes_of(level.texels);
-  return sum + memory_bytes(image.surfaces) + memory_bytes(image.light) +
-         bytes_of(image.bounce.sources);
+  const DynamicBounce& bounce = image.bounce;
+  return memory_bytes(image.surfaces) + memory_bytes(image.light) + bytes_of(bounce.sources) +
+         memory_bytes(bounce.lights) + memory_bytes(bounce.picture);
 }
 
 SplatSettings dynamic_splat_settings() {
@@ -47,29 +39,36 @@ SplatSettings dynamic_splat_settings() {
 }
 
 void begin_bounce(const World& world, const Lights& lights, std::span<const DynamicLight> from,
-                  const SplatSettings& settings, DynamicBounce& bounce) {
+                  const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce) {
   bounce.sources.clear();
+  if (settings.virtual_lights == 0) return;
   for (const DynamicLight& one : from) {
     bounce.sources.push_back(make_splat_source(one.light, one.id));
     bounce.sources.back().radius = one.radius;
   }
   const Transport transport{world, *lights.tables};
-  draw_virtual_lights(transport, bounce.sources, settings, {}, {}, bounce.lights);
+  draw_virtual_lights(transport, bounce.sources, settings, seed, {}, bounce.lights);
 }
 
-void light_surfaces(const World& world, const Lights& lights, std::span<const DynamicLight> from,
-                    const SurfaceBuffer& surfaces, const SplatSettings& settings,
-                    DynamicBounce& bounce, LightPlanes& light) {
-  clear_planes(surfaces.pixels(), light);
-  add_direct_light(world, lights, from, surfaces, light);
-  if (settings.virtual_lights == 0) return;
+void add_bounce(const World& world, const Lights& lights, const SurfaceBuffer& surfaces,
+                const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce,
+                LightPlanes& light) {
+  if (bounce.sources.empty()) return;
   SplatPixels pixels;
   pixels.view = surfaces.view;
   pixels.depth = surfaces.depth.data();
   pixels.nx = surfaces.nx.data(), pixels.ny = surfaces.ny.data(), pixels.nz = surfaces.nz.data();
   const Transport transport{world, *lights.tables};
-  splat_picture(transport, bounce.lights, pixels, settings, {}, bounce.picture);
+  splat_picture(transport, bounce.lights, pixels, settings, seed, bounce.picture);
   add_irradiance(bounce.picture.irradiance, light);
+}
+
+void light_surfaces(const World& world, const Lights& lights, std::span<const DynamicLight> from,
+                    const SurfaceBuffer& surfaces, const SplatSettings& settings,
+                    DynamicBounce& bounce, LightPlanes& light) {
+  clear_planes(surfaces, light);
+  add_direct_light(world, lights, from, surfaces, light);
+  add_bounce(world, lights, surfaces, settings, {}, bounce, light);
 }
 
 void compute_dynamic_light(const World& world, const Lights& lights,
@@ -77,19 +76,25 @@ void compute_dynamic_light(const World& world, const Lights& lights,
                            std::span<const DynamicLight> from, const SplatSettings& settings,
                            DynamicImage& image) {
   see_surfaces(visibility, dynamic_light_view(view), image.surfaces);
-  if (settings.virtual_lights > 0) begin_bounce(world, lights, from, settings, image.bounce);
+  begin_bounce(world, lights, from, settings, {}, image.bounce);
   light_surfaces(world, lights, from, image.surfaces, settings, image.bounce, image.light);
 }
 
 void read_dynamic_light(const DynamicImage& image, const View& view, const VisibleRun& run,
-                        const RunSurface& surface, RunKnown& to) {
+                        const RunSurface& surface, RunDynamic& to) {
   const View& lit = image.surfaces.view;
-  const float* planes[] = {image.light.red.data(), image.light.green.data(),
-                           image.light.blue.data()};
-  float* out[] = {to.red, to.green, to.blue};
+  const LightPlanes& light = image.light;
+  const float* planes[] = {light.red.data(),         light.green.data(),
+                           light.blue.data(),        light.gloss_red.data(),
+                           light.gloss_green.data(), light.gloss_blue.data()};
+  float* out[] = {to.light.red, to.light.green, to.light.blue,
+                  to.gloss.red, to.gloss.green, to.gloss.blue};
+  const RawVector<uint32_t>& glossy = image.surfaces.gloss;
+  to.any = true, to.any_gloss = !glossy.empty();
+  const int count = to.any_gloss ? 6 : 3;
   if (lit == view) {
     const size_t at = size_t(run.y) * size_t(view.width) + size_t(run.x);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < count; c++)
       std::memcpy(out[c], planes[c] + at, size_t(run.count) * sizeof(float));
     return;
   }
@@ -104,7 +109,7 @@ void read_dynamic_light(const DynamicImage& image, const View& view, const Visib
     TapWeights weights;
     if (seen.depth < std::numeric_limits<float>::infinity())
       weights = weigh_taps(image.surfaces, grid, column, row, seen);
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < count; c++) {
       float sum = 0;
       for (size_t k = 0; k < 4; k++)
         sum +=

@@ -31,10 +31,15 @@ size_t memory_bytes(const DynamicImage& image);
 SplatSettings dynamic_splat_settings();
 
 // All cores; call after World::commit(), while nothing moves. Memory is used again.
-// Sends the light of `from` into the world, for light_surfaces().
+// Sends the light of `from` into the world, for the next two. Same seed: the same random numbers.
 void begin_bounce(const World& world, const Lights& lights, std::span<const DynamicLight> from,
-                  const SplatSettings& settings, DynamicBounce& bounce);
-// Overwrites `light` by what falls on `surfaces`, straight and scattered once.
+                  const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce);
+// Adds what of it falls on `surfaces` to `light`.
+void add_bounce(const World& world, const Lights& lights, const SurfaceBuffer& surfaces,
+                const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce,
+                LightPlanes& light);
+// Overwrites `light` by what falls on `surfaces`: straight from `from`, and what begin_bounce() has
+// sent.
 void light_surfaces(const World& world, const Lights& lights, std::span<const DynamicLight> from,
                     const SurfaceBuffer& surfaces, const SplatSettings& settings,
                     DynamicBounce& bounce, LightPlanes& light);
@@ -44,9 +49,14 @@ void compute_dynamic_light(const World& world, const Lights& lights,
                            std::span<const DynamicLight> from, const SplatSettings& settings,
                            DynamicImage& image);
 
-// Radiance of white diffuse surfaces at the pixels of a run of a picture of `view`, which
-// compute_dynamic_light() was called for. `surface`: of the run, with normals.
+// At the pixels of a run of a picture of `view`, which compute_dynamic_light() was called for.
+struct RunDynamic {
+  bool any = false, any_gloss = false;
+  RunKnown light;  // radiance of white diffuse surfaces
+  RunKnown gloss;  // radiance of highlights, where there are any
+};
+// `surface`: of the run, with normals.
 void read_dynamic_light(const DynamicImage& image, const View& view, const VisibleRun& run,
-                        const RunSurface& surface, RunKnown& to);
+                        const RunSurface& surface, RunDynamic& to);
 
 }  // namespace wellspring

@@ -4,9 +4,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace wellspring {
+
+size_t memory_bytes(const SplatLights& drawn) {
+  const ReflectiveShadowMap& map = drawn.map;
+  const VirtualLights& l = drawn.lights;
+  return bytes_of(map.texels, map.maps, map.cells, map.aims, map.shares) +
+         bytes_of(l.x, l.y, l.z, l.nx, l.ny, l.nz, l.red, l.green, l.blue, l.radius2, l.target,
+                  l.weights);
+}
+
+size_t memory_bytes(const SplatPicture& picture) {
+  const Subsplats& subsplats = picture.subsplats;
+  const SplatShadowRoom& shadows = picture.shadows;
+  size_t sum = bytes_of(picture.irradiance, picture.pyramid.levels, picture.pyramid.cells,
+                        subsplats.list, subsplats.first, subsplats.split, subsplats.parted,
+                        picture.room.joined) +
+               bytes_of(shadows.shares, shadows.owner, shadows.first_owner, shadows.current,
+                        shadows.seen, shadows.weight);
+  for (const IlluminationLevel& level : picture.illumination.levels) sum += bytes_of(level.texels);
+  return sum;
+}
 
 void draw_virtual_lights(const Transport& transport, std::span<const SplatSource> sources,
                          const SplatSettings& settings, SplatSeed seed,

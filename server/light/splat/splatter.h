@@ -61,6 +61,8 @@ struct SplatPicture {
   UpsampleRoom room;
   SplatShadowRoom shadows;
 };
+size_t memory_bytes(const SplatLights& drawn);
+size_t memory_bytes(const SplatPicture& picture);
 
 // All cores. Pictures more than most_splat_side pixels wide or high remain dark.
 void splat_picture(const Transport& transport, const SplatLights& drawn, const SplatPixels& pixels,

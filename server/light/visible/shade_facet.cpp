@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "light/material/gloss_albedo.h"
 
 namespace wellspring {
 namespace {
@@ -23,6 +24,19 @@ vec3 read_picture(const Pictures& pictures, const FacetPicture& place, const Tex
   size_t image = size_t(texture.image);
   return eval_pyramid(pictures.scene->images[image], pictures.pyramids[image], texture, uv,
                       pixel * place.texels);
+}
+
+// Base colour, linear.
+vec3 see_base(const Pictures& pictures, const Facet& f, vec2 at, float pixel) {
+  const Mesh& mesh = *f.placed->mesh;
+  const Material& m = *f.material;
+  vec3 base = vec3(m.base_color);
+  if (m.base_color_texture.texture >= 0)
+    base *= read_picture(pictures, f.base, m.base_color_texture, at, pixel);
+  if (!mesh.colors.empty())
+    base *= vec3(mix3(mesh.colors[f.corner.x], mesh.colors[f.corner.y], mesh.colors[f.corner.z],
+                      vec3(1 - at.x - at.y, at.x, at.y)));
+  return base;
 }
 
 }  // namespace
@@ -49,7 +63,6 @@ float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle
 
 PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
                      MetalDemodulation metal, const Hit& hit, float pixel) {
-  const Mesh& mesh = *f.placed->mesh;
   const Material& m = *f.material;
   vec2 at = hit.barycentric;
   vec3 weight(1 - at.x - at.y, at.x, at.y);
@@ -61,12 +74,7 @@ PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& 
   normal = length2 > 1e-25f ? normal / std::sqrt(length2) : f.face;
   seen.normal = f.front ? normal : -normal;
   seen.scatters = !m.unlit;
-  vec3 base = vec3(m.base_color);
-  if (m.base_color_texture.texture >= 0)
-    base *= read_picture(pictures, f.base, m.base_color_texture, at, pixel);
-  if (!mesh.colors.empty())
-    base *= vec3(
-        mix3(mesh.colors[f.corner.x], mesh.colors[f.corner.y], mesh.colors[f.corner.z], weight));
+  const vec3 base = see_base(pictures, f, at, pixel);
   float metallic = m.metallic;
   if (m.metallic_roughness_texture.texture >= 0 && m.metallic > 0)
     metallic *= read_picture(pictures, f.shine, m.metallic_roughness_texture, at, pixel).z;
@@ -82,6 +90,21 @@ PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& 
     seen.glow = surface_emission(surface, m);
   }
   return seen;
+}
+
+Gloss see_gloss(const Pictures& pictures, const Facet& f, vec2 barycentric, float pixel) {
+  const Material& m = *f.material;
+  Gloss gloss;
+  gloss.roughness = clean(m.roughness), gloss.metallic = clean(m.metallic);
+  if (m.metallic_roughness_texture.texture >= 0) {
+    const vec3 texel =
+        read_picture(pictures, f.shine, m.metallic_roughness_texture, barycentric, pixel);
+    gloss.roughness *= clean(texel.y), gloss.metallic *= clean(texel.z);
+  }
+  gloss.f0 = clean(gloss_factors(m).f0 * m.specular_color);
+  if (gloss.metallic >= least_metal)
+    gloss.f0 = glm::mix(gloss.f0, clean(see_base(pictures, f, barycentric, pixel)), gloss.metallic);
+  return gloss;
 }
 
 }  // namespace wellspring

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "light/visible/facet.h"
+#include "light/visible/gloss.h"
 #include "light/visible/see_through.h"
 #include "light/walk/first_surface.h"
 #include "world/texture_pyramid.h"
@@ -31,5 +32,7 @@ inline bool emits(const Facet& f) {
 // `metal`: its material's; `pixel`: its width on the surface, metres.
 PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
                      MetalDemodulation metal, const Hit& hit, float pixel);
+
+Gloss see_gloss(const Pictures& pictures, const Facet& f, vec2 barycentric, float pixel);
 
 }  // namespace wellspring

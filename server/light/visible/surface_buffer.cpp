@@ -10,7 +10,8 @@
 namespace wellspring {
 
 size_t memory_bytes(const SurfaceBuffer& surfaces) {
-  return bytes_of(surfaces.depth, surfaces.nx, surfaces.ny, surfaces.nz, surfaces.object);
+  return bytes_of(surfaces.depth, surfaces.nx, surfaces.ny, surfaces.nz, surfaces.object,
+                  surfaces.gloss, surfaces.metallic);
 }
 
 void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuffer& surfaces,
@@ -20,6 +21,8 @@ void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuf
   for (auto* plane : {&surfaces.depth, &surfaces.nx, &surfaces.ny, &surfaces.nz})
     plane->resize(pixels);
   surfaces.object.resize(pixels);
+  const bool gloss = visibility.any_gloss();
+  surfaces.gloss.resize(gloss ? pixels : 0), surfaces.metallic.resize(gloss ? pixels : 0);
   auto take = [&](const VisibleRun& run) {
     RunPixels p;
     describe_run(run, p);
@@ -27,6 +30,7 @@ void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuf
     const size_t at = size_t(run.y) * size_t(view.width) + size_t(run.x);
     std::memcpy(&surfaces.depth[at], run.depth, size_t(run.count) * sizeof(float));
     std::memcpy(&surfaces.object[at], run.object, size_t(run.count) * sizeof(uint32_t));
+    if (gloss) run.gloss(&surfaces.gloss[at], &surfaces.metallic[at]);
     for (int i = 0; i < run.count; i++) {
       const float x = seen.nx[i], y = seen.ny[i], z = seen.nz[i];
       const float length2 = x * x + y * y + z * z;

@@ -14,6 +14,9 @@ struct SurfaceBuffer {
   RawVector<float> depth;       // along the viewing axis; infinity: nothing there
   RawVector<float> nx, ny, nz;  // normal, towards the eye, unit
   RawVector<uint32_t> object;   // 0: nothing there
+  // Highlights, as light/visible/gloss.h packs them. Empty: nothing in the scene has any.
+  RawVector<uint32_t> gloss;
+  RawVector<uint8_t> metallic;
   size_t pixels() const { return size_t(view.width) * size_t(view.height); }
 };
 size_t memory_bytes(const SurfaceBuffer& surfaces);

@@ -27,6 +27,8 @@ struct VisibilityPass::Impl {
   std::vector<DemodulationScale> scale;  // of those scaled
   std::vector<uint8_t> panes;            // of each material: is one everywhere
   std::vector<uint8_t> polished;         // of each material: some place of it may be
+  std::vector<uint8_t> glossy;           // of each material: some place of it has highlights
+  bool any_gloss = false;                // of a mesh of the scene
   std::vector<uint8_t> moving_object;    // by object
   MetalDemodulation metal_of(int material) const {
     return lights.tables->materials[size_t(material)].metal;
@@ -53,9 +55,14 @@ VisibilityPass::VisibilityPass(const World& world, const Lights& lights)
                                          : find_reflectance(m, impl_->metal_of(int(i)), scale));
     impl_->scale.push_back(scale);
     impl_->panes.push_back(pane_kind(m));
+    impl_->glossy.push_back(may_gloss(m, ranges));
   }
+  for (const Mesh& mesh : scene.meshes)
+    if (mesh.material >= 0) impl_->any_gloss |= impl_->glossy[size_t(mesh.material)] != 0;
 }
 VisibilityPass::~VisibilityPass() = default;
+
+bool VisibilityPass::any_gloss() const { return impl_->any_gloss; }
 
 bool VisibilityPass::moves(uint32_t object) const {
   return object < impl_->moving_object.size() && impl_->moving_object[object];
@@ -273,6 +280,24 @@ uint64_t VisibleRun::polished() const {
     for (int i = begin; i < r.end[p]; i++) found |= uint64_t(1) << i;
   }
   return found;
+}
+
+void VisibleRun::gloss(uint32_t* codes, uint8_t* metallic) const {
+  std::fill_n(codes, count, 0u), std::fill_n(metallic, count, uint8_t(0));
+  if (seen_) return;
+  const RasterRun& r = *impl_->run;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    if (r.instance[begin] == RasterRun::nothing) continue;
+    const Facet& f = impl_->facet(begin);
+    if (!impl_->visibility.glossy[size_t(f.placed->mesh->material)]) continue;
+    for (int i = begin; i < r.end[p]; i++) {
+      const float width = pixel_width(f, r.depth[i], impl_->direction(i), impl_->blurred_angle);
+      Gloss gloss = see_gloss(impl_->visibility.pictures, f, {r.u[i], r.v[i]}, width);
+      if (r.veil) gloss.f0 *= r.veil[i].tint;
+      const GlossCode packed = pack_gloss(gloss);
+      codes[i] = packed.code, metallic[i] = packed.metallic;
+    }
+  }
 }
 
 uint64_t VisibleRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {

@@ -49,6 +49,8 @@ class VisibleRun {
   // Pixels that may see what is polished: their guides are those of what it shows
   // (light/visible/guides.h).
   uint64_t polished() const;
+  // Highlights of its pixels (light/visible/gloss.h); none where rays have seen them.
+  void gloss(uint32_t* codes, uint8_t* metallic) const;
   // Of its pixels that show what moves, as `surface` describes it (light/known/skin_light.h); of
   // others anything. Returns those, a bit each; none where rays have seen them.
   uint64_t light(const struct SkinLight& skin, const RunSurface& surface, RunSkin& to) const;
@@ -82,6 +84,8 @@ class VisibilityPass {
       const View& view, vec2 offset, const std::function<void(const VisibleRun&)>& take,
       RasterShows shows = RasterShows::all,
       std::function<int(uint32_t pixel, uint32_t other)> differ = {}) const;
+  // Has anything highlights?
+  bool any_gloss() const;
   // Is it of a mesh that moves?
   bool moves(uint32_t object) const;
   // Is there a visible one that does, wherever it is?

@@ -2,6 +2,7 @@
 // What the visibility pass (light/visible/visibility.h) has to know of materials before it begins.
 #pragma once
 #include "light/material/material_use.h"
+#include "light/visible/gloss.h"
 #include "light/visible/guides.h"
 #include "light/walk/first_surface.h"
 
@@ -45,6 +46,13 @@ inline bool may_be_polished(const Material& m, TextureRanges& ranges) {
   if (m.transmission > 0) return true;
   float roughness = m.roughness * ranges.of(m.metallic_roughness_texture).low.y;
   return roughness * roughness < sharp_alpha;
+}
+
+// Some place of it has highlights (light/visible/gloss.h), which are seen without rays.
+inline bool may_gloss(const Material& m, TextureRanges& ranges) {
+  if (m.unlit || m.transmission > 0) return false;
+  const TexelRange& range = ranges.of(m.metallic_roughness_texture);
+  return m.roughness * range.low.y < least_rough || m.metallic * range.high.z >= least_metal;
 }
 
 }  // namespace wellspring

@@ -62,11 +62,22 @@ void light_picture(Show& show, VisitorPicture& picture) {
   const SplatSettings& settings = show.settings.dynamic;
   const View& view = picture.keyframe.view;
   BackdropSurfaces& surfaces = picture.surfaces;
-  if (surfaces.view != view) find_backdrop_surfaces(*show.visibility, view, surfaces);
+  SettledBounce& settled = picture.settled;
+  if (surfaces.view != view) {
+    find_backdrop_surfaces(*show.visibility, view, surfaces);
+    settled = {};
+  }
   see_surfaces(*show.visibility, dynamic_light_view(view), image.surfaces, RasterShows::moving);
-  begin_bounce(*show.world, show.lights, from, settings, image.bounce);
+  DynamicLights others = from;
+  take_settled(settled, others);
+  if (wants_pass(settled))
+    add_pass(*show.world, show.lights, surfaces.surfaces, settings, settled, image.bounce);
+  begin_bounce(*show.world, show.lights, others, settings, {}, image.bounce);
   light_surfaces(*show.world, show.lights, from, surfaces.surfaces, settings, image.bounce,
                  renderer.work.backdrop_light);
+  add_settled(settled, renderer.work.backdrop_light);
+  if (!settled.lights.empty())
+    begin_bounce(*show.world, show.lights, from, settings, {}, image.bounce);
   light_surfaces(*show.world, show.lights, from, image.surfaces, settings, image.bounce,
                  image.light);
 }

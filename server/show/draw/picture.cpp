@@ -231,7 +231,7 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   if (!job.keep) std::swap(show.renderer.work.picture, picture.image);
   std::swap(show.renderer.work.keyframe, picture.keyframe);
   picture.around.drawn = false;
-  if (job.passing || job.dynamic.empty()) picture.surfaces = {};
+  if (job.passing || job.dynamic.empty()) picture.surfaces = {}, picture.settled = {};
   bool settles = job.still && !job.passing;  // samples of its pixels take that memory
   if (settles || job.camera_cuts != picture.around.camera_cuts ||
       show.time - picture.around.ordered_at > around_kept)

@@ -11,6 +11,7 @@
 #include "cache/cache.h"
 #include "frame/tonemap.h"
 #include "light/dynamic/backdrop_surfaces.h"
+#include "light/dynamic/settled_bounce.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
@@ -69,6 +70,7 @@ struct VisitorPicture {
   MovingPicture moving;       // that, to be laid over it; empty: nothing
   double posed_at = -1e9;     // show time of its job
   BackdropSurfaces surfaces;  // of the keyframe, while lights that move shine on it
+  SettledBounce settled;      // of those of them that stay as they are
   bool unshown = false;       // nothing of it has been sent yet
   size_t cache_bytes = 0, memory_bytes = 0;  // of its cache; of all that is kept for its pictures
 };

@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "light/technique/technique.h"
-#include "light/visible/describe_run.h"
+#include "scenes/dynamic_picture.h"
 #include "scenes/scenes.h"
 
 using namespace wellspring;
@@ -52,19 +52,7 @@ std::vector<vec3> draw_dynamic(const Scene& scene, const View& view,
   SplatSettings direct_alone;
   direct_alone.virtual_lights = 0;
   compute_dynamic_light(world, lights, visibility, view, from, direct_alone, image);
-  std::vector<vec3> picture(size_t(view.width) * size_t(view.height));
-  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
-    RunPixels p;
-    describe_run(run, p);
-    RunKnown light;
-    read_dynamic_light(image, view, run, p.surface, light);
-    for (int i = 0; i < run.count; i++)
-      picture[size_t(run.y) * size_t(view.width) + size_t(run.x + i)] =
-          run.object[i] == 0 ? vec3(0)
-                             : vec3(light.red[i], light.green[i], light.blue[i]) *
-                                   vec3(p.surface.red[i], p.surface.green[i], p.surface.blue[i]);
-  });
-  return picture;
+  return draw_dynamic_light(visibility, image, view);
 }
 
 // The same light, as the technique for direct light knows it in a scene that it stands in.
@@ -166,12 +154,58 @@ TEST(DynamicImage, NothingAroundAFlameCastsAShadow) {
   EXPECT_GT(lit(), 96 * 64 / 3);
 }
 
+// Highlights are those that rays find, on metal, on varnish, and where metal and cloth are one
+// surface by their texture; in half of the resolution, too.
+TEST(DynamicImage, MetalAndVarnishHaveHighlights) {
+  DynamicLight one{lamp({1, 2, 0.5f}, vec3(6, 5, 4))};
+  for (const Material& material :
+       {metal(vec3(0.9f, 0.7f, 0.3f), 0.35f), plastic(vec3(0.3f, 0.1f, 0.1f), 0.3f)})
+    for (ivec2 size : {ivec2(96, 64), ivec2(801, 603)}) {
+      Scene scene = empty_scene();
+      add_floor(scene, 0.5f);
+      add_mesh(scene, sphere_mesh(add_material(scene, material), 0.5f, 64), "ball",
+               at({0, 0.5f, 0}));
+      const View view = view_of(scene, size.x, size.y);
+      const auto picture = draw_dynamic(scene, view, {one}),
+                 truth = trace_direct_light(scene, view, {one});
+      EXPECT_LT(count_wrong(picture, truth, 0.1f), size.x * size.y / 50);
+      // The matte ball's picture has none of it.
+      const auto peak = [](const std::vector<vec3>& of) {
+        float peak = 0;
+        for (vec3 color : of) peak = std::max(peak, max_component(color));
+        return peak;
+      };
+      EXPECT_NEAR(peak(picture) / peak(truth), 1, 0.12);
+      EXPECT_GT(peak(picture), 1.5f * peak(draw_dynamic(make_floor_and_ball(), view, {one})));
+    }
+}
+
+// A scene without anything that glosses keeps no room for highlights.
+TEST(DynamicImage, HighlightsCostNothingWhereThereAreNone) {
+  Scene scene = make_floor_and_ball();
+  World world(scene);
+  Lights lights = make_lights(world);
+  VisibilityPass visibility(world, lights);
+  EXPECT_FALSE(visibility.any_gloss());
+  DynamicImage image;
+  const DynamicLights from{{lamp({1, 2, 0.5f})}};
+  compute_dynamic_light(world, lights, visibility, view_of(scene, 96, 64), from, {}, image);
+  EXPECT_TRUE(image.surfaces.gloss.empty());
+  EXPECT_TRUE(image.light.gloss_red.empty());
+}
+
 // A light that touches a surface is bounded; one at a place or of a strength that is none is not
 // seen.
 TEST(DynamicImage, HardLightsStayFinite) {
   Scene scene = make_floor_and_ball();
+  // Mirrors and polish to the eye: highlights are bounded, too.
+  add_mesh(scene, sphere_mesh(add_material(scene, metal(vec3(1), 0)), 0.3f, 64), "mirror",
+           at({0.8f, 0.3f, 0.8f}));
+  add_mesh(scene, sphere_mesh(add_material(scene, plastic(vec3(0.5f), 1e-40f)), 0.3f, 64), "polish",
+           at({-0.8f, 0.3f, 0.8f}));
   View view = view_of(scene, 64, 48);
-  const float most = 3 / (pi * least_distance * least_distance);
+  const float brightest_lobe = 0.25f / (least_alpha * least_alpha);
+  const float most = 3 * brightest_lobe / (least_distance * least_distance);
   for (vec3 place : {vec3(0.3f, 0, 1), vec3(0, 1, 0), vec3(0, 0.5f, 0), vec3(view.position),
                      vec3(1e7f, 1e7f, 0), vec3(1e-40f), vec3(NAN, 0, 0), vec3(INFINITY, 0, 0)})
     for (float strength : {1.0f, 0.0f, 1e-42f}) {

@@ -81,6 +81,22 @@ TEST_F(DynamicPictures, FollowTheLight) {
   expect_lit(4);
 }
 
+// What a light scatters that stays as it is becomes better from picture to picture.
+TEST_F(DynamicPictures, GatherTheBounceOfALightThatStays) {
+  ChangingLight stays = torch();
+  stays.track.clear();
+  begin_with({stays});
+  run(5);
+  const int passes = visitor().picture.settled.passes;
+  EXPECT_GT(passes, 3);
+  run(6);
+  EXPECT_GT(visitor().picture.settled.passes, passes);
+  expect_lit(4);
+  begin_with({torch()});
+  run(5);
+  EXPECT_EQ(visitor().picture.settled.passes, 0) << "it never stays";
+}
+
 TEST_F(DynamicPictures, AreLitOnTheWay) {
   begin_with({torch()});
   for (int i = 0; i < 100; i++) turn(0.01), step();
