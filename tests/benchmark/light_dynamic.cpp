@@ -74,10 +74,9 @@ void time_picture(const World& world, const Lights& lights, const VisibilityPass
   timed(cpu.surfaces,
         [&] { see_surfaces(visibility, dynamic_light_view(keyframe.view), image.surfaces); });
   timed(cpu.maps, [&] { begin_bounce(world, lights, lit, settings, {}, image.bounce); });
-  SplatSettings none = settings;
-  none.virtual_lights = 0;
   timed(cpu.direct, [&] {
-    light_surfaces(world, lights, lit, backdrop.surfaces, none, image.bounce, image.light);
+    clear_planes(backdrop.surfaces, image.light);
+    add_direct_light(world, lights, lit, backdrop.surfaces, image.light);
   });
   timed(cpu.splat, [&] {
     light_surfaces(world, lights, lit, backdrop.surfaces, settings, image.bounce, image.light);

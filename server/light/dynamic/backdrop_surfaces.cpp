@@ -59,38 +59,42 @@ void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
 
 namespace {
 
-// Light of a run of the picture, from its own resolution or between four pixels of half of it.
-struct ArrivingRun {
-  const BackdropSurfaces& backdrop;
-  int x, y;
-  TapPair row = tap_pair(y, backdrop.surfaces.view.height);
-  size_t at = size_t(y) * size_t(backdrop.view.width) + size_t(x);
+// Where the light of a run's pixels lies: four places each, or one.
+struct RunTaps {
+  static constexpr int most = RasterRun::most;
+  int count, places;
+  uint32_t at[4][most];
+  float share[4][most];
 
-  float read(const float* plane, int i) const {
-    if (backdrop.shares.empty()) return plane[at + size_t(i)];
-    const int width = backdrop.surfaces.view.width;
-    const float* above = plane + size_t(row.first) * size_t(width);
-    const float* below = plane + size_t(row.second) * size_t(width);
-    const TapPair column = tap_pair(x + i, width);
-    const uint32_t shares = backdrop.shares[at + size_t(i)];
-    return (above[column.first] * float(shares & 255) +
-            above[column.second] * float(shares >> 8 & 255) +
-            below[column.first] * float(shares >> 16 & 255) +
-            below[column.second] * float(shares >> 24)) *
-           (1 / 255.0f);
-  }
-  bool any_gloss(int count) const {
-    const SurfaceBuffer& s = backdrop.surfaces;
-    if (s.gloss.empty()) return false;
-    const bool fine = backdrop.shares.empty();
-    const int first = fine ? x : tap_pair(x, s.view.width).first;
-    const int last = fine ? x + count - 1 : tap_pair(x + count - 1, s.view.width).second;
-    uint32_t any = 0;
-    for (int line : {fine ? y : row.first, fine ? y : row.second}) {
-      const uint32_t* codes = &s.gloss[size_t(line) * size_t(s.view.width)];
-      for (int i = first; i <= last; i++) any |= codes[i];
+  RunTaps(const BackdropSurfaces& backdrop, int x, int y, int run)
+      : count(run), places(backdrop.shares.empty() ? 1 : 4) {
+    const View& lit = backdrop.surfaces.view;
+    if (places == 1) {
+      for (int i = 0; i < count; i++) at[0][i] = uint32_t(y * lit.width + x + i), share[0][i] = 1;
+      return;
     }
-    return any != 0;
+    const TapPair row = tap_pair(y, lit.height);
+    const uint32_t above = uint32_t(row.first * lit.width),
+                   below = uint32_t(row.second * lit.width);
+    const uint32_t* shares = &backdrop.shares[size_t(y) * size_t(backdrop.view.width) + size_t(x)];
+    for (int i = 0; i < count; i++) {
+      const TapPair column = tap_pair(x + i, lit.width);
+      const uint32_t first = uint32_t(column.first), second = uint32_t(column.second);
+      at[0][i] = above + first, at[1][i] = above + second;
+      at[2][i] = below + first, at[3][i] = below + second;
+      for (int k = 0; k < 4; k++) share[k][i] = float(shares[i] >> (8 * k) & 255) * (1 / 255.0f);
+    }
+  }
+  void read(const RawVector<float>& plane, float* to) const {
+    for (int i = 0; i < count; i++) to[i] = plane[at[0][i]] * share[0][i];
+    for (int k = 1; k < places; k++)
+      for (int i = 0; i < count; i++) to[i] += plane[at[k][i]] * share[k][i];
+  }
+  bool any(const RawVector<uint32_t>& codes) const {
+    uint32_t found = 0;
+    for (int k = 0; k < places; k++)
+      for (int i = 0; i < count; i++) found |= codes[at[k][i]];
+    return found != 0;
   }
 };
 
@@ -98,20 +102,24 @@ struct ArrivingRun {
 
 void reflect_light(const BackdropSurfaces& backdrop, const LightPlanes& light, int x, int y,
                    int count, RunKnown& to) {
-  const ArrivingRun run{backdrop, x, y};
+  const RunTaps taps(backdrop, x, y, count);
   const RawVector<float>* planes[] = {&light.red, &light.green, &light.blue};
   const RawVector<float>* gloss[] = {&light.gloss_red, &light.gloss_green, &light.gloss_blue};
-  const bool glossy = run.any_gloss(count);
+  const RawVector<uint32_t>& codes = backdrop.surfaces.gloss;
+  const bool glossy = !codes.empty() && taps.any(codes);
+  const uint8_t* reflectance =
+      &backdrop.reflectance[3 * (size_t(y) * size_t(backdrop.view.width) + size_t(x))];
   float* out[] = {to.red, to.green, to.blue};
   for (size_t c = 0; c < 3; c++) {
-    const float* plane = planes[c]->data();
-    const uint8_t* codes = &backdrop.reflectance[3 * run.at + c];
+    taps.read(*planes[c], out[c]);
     for (int i = 0; i < count; i++) {
-      const float root = float(codes[3 * i]) * (1 / 255.0f);
-      out[c][i] = run.read(plane, i) * root * root;
+      const float root = float(reflectance[3 * size_t(i) + c]) * (1 / 255.0f);
+      out[c][i] *= root * root;
     }
     if (!glossy) continue;
-    for (int i = 0; i < count; i++) out[c][i] += run.read(gloss[c]->data(), i);
+    float more[RunTaps::most];
+    taps.read(*gloss[c], more);
+    for (int i = 0; i < count; i++) out[c][i] = std::max(out[c][i] + more[i], 0.0f);
   }
 }
 

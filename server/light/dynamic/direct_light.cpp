@@ -92,11 +92,12 @@ Arriving eval_arriving(const Lit& lit, const Rows& r, Lanes ox, Lanes oy, Lanes 
   return a;
 }
 
-// How eight pixels reflect: `matte` is the share of diffuse light.
+// How eight pixels reflect.
 struct RowGloss {
   bool any = false;
   GlossLanes of;
-  Lanes alpha, vx, vy, vz, nv, matte;  // `v`: towards the eye, unit
+  Lanes alpha, vx, vy, vz, nv;  // `v`: towards the eye, unit
+  Lanes coat;                   // what the dielectric reflects of light from all around
 };
 
 RowGloss read_gloss(const SurfaceBuffer& s, const Rows& r, int x, int y) {
@@ -115,9 +116,7 @@ RowGloss read_gloss(const SurfaceBuffer& s, const Rows& r, int x, int y) {
   g.vx *= inverse, g.vy *= inverse, g.vz *= inverse;
   g.nv = lanes_max(r.nx * g.vx + r.ny * g.vy + r.nz * g.vz, all_lanes(1e-3f));
   const Lanes f0 = lanes_max(lanes_max(g.of.f0[0], g.of.f0[1]), g.of.f0[2]);
-  const Lanes coat = gloss_albedo(f0, g.of.roughness, 1.0f - g.of.metallic, g.nv);
-  const LaneMask some = f0 > 0;
-  g.matte = some ? (1.0f - g.of.metallic) * (1.0f - coat) : all_lanes(1);
+  g.coat = gloss_albedo(f0, g.of.roughness, 1.0f - g.of.metallic, g.nv);
   return g;
 }
 
@@ -168,14 +167,26 @@ Lanes eval_fresnel(Lanes f0, Lanes metallic, Lanes cosine) {
 struct RowLight {
   Lanes matte[3] = {}, gloss[3] = {};
   void add(const RowGloss& g, const Lanes (&light)[3], Lanes highlight, Lanes hl) {
+    if (!g.any) {
+      for (int c = 0; c < 3; c++) matte[c] += light[c];
+      return;
+    }
+    const Lanes beneath = (1.0f - g.of.metallic) * (1.0f - g.coat);
     for (int c = 0; c < 3; c++) {
-      if (!g.any) {
-        matte[c] += light[c];
-        continue;
-      }
-      matte[c] += light[c] * g.matte;
+      matte[c] += light[c] * beneath;
       gloss[c] += light[c] * highlight * eval_fresnel(g.of.f0[c], g.of.metallic, hl);
     }
+  }
+  void put(const RowGloss& g, const SurfaceBuffer& s, int x, int y, LightPlanes& to) const {
+    RawVector<float>* const planes[] = {&to.red, &to.green, &to.blue};
+    RawVector<float>* const glossy[] = {&to.gloss_red, &to.gloss_green, &to.gloss_blue};
+    const size_t at = size_t(y) * size_t(s.view.width) + size_t(x);
+    const int count = std::min(wide, s.view.width - x);
+    for (size_t c = 0; c < 3; c++)
+      for (int i = 0; i < count; i++) {
+        (*planes[c])[at + size_t(i)] += matte[c][i];
+        if (g.any) (*glossy[c])[at + size_t(i)] += gloss[c][i];
+      }
   }
 };
 
@@ -224,17 +235,7 @@ void light_pixels(const Transport& transport, std::span<const Lit> lights, const
       sum[k].add(gloss[k], light, highlight[k], hl[k]);
     }
   }
-  RawVector<float>* matte[] = {&to.red, &to.green, &to.blue};
-  RawVector<float>* shine[] = {&to.gloss_red, &to.gloss_green, &to.gloss_blue};
-  const int count = std::min(wide, s.view.width - x);
-  for (int k = 0; k < lines; k++) {
-    const size_t at = size_t(y + k) * size_t(s.view.width) + size_t(x);
-    for (size_t c = 0; c < 3; c++)
-      for (int i = 0; i < count; i++) {
-        (*matte[c])[at + size_t(i)] += sum[k].matte[c][i];
-        if (gloss[k].any) (*shine[c])[at + size_t(i)] += sum[k].gloss[c][i];
-      }
-  }
+  for (int k = 0; k < lines; k++) sum[k].put(gloss[k], s, x, y + k, to);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that reaches a picture's surfaces straight from lights that move or change: a shadow
+// The light that reaches a picture's surfaces straight from lights that move or change, by a shadow
 // ray a pixel and light, sixteen neighbours at once.
 #pragma once
 #include <span>

@@ -21,21 +21,23 @@ bool shine_alike(const DynamicLight& a, const DynamicLight& b) {
 
 SplatSettings later_passes(SplatSettings settings) {
   settings.visibility = true;
-  // Many passes have many rays; neighbours need not help them much.
-  settings.shadow_rays = 2, settings.probe_rays = 0, settings.smooth_visibility = 1;
+  // Of many passes, noise of each is seen less than what takes light from all of them alike.
+  settings.shadow_rays = 2, settings.probe_rays = 0, settings.smooth_visibility = 0;
+  settings.bound = 0.25f;
   return settings;
 }
 
-void mix_plane(const RawVector<float>& from, float share, RawVector<float>& to) {
-  parallel_ranges(int(to.size()), 16384, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++) to[i] += (from[i] - to[i]) * share;
-  });
-}
+constexpr RawVector<float> LightPlanes::*planes[] = {&LightPlanes::red, &LightPlanes::green,
+                                                     &LightPlanes::blue};
 
-void add_plane(const RawVector<float>& from, RawVector<float>& to) {
-  parallel_ranges(int(to.size()), 16384, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++) to[i] += from[i];
-  });
+void mix_planes(const LightPlanes& from, float share, LightPlanes& into) {
+  for (auto plane : planes) {
+    const RawVector<float>& a = from.*plane;
+    RawVector<float>& to = into.*plane;
+    parallel_ranges(int(to.size()), 16384, [&](int begin, int end) {
+      for (size_t i = size_t(begin); i < size_t(end); i++) to[i] += (a[i] - to[i]) * share;
+    });
+  }
 }
 
 }  // namespace
@@ -84,14 +86,18 @@ void add_pass(const World& world, const Lights& lights, const SurfaceBuffer& sur
     return;
   }
   const float share = 1 / float(first_weight + std::min(pass, most_passes));
-  mix_plane(light.red, share, mean.red), mix_plane(light.green, share, mean.green);
-  mix_plane(light.blue, share, mean.blue);
+  mix_planes(light, share, mean);
 }
 
 void add_settled(const SettledBounce& settled, LightPlanes& light) {
   if (settled.lights.empty()) return;
-  add_plane(settled.mean.red, light.red), add_plane(settled.mean.green, light.green);
-  add_plane(settled.mean.blue, light.blue);
+  for (auto plane : planes) {
+    const RawVector<float>& from = settled.mean.*plane;
+    RawVector<float>& to = light.*plane;
+    parallel_ranges(int(to.size()), 16384, [&](int begin, int end) {
+      for (size_t i = size_t(begin); i < size_t(end); i++) to[i] += from[i];
+    });
+  }
 }
 
 }  // namespace wellspring
