@@ -69,6 +69,7 @@ Teller& teller_for_orders(Show& show, Visitor& visitor) {
     if (show.teller.voice.started && listens_to(show, visitor, show.teller))
       clear_subtitle(visitor);
     visitor.own_teller = std::make_unique<Teller>(show.teller);
+    visitor.own_teller->number = visitor.link->id;
     visitor.own_teller->voice = {};
     visitor.own_teller->sounding = {};
   }

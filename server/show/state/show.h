@@ -154,13 +154,13 @@ struct Show {
   Sums sums;  // counted since they were last taken (show/count)
 
   uint64_t ticks = 0;
-  uint64_t pose_number = 1;            // of the world: counts commits
-  const Teller* posed_as = nullptr;    // as whom its figures stand; may be gone meanwhile
-  const Visitor* posed_for = nullptr;  // whose own animations it shows; likewise; null: nobody's
-  double time = 0;                     // of the present tick, seconds
-  uint64_t time_us = 0;                // of the present tick on the clock of pictures and sound
-  float picture_lead = 0.02f;          // seconds from a tick to the times of its pictures, smoothed
-  float samples_per_second = 200000;   // measured, all cores
+  uint64_t pose_number = 1;           // of the world: counts commits
+  uint64_t posed_as = ~uint64_t(0);   // Teller::number of whom its figures stand as; none yet
+  uint64_t posed_for = 0;             // Link::id of whose own animations it shows; 0: nobody's
+  double time = 0;                    // of the present tick, seconds
+  uint64_t time_us = 0;               // of the present tick on the clock of pictures and sound
+  float picture_lead = 0.02f;         // seconds from a tick to the times of its pictures, smoothed
+  float samples_per_second = 200000;  // measured, all cores
   ShowTotals totals;
   WarpScratch warp;  // of all visitors, whose pictures are warped one after the other
   StillPass pass;

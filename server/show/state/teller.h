@@ -15,7 +15,8 @@
 namespace wellspring {
 
 struct Teller {
-  size_t index = 0;  // of Exhibit::storytellers
+  uint64_t number = 0;  // Link::id of the visitor who called her first; 0: the house's
+  size_t index = 0;     // of Exhibit::storytellers
   Storyteller storyteller;
   StorytellerState mind;
   Pose pose;

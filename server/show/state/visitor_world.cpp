@@ -5,10 +5,18 @@
 #include "show/state/lamps.h"
 
 namespace wellspring {
+namespace {
+
+uint64_t number_who_touched(const Show& show, const Visitor& visitor) {
+  const Visitor* who = who_touched(show, visitor);
+  return who ? who->link->id : 0;
+}
+
+}  // namespace
 
 void pose_world(Show& show, const Teller& teller, const std::vector<double>& times) {
   bool moved = pose_movers(show.exhibit, times, show.movers, *show.world);
-  show.posed_as = &teller;
+  show.posed_as = teller.number;
   for (size_t i = 0; i < show.figures.size(); i++)
     show_figure(*show.world, show.figures[i], i == teller.index && teller.visible);
   for (size_t i = 0; i < show.props.size(); i++)
@@ -25,12 +33,13 @@ void pose_world(Show& show, const Teller& teller, const std::vector<double>& tim
 void begin_world_of(Show& show, Visitor& visitor) {
   light_world(show, visitor.lamps.lit);
   pose_world(show, teller_of(show, visitor), animation_times(show, visitor));
-  show.posed_for = who_touched(show, visitor);
+  show.posed_for = number_who_touched(show, visitor);
 }
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
   light_world(show, visitor.lamps.lit);
-  if (show.posed_as == &teller_of(show, visitor) && show.posed_for == who_touched(show, visitor))
+  if (show.posed_as == teller_of(show, visitor).number &&
+      show.posed_for == number_who_touched(show, visitor))
     return;
   begin_world_of(show, visitor);
 }
