@@ -39,6 +39,9 @@ struct SplatSettings {
   float normal_threshold = 0.25f;  // of the range of a component of its unit normals
   float convergence = 0;   // >0: refined, too, where irradiance bends by more than that share of it
   bool visibility = true;  // shadow rays from what is lit to virtual lights
+  // Where there are none, rays of each light that tell what of it arrives at what is seen, on
+  // average (light/splat/mean_visibility.h); 0: all does.
+  int light_rays = 0;
   int shadow_rays = 8;     // of each subsplat
   int probe_rays = 8;      // of each subsplat above a pixel, to find where visibility changes
   float visibility_threshold = 0.2f;  // it changes: probes differ in so much of their light

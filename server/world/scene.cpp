@@ -3,10 +3,13 @@
 
 namespace wellspring {
 
-Bounds scene_bounds(const Scene& scene) {
+namespace {
+
+Bounds bounds_of(const Scene& scene, bool unlit_too) {
   Bounds bounds;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+    if (!unlit_too && mesh.material >= 0 && scene.materials[size_t(mesh.material)].unlit) continue;
     for (const uvec3& triangle : mesh.triangles)
       for (int corner = 0; corner < 3; corner++) {
         vec3 p = vec3(instance.to_world * vec4(mesh.positions[triangle[corner]], 1));
@@ -17,6 +20,11 @@ Bounds scene_bounds(const Scene& scene) {
   }
   return bounds;
 }
+
+}  // namespace
+
+Bounds scene_bounds(const Scene& scene) { return bounds_of(scene, true); }
+Bounds lit_bounds(const Scene& scene) { return bounds_of(scene, false); }
 
 size_t triangle_count(const Scene& scene) {
   size_t count = 0;

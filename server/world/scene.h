@@ -81,6 +81,7 @@ struct Bounds {
   vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
 };
 Bounds scene_bounds(const Scene& scene);
+Bounds lit_bounds(const Scene& scene);      // of what is not unlit
 size_t triangle_count(const Scene& scene);  // instances counted
 // A light that can emit light: an emissive material in use, a punctual light or a lit environment.
 bool has_light(const Scene& scene);

@@ -65,7 +65,7 @@ void time_picture(const World& world, const Lights& lights, const VisibilityPass
   auto put = [&] { relight(keyframe, {backdrop, image.light}, {exposure}, picture, peaks); };
   const double began = seconds_now();
   timed(cpu.whole, [&] {
-    begin_bounce(world, lights, lit, settings, {}, image.bounce);
+    begin_bounce(world, lights, lit, backdrop.surfaces, settings, {}, image.bounce);
     light_surfaces(world, lights, lit, backdrop.surfaces, settings, image.bounce, image.light);
     put();
   });
@@ -73,7 +73,8 @@ void time_picture(const World& world, const Lights& lights, const VisibilityPass
   timed(cpu.put, put);
   timed(cpu.surfaces,
         [&] { see_surfaces(visibility, dynamic_light_view(keyframe.view), image.surfaces); });
-  timed(cpu.maps, [&] { begin_bounce(world, lights, lit, settings, {}, image.bounce); });
+  timed(cpu.maps,
+        [&] { begin_bounce(world, lights, lit, backdrop.surfaces, settings, {}, image.bounce); });
   timed(cpu.direct, [&] {
     clear_planes(backdrop.surfaces, image.light);
     add_direct_light(world, lights, lit, backdrop.surfaces, image.light);
@@ -84,7 +85,7 @@ void time_picture(const World& world, const Lights& lights, const VisibilityPass
   cpu.splat.back() = std::max(cpu.splat.back() - cpu.direct.back(), 0.0);
 }
 
-// One bounce of `path` with the torch as a lamp of the scene.
+// One bounce of `path` with the light as a lamp of the scene.
 Frame find_truth(const Scene& dark, const View& view, const DynamicLight& torch, int spp) {
   Scene lit = dark;
   lit.lights.push_back(torch.light);
@@ -118,15 +119,15 @@ double find_flicker(const World& world, const Lights& lights, const VisibilityPa
   return level > 0 ? sum / level : 0;
 }
 
-// A torch that stays where it is: the light of its bounce, pass by pass.
-void bench_settled(BenchReport& report, const World& world, const Lights& lights,
-                   const VisibilityPass& visibility, const BackdropSurfaces& large,
-                   const View& judged, const Frame& truth) {
+// A light that stays as it is: the light of its bounce, pass by pass.
+void bench_settled(BenchReport& report, const char* name, const DynamicLight& light,
+                   const World& world, const Lights& lights, const VisibilityPass& visibility,
+                   const BackdropSurfaces& large, const View& judged, const Frame& truth) {
   const SplatSettings settings = dynamic_splat_settings();
   DynamicImage image;
   see_surfaces(visibility, dynamic_light_view(judged), image.surfaces);
   SettledBounce settled, timed;
-  settled.lights = timed.lights = {torch_at(0)};
+  settled.lights = timed.lights = {light};
   std::vector<double> cpu;
   for (int pass = 1; pass <= most_passes; pass++) {
     add_pass(world, lights, image.surfaces, settings, settled, image.bounce);
@@ -135,11 +136,12 @@ void bench_settled(BenchReport& report, const World& world, const Lights& lights
     if (pass > 1) cpu.push_back(1000 * (process_seconds_now() - began));
     if ((pass & (pass - 1)) != 0) continue;
     clear_planes(image.surfaces, image.light);
-    add_direct_light(world, lights, DynamicLights{torch_at(0)}, image.surfaces, image.light);
+    add_direct_light(world, lights, settled.lights, image.surfaces, image.light);
     add_settled(settled, image.light);
-    report.add("light.dynamic.settled_flip",
-               flip(draw_light(visibility, image, judged), truth, {exposure}), "",
-               {{"passes", pass}, {"pass_ms", cpu.empty() ? 0 : quantile(cpu, 0.5)}});
+    report.add(
+        "light.dynamic.settled_flip",
+        flip(draw_light(visibility, image, judged), truth, {exposure}), "",
+        {{"light", name}, {"passes", pass}, {"pass_ms", cpu.empty() ? 0 : quantile(cpu, 0.5)}});
   }
 }
 
@@ -201,7 +203,13 @@ void bench_light_dynamic(BenchReport& report, const BenchOptions& options) {
           find_flicker(world, lights, visibility, judged, settings, options.quick ? 8 : 24);
       report.add("light.dynamic.picture_ms", quantile(cpu.whole, 0.5), "ms", fields);
     }
-  bench_settled(report, world, lights, visibility, backdrop, judged, truths[0]);
+  bench_settled(report, "torch", torch_at(0), world, lights, visibility, backdrop, judged,
+                truths[0]);
+  DynamicLight sun;
+  for (const PunctualLight& one : castle.scene.lights)
+    if (one.type == PunctualType::directional) sun.light = one;
+  bench_settled(report, "sun", sun, world, lights, visibility, backdrop, judged,
+                find_truth(dark, judged, sun, spp));
 }
 
 }  // namespace wellspring

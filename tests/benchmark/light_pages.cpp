@@ -108,8 +108,8 @@ ReportPage light_dynamic_page() {
                         {"picture_ms", "FLIP", 1, "", "flip"},
                         {"picture_ms", "flicker", 1, "", "flicker"}},
             .most_rows = 12},
-           {.caption = "A torch that stays where it is, by the passes that were averaged",
-            .rows = {{"passes", "passes"}},
+           {.caption = "Lights that stay as they are, by the passes that were averaged",
+            .rows = {{"light", "light"}, {"passes", "passes"}},
             .columns = {{"settled_flip", "FLIP"}, {"settled_flip", "a pass, ms", 1, "", "pass_ms"}},
             .most_rows = 12}}};
 }

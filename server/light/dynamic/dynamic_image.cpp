@@ -11,6 +11,10 @@
 namespace wellspring {
 namespace {
 
+constexpr int probe_count = 64;
+// Most of what the sun shines on is nowhere near what is seen.
+constexpr int parallel_more = 4;  // times as many texels and virtual lights to choose among
+
 void add_irradiance(const RawVector<vec3>& irradiance, LightPlanes& to) {
   parallel_ranges(int(irradiance.size()), 8192, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {
@@ -21,25 +25,38 @@ void add_irradiance(const RawVector<vec3>& irradiance, LightPlanes& to) {
   });
 }
 
+SplatPixels pixels_of(const SurfaceBuffer& surfaces) {
+  SplatPixels pixels;
+  pixels.view = surfaces.view;
+  pixels.depth = surfaces.depth.data();
+  pixels.nx = surfaces.nx.data(), pixels.ny = surfaces.ny.data(), pixels.nz = surfaces.nz.data();
+  return pixels;
+}
+
+bool is_parallel(const DynamicLight& one) { return one.light.type == PunctualType::directional; }
+
 }  // namespace
 
 size_t memory_bytes(const DynamicImage& image) {
   const DynamicBounce& bounce = image.bounce;
-  return memory_bytes(image.surfaces) + memory_bytes(image.light) + bytes_of(bounce.sources) +
-         memory_bytes(bounce.lights) + memory_bytes(bounce.picture);
+  return memory_bytes(image.surfaces) + memory_bytes(image.light) +
+         bytes_of(bounce.sources, bounce.probes) + memory_bytes(bounce.lights) +
+         memory_bytes(bounce.picture);
 }
 
 SplatSettings dynamic_splat_settings() {
   SplatSettings settings;
   settings.virtual_lights = 512;
   settings.texels = 2048;
-  // Three times the time of a picture, and no better in the castle (docs/tried.md).
+  settings.light_rays = 16;
+  // Three times the time of a picture, and no better under a torch (docs/tried.md).
   settings.visibility = false;
   return settings;
 }
 
 void begin_bounce(const World& world, const Lights& lights, std::span<const DynamicLight> from,
-                  const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce) {
+                  const SurfaceBuffer& seen, const SplatSettings& settings, SplatSeed seed,
+                  DynamicBounce& bounce) {
   bounce.sources.clear();
   if (settings.virtual_lights == 0) return;
   for (const DynamicLight& one : from) {
@@ -47,19 +64,19 @@ void begin_bounce(const World& world, const Lights& lights, std::span<const Dyna
     bounce.sources.back().radius = one.radius;
   }
   const Transport transport{world, *lights.tables};
-  draw_virtual_lights(transport, bounce.sources, settings, seed, {}, bounce.lights);
+  find_splat_probes(pixels_of(seen), probe_count, bounce.probes);
+  SplatSettings used = settings;
+  if (std::ranges::any_of(from, [](const DynamicLight& one) { return is_parallel(one); }))
+    used.texels *= parallel_more, used.virtual_lights *= parallel_more;
+  draw_virtual_lights(transport, bounce.sources, used, seed, bounce.probes, bounce.lights);
 }
 
 void add_bounce(const World& world, const Lights& lights, const SurfaceBuffer& surfaces,
                 const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce,
                 LightPlanes& light) {
   if (bounce.sources.empty()) return;
-  SplatPixels pixels;
-  pixels.view = surfaces.view;
-  pixels.depth = surfaces.depth.data();
-  pixels.nx = surfaces.nx.data(), pixels.ny = surfaces.ny.data(), pixels.nz = surfaces.nz.data();
   const Transport transport{world, *lights.tables};
-  splat_picture(transport, bounce.lights, pixels, settings, seed, bounce.picture);
+  splat_picture(transport, bounce.lights, pixels_of(surfaces), settings, seed, bounce.picture);
   add_irradiance(bounce.picture.irradiance, light);
 }
 
@@ -76,7 +93,7 @@ void compute_dynamic_light(const World& world, const Lights& lights,
                            std::span<const DynamicLight> from, const SplatSettings& settings,
                            DynamicImage& image) {
   see_surfaces(visibility, dynamic_light_view(view), image.surfaces);
-  begin_bounce(world, lights, from, settings, {}, image.bounce);
+  begin_bounce(world, lights, from, image.surfaces, settings, {}, image.bounce);
   light_surfaces(world, lights, from, image.surfaces, settings, image.bounce, image.light);
 }
 

@@ -16,6 +16,7 @@ namespace wellspring {
 // What is scattered once: virtual lights, and what they do to a picture.
 struct DynamicBounce {
   std::vector<SplatSource> sources;
+  std::vector<LitProbe> probes;
   SplatLights lights;
   SplatPicture picture;
 };
@@ -31,9 +32,11 @@ size_t memory_bytes(const DynamicImage& image);
 SplatSettings dynamic_splat_settings();
 
 // All cores; call after World::commit(), while nothing moves. Memory is used again.
-// Sends the light of `from` into the world, for the next two. Same seed: the same random numbers.
+// Sends the light of `from` into the world, for the next two, and keeps of it what may matter to
+// `seen`. Same seed: the same random numbers.
 void begin_bounce(const World& world, const Lights& lights, std::span<const DynamicLight> from,
-                  const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce);
+                  const SurfaceBuffer& seen, const SplatSettings& settings, SplatSeed seed,
+                  DynamicBounce& bounce);
 // Adds what of it falls on `surfaces` to `light`.
 void add_bounce(const World& world, const Lights& lights, const SurfaceBuffer& surfaces,
                 const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce,

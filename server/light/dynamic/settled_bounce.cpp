@@ -78,7 +78,7 @@ void add_pass(const World& world, const Lights& lights, const SurfaceBuffer& sur
   const SplatSettings used = pass > 0 ? later_passes(settings) : settings;
   LightPlanes light;
   clear_planes(surfaces, light);
-  begin_bounce(world, lights, settled.lights, used, seed, bounce);
+  begin_bounce(world, lights, settled.lights, surfaces, used, seed, bounce);
   add_bounce(world, lights, surfaces, used, seed, bounce, light);
   LightPlanes& mean = settled.mean;
   if (pass == 0) {

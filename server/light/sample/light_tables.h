@@ -54,6 +54,7 @@ struct LightTables {
   // power.
   LightTree near_choice, distant_choice;
   Bounds bounds;            // of what stands still
+  Bounds lit_bounds;        // of what of it reflects light
   float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment
   float area_share = 1;     // where one light is sampled: emitters and environment against punctual
   EmissionChoice emission;  // of techniques that follow light from its sources

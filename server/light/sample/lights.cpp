@@ -207,6 +207,7 @@ Lights make_lights(const World& world, const TransportPlan& plan,
       if (!world.is_moving(i) && plan.materials[size_t(world.mesh_of(i).material)].emits)
         gather_instance(world, i, *tables, tables->emitter_power);
   tables->bounds = scene_bounds(scene);
+  tables->lit_bounds = lit_bounds(scene);
   if (plan.uses(TransportPart::environment))
     tables->environment = make_environment_light(scene, plan.uses(environment_importance));
   choose_sources(scene, find_emitting(world), more, *tables);

@@ -26,21 +26,28 @@ bool is_parallel(const SplatSource& source) {
                                                  source.light.type == PunctualType::directional);
 }
 
-// A rectangle before the scene, across the light.
-void fit_window(const Transport& transport, SourceAim& aim) {
-  Bounds bounds = transport.tables.bounds;
-  Bounds moving = transport.world.moving_bounds();
+// As seen along the light: across it, and along.
+Bounds see_from_light(const SourceAim& aim, Bounds bounds, const Bounds& moving) {
   bounds.low = min(bounds.low, moving.low), bounds.high = max(bounds.high, moving.high);
-  if (!is_finite(bounds.low) || !is_finite(bounds.high)) return;
-  vec3 low(std::numeric_limits<float>::infinity()), high = -low;
+  Bounds seen;
   for (int i = 0; i < 8; i++) {
     vec3 p(i & 1 ? bounds.high.x : bounds.low.x, i & 2 ? bounds.high.y : bounds.low.y,
            i & 4 ? bounds.high.z : bounds.low.z);
-    vec3 seen(dot(p, aim.along), dot(p, aim.across), dot(p, aim.axis));
-    low = min(low, seen), high = max(high, seen);
+    vec3 place(dot(p, aim.along), dot(p, aim.across), dot(p, aim.axis));
+    seen.low = min(seen.low, place), seen.high = max(seen.high, place);
   }
-  vec3 size = high - low;
-  float back = low.z - 0.01f * size.z - 1e-3f;
+  return seen;
+}
+
+// A rectangle before the scene, across the light, as large as what reflects light needs.
+void fit_window(const Transport& transport, SourceAim& aim) {
+  const Bounds moving = transport.world.moving_bounds();
+  const Bounds lit = see_from_light(aim, transport.tables.lit_bounds, moving);
+  const Bounds all = see_from_light(aim, transport.tables.bounds, moving);
+  if (!is_finite(lit.low) || !is_finite(lit.high) || !is_finite(all.low) || !is_finite(all.high))
+    return;
+  const vec3 low = lit.low, size = lit.high - lit.low;
+  const float back = all.low.z - 0.01f * (all.high.z - all.low.z) - 1e-3f;
   aim.corner = aim.along * low.x + aim.across * low.y + aim.axis * back;
   aim.width = aim.along * size.x;
   aim.height = aim.across * size.y;

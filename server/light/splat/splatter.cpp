@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "light/splat/mean_visibility.h"
 
 namespace wellspring {
 
@@ -20,11 +21,11 @@ size_t memory_bytes(const SplatLights& drawn) {
 size_t memory_bytes(const SplatPicture& picture) {
   const Subsplats& subsplats = picture.subsplats;
   const SplatShadowRoom& shadows = picture.shadows;
-  size_t sum = bytes_of(picture.irradiance, picture.pyramid.levels, picture.pyramid.cells,
-                        subsplats.list, subsplats.first, subsplats.split, subsplats.parted,
-                        picture.room.joined) +
-               bytes_of(shadows.shares, shadows.owner, shadows.first_owner, shadows.current,
-                        shadows.seen, shadows.weight);
+  size_t sum =
+      bytes_of(picture.irradiance, picture.pyramid.levels, picture.pyramid.cells, subsplats.list,
+               subsplats.first, subsplats.split, subsplats.parted, picture.room.joined) +
+      bytes_of(shadows.shares, shadows.owner, shadows.first_owner, shadows.current, shadows.seen,
+               shadows.weight);
   for (const IlluminationLevel& level : picture.illumination.levels) sum += bytes_of(level.texels);
   return sum;
 }
@@ -34,6 +35,7 @@ void draw_virtual_lights(const Transport& transport, std::span<const SplatSource
                          std::span<const LitProbe> probes, SplatLights& drawn) {
   make_reflective_shadow_map(transport, sources, settings, seed, drawn.map);
   choose_virtual_lights(drawn.map, settings, seed, probes, drawn.lights);
+  if (!settings.visibility) dim_hidden_lights(transport, probes, settings.light_rays, drawn.lights);
 }
 
 void splat_picture(const Transport& transport, const SplatLights& drawn, const SplatPixels& pixels,

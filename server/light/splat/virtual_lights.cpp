@@ -45,16 +45,6 @@ void add_light(const ReflectiveTexel& texel, double worth, float least2, float b
   lights.count++;
 }
 
-void fill_up(VirtualLights& lights) {
-  for (lights.padded = lights.count; lights.padded % lane_count; lights.padded++) {
-    const size_t i = size_t(lights.padded);
-    lights.x[i] = lights.y[i] = lights.z[i] = 0;
-    lights.nx[i] = lights.nz[i] = 0, lights.ny[i] = 1;
-    lights.red[i] = lights.green[i] = lights.blue[i] = 0;
-    lights.radius2[i] = 1;
-  }
-}
-
 double luminous(const ReflectiveTexel& texel) {
   double flux = double(luminance(texel.flux));
   return flux > 0 && std::isfinite(flux) ? flux : 0;
@@ -140,6 +130,16 @@ void choose_by_sequence(const ReflectiveShadowMap& map, int wanted, SplatSeed se
 }
 
 }  // namespace
+
+void fill_up(VirtualLights& lights) {
+  for (lights.padded = lights.count; lights.padded % lane_count; lights.padded++) {
+    const size_t i = size_t(lights.padded);
+    lights.x[i] = lights.y[i] = lights.z[i] = 0;
+    lights.nx[i] = lights.nz[i] = 0, lights.ny[i] = 1;
+    lights.red[i] = lights.green[i] = lights.blue[i] = 0;
+    lights.radius2[i] = 1;
+  }
+}
 
 void choose_virtual_lights(const ReflectiveShadowMap& map, const SplatSettings& settings,
                            SplatSeed seed, std::span<const LitProbe> probes,

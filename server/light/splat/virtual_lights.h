@@ -28,6 +28,9 @@ struct VirtualLights {
   vec3 intensity(size_t i) const { return {red[i], green[i], blue[i]}; }
 };
 
+// Makes `padded` of `count`.
+void fill_up(VirtualLights& lights);
+
 // Somewhere that is seen; `by_effect` asks what texels do there.
 struct LitProbe {
   vec3 position{0}, normal{0, 1, 0};

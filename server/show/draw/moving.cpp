@@ -72,12 +72,12 @@ void light_picture(Show& show, VisitorPicture& picture) {
   take_settled(settled, others);
   if (wants_pass(settled))
     add_pass(*show.world, show.lights, surfaces.surfaces, settings, settled, image.bounce);
-  begin_bounce(*show.world, show.lights, others, settings, {}, image.bounce);
+  begin_bounce(*show.world, show.lights, others, surfaces.surfaces, settings, {}, image.bounce);
   light_surfaces(*show.world, show.lights, from, surfaces.surfaces, settings, image.bounce,
                  renderer.work.backdrop_light);
   add_settled(settled, renderer.work.backdrop_light);
   if (!settled.lights.empty())
-    begin_bounce(*show.world, show.lights, from, settings, {}, image.bounce);
+    begin_bounce(*show.world, show.lights, from, surfaces.surfaces, settings, {}, image.bounce);
   light_surfaces(*show.world, show.lights, from, image.surfaces, settings, image.bounce,
                  image.light);
 }

@@ -42,7 +42,7 @@ struct Backdrop {
     find_backdrop_surfaces(*room.visibility, room.view, surfaces);
     DynamicBounce bounce;
     const DynamicLights lights{from};
-    begin_bounce(*room.world, room.lights, lights, {}, {}, bounce);
+    begin_bounce(*room.world, room.lights, lights, surfaces.surfaces, {}, {}, bounce);
     light_surfaces(*room.world, room.lights, lights, surfaces.surfaces, {}, bounce, planes);
   }
   BackdropLight both() const { return {surfaces, planes}; }

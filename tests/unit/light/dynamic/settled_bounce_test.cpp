@@ -144,8 +144,8 @@ TEST(SettledBounce, ComesToTheTruthAndShadowsAppear) {
 // The first pass is the bounce that was seen before, and no pass changes a picture by much.
 TEST(SettledBounce, PicturesChangeSmoothly) {
   Box box;
-  begin_bounce(*box.world, box.lights, box.settled.lights, dynamic_splat_settings(), {},
-               box.image.bounce);
+  begin_bounce(*box.world, box.lights, box.settled.lights, box.image.surfaces,
+               dynamic_splat_settings(), {}, box.image.bounce);
   clear_planes(box.image.surfaces, box.image.light);
   add_bounce(*box.world, box.lights, box.image.surfaces, dynamic_splat_settings(), {},
              box.image.bounce, box.image.light);
