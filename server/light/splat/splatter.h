@@ -4,7 +4,7 @@
 // source to a surface, is reflected as by Lambert, and arrives at what a pixel sees.
 //
 //   draw_virtual_lights()   once for all pictures of an instant: rays from each source
-//     make_reflective_shadow_map() -> choose_virtual_lights()
+//     make_reflective_shadow_map() -> choose_virtual_lights() -> dim_hidden_lights(), if asked for
 //   splat_picture()         for each picture
 //     make_min_max_pyramid() -> make_subsplats() -> refine_by_visibility()
 //     -> splat_shadowed_lights() or splat_lights() -> upsample()
@@ -13,7 +13,7 @@
 // Differs from the paper: rays find the maps, also of area lights and the sky; planes seen at a
 // steep angle are not refined (min_max_pyramid.h); light near a virtual light is bounded
 // (virtual_lights.h); neighbours on the two sides of an edge are never mixed (upsample.h); shadows
-// of virtual lights (splat_visibility.h), which the paper leaves out.
+// of virtual lights (splat_visibility.h, mean_visibility.h), which the paper leaves out.
 #pragma once
 #include <span>
 #include <vector>
@@ -30,7 +30,8 @@ struct SplatLights {
   VirtualLights lights;
 };
 
-// `probes`: places of pictures that are wanted (find_splat_probes), for the choice `by_effect`.
+// `probes`: places of pictures that are wanted (find_splat_probes), for the choice `by_effect` and
+// for light_rays.
 // Same sources, settings and seed: the same random numbers, whatever moves.
 void draw_virtual_lights(const Transport& transport, std::span<const SplatSource> sources,
                          const SplatSettings& settings, SplatSeed seed,
