@@ -58,7 +58,7 @@ void begin_bounce(const World& world, const Lights& lights, std::span<const Dyna
                   const SurfaceBuffer& seen, const SplatSettings& settings, SplatSeed seed,
                   DynamicBounce& bounce) {
   bounce.sources.clear();
-  if (settings.virtual_lights == 0) return;
+  if (from.empty() || settings.virtual_lights == 0) return;
   for (const DynamicLight& one : from) {
     bounce.sources.push_back(make_splat_source(one.light, one.id));
     bounce.sources.back().radius = one.radius;

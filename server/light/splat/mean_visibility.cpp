@@ -52,7 +52,7 @@ void dim_hidden_lights(const Transport& transport, std::span<const LitProbe> pro
   if (probes.empty() || rays < 1) return;
   std::vector<ShadowOrigin> origins;
   for (const LitProbe& probe : probes)
-    origins.push_back(shadow_origin(probe.position, probe.normal, length(probe.position)));
+    origins.push_back(shadow_origin(probe.position, probe.normal, probe.depth));
   std::vector<vec3> shares(static_cast<size_t>(lights.count));
   parallel_ranges(lights.count, 16, [&](int begin, int end) {
     std::vector<float> effect(probes.size());

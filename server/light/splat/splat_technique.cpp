@@ -28,7 +28,8 @@ std::vector<LitProbe> probe_view(const World& world, const Lights& lights, const
   std::vector<LitProbe> probes;
   for (size_t i = 0; i < rays.size(); i++)
     if (seen[i].scatters && std::isfinite(seen[i].distance))
-      probes.push_back({rays[i].origin + rays[i].direction * seen[i].distance, seen[i].normal});
+      probes.push_back({rays[i].origin + rays[i].direction * seen[i].distance, seen[i].normal,
+                        seen[i].distance});
   return probes;
 }
 

@@ -90,7 +90,8 @@ void find_splat_probes(const SplatPixels& pixels, int count, std::vector<LitProb
       const size_t i = size_t(y) * size_t(width) + size_t(x);
       if (!is_lit(pixels, i)) continue;
       probes.push_back({pixels.view.position + place_from_eye(pixels, grid, int(x), int(y)),
-                        {pixels.nx[i], pixels.ny[i], pixels.nz[i]}});
+                        {pixels.nx[i], pixels.ny[i], pixels.nz[i]},
+                        pixels.depth[i]});
     }
 }
 

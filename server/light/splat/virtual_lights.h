@@ -34,6 +34,7 @@ void fill_up(VirtualLights& lights);
 // Somewhere that is seen; `by_effect` asks what texels do there.
 struct LitProbe {
   vec3 position{0}, normal{0, 1, 0};
+  float depth = 0;  // from the eye: how precisely the place is known
 };
 
 // Of one map and seed always the same choice; where texels change little, so does it. About
