@@ -42,8 +42,8 @@ struct SplatSettings {
   // Where there are none, rays of each light that tell what of it arrives at what is seen, on
   // average (light/splat/mean_visibility.h); 0: all does.
   int light_rays = 0;
-  int shadow_rays = 8;     // of each subsplat
-  int probe_rays = 8;      // of each subsplat above a pixel, to find where visibility changes
+  int shadow_rays = 8;  // of each subsplat
+  int probe_rays = 8;   // of each subsplat above a pixel, to find where visibility changes
   float visibility_threshold = 0.2f;  // it changes: probes differ in so much of their light
   int smooth_visibility = 2;          // subsplats around each over which its visibility is averaged
   float detail = 0;                   // surface detail term of the paper's section 4.2, 0 to 1

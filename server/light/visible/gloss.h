@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a place reflects small lights as highlights: by GGX (glTF 2.0, appendix B), without clearcoat.
+// How a place reflects small lights as highlights: by GGX (glTF 2.0, appendix B), no clearcoat.
 #pragma once
 #include <algorithm>
 #include <cmath>
