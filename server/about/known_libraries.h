@@ -54,7 +54,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"CLI11", "CLI11", "BSD-3-Clause", "options"},
     {"GLM", "GLM", "MIT", "vectors"},
     {"nlohmann-json", "JSON for Modern C++", "MIT", "JSON"},
-    {"stb", "stb", "MIT OR Unlicense", "PNG, JPEG and HDR pictures"},
+    {"stb", "stb", "MIT OR Unlicense", "PNG and HDR pictures"},
 };
 
 }  // namespace wellspring

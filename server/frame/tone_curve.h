@@ -52,8 +52,8 @@ inline LaneMask eval_peak_codes(Lanes peak) {
     std::memcpy(&b, &x, sizeof b);
     return b;
   };
-  LaneMask code = (bits(peak) - bits(all_lanes(least_peak))) >> peak_shift;
-  code = code > 0 ? code : LaneMask{};
+  const Lanes least = all_lanes(least_peak);
+  const LaneMask code = (bits(lanes_max(peak, least)) - bits(least)) >> peak_shift;
   return code < 255 ? code : LaneMask{} + 255;
 }
 // The least peak that has this code.

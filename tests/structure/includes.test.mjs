@@ -117,7 +117,8 @@ const heavy = [
   [/^embree[34]?\//, ['world']],
   [/^(pugixml|sndfile)/, ['avatar']],
   [/^espeak-ng\//, []],  // GPL: the voice program's one file
-  [/^(turbojpeg|OpenEXR|Imf)/, ['frame']],
+  [/^turbojpeg/, ['frame', 'world']],
+  [/^(OpenEXR|Imf)/, ['frame']],
   [/^(dnnl|omp)/, ['denoise']],
   [/^sqlite3/, ['ledger']],
 ];

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/load/gltf_image.h"
 
+#include <turbojpeg.h>
+
 #include <cmath>
 #include <cstring>
 #include <memory>
 
+// Of stb_image's readers that of JPEG is left out: of some files it writes beyond its tables.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
 #define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS 16384
@@ -34,17 +36,48 @@ bool starts_with(std::span<const uint8_t> bytes, const char* magic, size_t lengt
   return bytes.size() >= length && std::memcmp(bytes.data(), magic, length) == 0;
 }
 
-// Width and height from the header alone, so that a bomb is refused before it is unpacked.
-std::string check_size(std::span<const uint8_t> bytes, int64_t texels_left) {
-  int width = 0, height = 0, components = 0;
-  if (bytes.size() > size_t(INT32_MAX)) return "picture file is too large";
-  if (!stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &components))
-    return std::string("picture cannot be decoded: ") + stbi_failure_reason();
+struct CloseHandle {
+  void operator()(void* handle) const { tjDestroy(handle); }
+};
+
+std::string problem_of(void* jpeg) {
+  return std::string("picture cannot be decoded: ") + tjGetErrorStr2(jpeg);
+}
+
+// Of width and height from the header alone, so that a bomb is refused before it is unpacked.
+std::string check_size(int width, int height, int64_t texels_left) {
   if (width > image_side_limit || height > image_side_limit)
     return "picture of " + std::to_string(width) + "x" + std::to_string(height) +
            " is larger than " + std::to_string(image_side_limit) + " a side";
   if (int64_t(width) * height > texels_left) return "pictures have too many texels in total";
   return "";
+}
+
+std::string check_size(std::span<const uint8_t> bytes, int64_t texels_left) {
+  int width = 0, height = 0, components = 0;
+  if (bytes.size() > size_t(INT32_MAX)) return "picture file is too large";
+  if (!stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &components))
+    return std::string("picture cannot be decoded: ") + stbi_failure_reason();
+  return check_size(width, height, texels_left);
+}
+
+// Files that end too early are refused; of what else libjpeg warns, every browser shows, too.
+std::string decode_jpeg_texels(std::span<const uint8_t> bytes, Image& image, int64_t texels_left) {
+  const std::unique_ptr<void, CloseHandle> jpeg(tjInitDecompress());
+  if (!jpeg) return problem_of(nullptr);
+  int chroma = 0, colors = 0;
+  if (tjDecompressHeader3(jpeg.get(), bytes.data(), bytes.size(), &image.width, &image.height,
+                          &chroma, &colors) != 0)
+    return problem_of(jpeg.get());
+  if (std::string problem = check_size(image.width, image.height, texels_left); !problem.empty())
+    return problem;
+  image.texels8.resize(size_t(image.width) * size_t(image.height) * 4);
+  if (tjDecompress2(jpeg.get(), bytes.data(), bytes.size(), image.texels8.data(), image.width, 0,
+                    image.height, TJPF_RGBA, TJFLAG_LIMITSCANS) == 0)
+    return "";
+  const std::string_view told = tjGetErrorStr2(jpeg.get());
+  const bool shown = tjGetErrorCode(jpeg.get()) == TJERR_WARNING;
+  return shown && told.find("remature end") == told.npos ? "" : problem_of(jpeg.get());
 }
 
 }  // namespace
@@ -54,10 +87,17 @@ std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image
   bool png = starts_with(bytes, "\x89PNG\r\n\x1a\n", 8),
        jpeg = starts_with(bytes, "\xff\xd8\xff", 3);
   if (!png && !jpeg) return "picture is neither PNG nor JPEG";
+  size_t count = 0;
+  if (jpeg) {
+    if (std::string problem = decode_jpeg_texels(bytes, image, texels_left); !problem.empty())
+      return problem;
+    texels_left -= int64_t(image.width) * image.height;
+    image.srgb = srgb;
+    return "";
+  }
   if (std::string problem = check_size(bytes, texels_left); !problem.empty()) return problem;
   int size = int(bytes.size()), components = 0;
-  size_t count = 0;
-  if (png && stbi_is_16_bit_from_memory(bytes.data(), size)) {
+  if (stbi_is_16_bit_from_memory(bytes.data(), size)) {
     std::unique_ptr<uint16_t, Free> texels(
         stbi_load_16_from_memory(bytes.data(), size, &image.width, &image.height, &components, 4));
     if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures: PNG and JPEG to Image by stb_image, found out by their first bytes, not by their names.
+// Pictures: PNG by stb_image and JPEG by libjpeg-turbo to Image, found out by their first bytes,
+// not by their names.
 #pragma once
 #include <span>
 #include <string>
