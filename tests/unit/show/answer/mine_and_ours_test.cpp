@@ -79,7 +79,8 @@ const std::vector<std::string> orders = {
 TEST_F(MineAndOurs, NothingThatOneSaysChangesAnythingForTheOther) {
   std::set<std::string> types;
   for (const std::string& text : orders) types.insert(json::parse(text)["type"]);
-  for (const auto& [type, fields] : describe_browser_messages().items())
+  const json messages = describe_browser_messages();
+  for (const auto& [type, fields] : messages.items())
     EXPECT_TRUE(types.contains(type)) << type;
   std::vector<json> told[2];
   Image8 seen[2];
