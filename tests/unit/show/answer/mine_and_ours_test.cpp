@@ -80,8 +80,7 @@ TEST_F(MineAndOurs, NothingThatOneSaysChangesAnythingForTheOther) {
   std::set<std::string> types;
   for (const std::string& text : orders) types.insert(json::parse(text)["type"]);
   const json messages = describe_browser_messages();
-  for (const auto& [type, fields] : messages.items())
-    EXPECT_TRUE(types.contains(type)) << type;
+  for (const auto& [type, fields] : messages.items()) EXPECT_TRUE(types.contains(type)) << type;
   std::vector<json> told[2];
   Image8 seen[2];
   for (int i : {0, 1}) {
