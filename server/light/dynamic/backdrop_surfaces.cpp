@@ -119,7 +119,7 @@ void reflect_light(const BackdropSurfaces& backdrop, const LightPlanes& light, i
     if (!glossy) continue;
     float more[RunTaps::most];
     taps.read(*gloss[c], more);
-    for (int i = 0; i < count; i++) out[c][i] = std::max(out[c][i] + more[i], 0.0f);
+    for (int i = 0; i < count; i++) out[c][i] += more[i];
   }
 }
 

@@ -87,7 +87,6 @@ std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image
   bool png = starts_with(bytes, "\x89PNG\r\n\x1a\n", 8),
        jpeg = starts_with(bytes, "\xff\xd8\xff", 3);
   if (!png && !jpeg) return "picture is neither PNG nor JPEG";
-  size_t count = 0;
   if (jpeg) {
     if (std::string problem = decode_jpeg_texels(bytes, image, texels_left); !problem.empty())
       return problem;
@@ -97,6 +96,7 @@ std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image
   }
   if (std::string problem = check_size(bytes, texels_left); !problem.empty()) return problem;
   int size = int(bytes.size()), components = 0;
+  size_t count = 0;
   if (stbi_is_16_bit_from_memory(bytes.data(), size)) {
     std::unique_ptr<uint16_t, Free> texels(
         stbi_load_16_from_memory(bytes.data(), size, &image.width, &image.height, &components, 4));
