@@ -10,7 +10,7 @@ function tile(exhibit) {
   const poster = document.createElement('img'), words = document.createElement('span');
   const title = document.createElement('strong'), about = document.createElement('span');
   link.href = `e/${encodeURIComponent(exhibit.id)}`;
-  poster.src = `api/v1/exhibits/${encodeURIComponent(exhibit.id)}/still.jpg?width=640&height=360`;
+  poster.src = exhibit.poster.slice(1);  // under the page's own address
   poster.alt = '';
   poster.width = 640;
   poster.height = 360;

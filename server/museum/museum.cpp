@@ -89,6 +89,7 @@ std::vector<std::string> kiosks_of(const Exhibit& exhibit) {
 struct SharedParts {
   Ledger* ledger = nullptr;  // where there is one, it gets what is counted
   std::function<DoorCounts()> doors;
+  const StillDesk* stills = nullptr;
 };
 
 // What others may know of it. `reception`: of the first room, for what is told once of all; else
@@ -119,12 +120,14 @@ void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
   if (room.next) changed = true;
 }
 
-// While visitors of one need the cores, no other is baked; while one is made anew, none is.
-void share_cores(Room& room, const std::list<Room>& rooms) {
+// While visitors of one need the cores, no other is baked; while one is made anew, or somebody
+// waits for a still picture, none is.
+void share_cores(Room& room, const std::list<Room>& rooms, const StillDesk& stills) {
   room.draws = draws(*room.show);
-  room.show->others_draw = std::ranges::any_of(rooms, [&](const Room& other) {
-    return (&other != &room && other.draws) || (other.rehearsal && other.rehearsal->at_work());
-  });
+  room.show->others_draw =
+      stills.status().waiting > 0 || std::ranges::any_of(rooms, [&](const Room& other) {
+        return (&other != &room && other.draws) || (other.rehearsal && other.rehearsal->at_work());
+      });
 }
 
 void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& shared,
@@ -135,7 +138,7 @@ void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& s
   while (!stopping) {
     const double began = seconds_now();
     room.show->local_time = local_time(std::time(nullptr));
-    share_cores(room, rooms);
+    share_cores(room, rooms, *shared.stills);
     tick(*room.show, room.arrivals, began);
     const Worker& worker = room.show->renderer.worker;
     room.heartbeat.tick(began, worker.busy() ? worker.runs() : 0);
@@ -182,7 +185,7 @@ struct Museum::Impl {
         capacity(std::make_shared<Capacity>(settings.capacity)),
         stills(settings.stills, [this] { return somebody_draws(); }) {}
 
-  SharedParts shared() const { return {ledger.get(), sources.door_counts}; }
+  SharedParts shared() const { return {ledger.get(), sources.door_counts, &stills}; }
 
   bool somebody_draws() const {
     return std::ranges::any_of(rooms, [](const Room& room) { return room.draws.load(); });

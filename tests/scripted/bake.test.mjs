@@ -5,7 +5,7 @@ import { existsSync, mkdirSync, mkdtempSync, rmSync, statSync, writeFileSync } f
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
-import { run } from '../server.mjs';
+import { run, start_server, until } from '../server.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-bake-'));
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -98,6 +98,26 @@ test('shards are merged into one', async () => {
   const stale = await bake('--merge', part(1), part(2));
   assert.equal(stale.status, 1);
   assert.ok(stale.stderr.includes(`${part(1)}: stale`), stale.stderr);
+});
+
+test('servers bake while nobody needs the cores, nor waits for a still picture', async () => {
+  make_package('room', { color: 0.9 });
+  const server = await start_server(['--exhibit', 'room', '--cache', join(folder, 'served')],
+      { content: folder });
+  const read = async (name) => {
+    const text = await (await fetch(`${server.url}/metrics`)).text();
+    return Number(new RegExp(`^wellspring_${name}(?:{.*})? (\\d+)$`, 'm').exec(text)[1]);
+  };
+  await until(async () => await read('bake_working') === 1);
+  const gone = new AbortController();
+  const still = fetch(`${server.url}/api/v1/exhibits/room/still.jpg?width=1920&height=1080&spp=32`,
+      { signal: gone.signal }).catch(() => 'given up');
+  await until(async () => await read('bake_working') === 0);
+  assert.equal(await read('stills_waiting'), 1);
+  gone.abort();
+  assert.equal(await still, 'given up');
+  await until(async () => await read('bake_working') === 1);
+  assert.equal(await server.stop(), 0);
 });
 
 test('where nothing is diffuse it ends at once', async () => {

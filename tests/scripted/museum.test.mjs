@@ -18,7 +18,10 @@ before(async () => {
   cpSync(join(content, 'giza'), join(content, 'meroe'), { recursive: true });
   const file = join(content, 'meroe', 'exhibit.json');
   const meroe = JSON.parse(readFileSync(file, 'utf8'));
+  cpSync(join(source, 'tests', 'fuzz', 'package', 'picture.png'),
+      join(content, 'meroe', 'front.png'));
   writeFileSync(file, JSON.stringify({ ...meroe, id: 'meroe', title: { en: 'Meroe' },
+    poster: 'front.png',
     kiosks: [{ name: 'desert' }],
     objects: { stone: { node: 'Pyramid', title: { en: 'Stone' },
       door: { exhibit: 'giza', viewpoint: meroe.viewpoints[1].name } } } }));
@@ -50,6 +53,10 @@ test('what there is, and what cannot be shown and why', async () => {
   assert.deepEqual(exhibits[1].objects[0].door,
       { exhibit: 'giza', viewpoint: exhibits[1].viewpoints[1].name });
   assert.equal(failed.length, 1);
+  const posters = await Promise.all(exhibits.map(({ poster }) => get(poster)));
+  assert.deepEqual(posters.map(({ status }) => status), [200, 200]);
+  assert.deepEqual(posters.map(({ headers }) => headers.get('content-type')),
+      ['image/jpeg', 'image/png']);
   assert.equal(failed[0].id, 'ruin');
   assert.match(failed[0].problems.join(), /exhibit\.json.*line 2/);
   assert.equal((await get('/api/v1/exhibits/ruin')).status, 404);

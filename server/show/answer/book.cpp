@@ -14,6 +14,11 @@ namespace {
 
 constexpr std::string_view files = "/files/";
 
+// Names are of characters that stand in an address as they are (exhibit/media_file.cpp).
+std::string address_of(const Exhibit& exhibit, const std::string& file) {
+  return "/api/v1/exhibits/" + exhibit.id + std::string(files) + file;
+}
+
 // Fields that have nothing to say are left out.
 struct Describer {
   const Exhibit& exhibit;
@@ -23,9 +28,8 @@ struct Describer {
     if (!text.empty()) about[name] = text;
     return *this;
   }
-  // Names are of characters that stand in an address as they are (exhibit/media_file.cpp).
   Describer& file(const char* name, const std::string& file) {
-    if (!file.empty()) about[name] = "/api/v1/exhibits/" + exhibit.id + std::string(files) + file;
+    if (!file.empty()) about[name] = address_of(exhibit, file);
     return *this;
   }
 };
@@ -75,6 +79,11 @@ json describe_sounds(const Exhibit& exhibit) {
     sounds.push_back(std::move(describer.about));
   }
   return sounds;
+}
+
+std::string poster_address(const Exhibit& exhibit) {
+  if (!exhibit.poster.empty()) return address_of(exhibit, exhibit.poster);
+  return "/api/v1/exhibits/" + exhibit.id + "/still.jpg?width=640&height=360&spp=4";
 }
 
 const ServedFile* find_served_file(const Exhibit& exhibit, const std::string& tail) {

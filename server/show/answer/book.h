@@ -10,6 +10,9 @@ namespace wellspring {
 
 nlohmann::json describe_book(const Exhibit& exhibit);  // null: there is none
 nlohmann::json describe_sounds(const Exhibit& exhibit);
+// Where the exhibit's picture on the front page is: its poster, or, without one, a still of few
+// samples.
+std::string poster_address(const Exhibit& exhibit);
 
 // `tail`: what comes after the exhibit's id in an address, "/files/NAME". Null unless exhibit.json
 // names the file: no other file of the disk can be asked for.

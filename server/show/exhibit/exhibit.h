@@ -200,6 +200,7 @@ struct ServedFile {
 struct Exhibit {
   std::string id, folder;
   LocalText title, description;
+  std::string poster;  // of `files`; empty: none
   std::vector<std::string> languages{"en"};
   float exposure = 1;  // multiplies radiance; measured where exhibit.json says "auto"
   bool auto_exposure = false;

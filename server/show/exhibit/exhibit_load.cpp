@@ -21,6 +21,7 @@
 #include "show/exhibit/exhibit_questions.h"
 #include "show/exhibit/exhibit_story.h"
 #include "show/exhibit/json_fields.h"
+#include "show/exhibit/media_file.h"
 #include "show/exhibit/package_file.h"
 
 namespace wellspring {
@@ -226,6 +227,9 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
     root.problem("id", "'" + id + "' is not the folder's name '" + exhibit.id + "'");
   exhibit.title = root.local_text("title", true);
   exhibit.description = root.local_text("description", false);
+  if (const std::string poster = root.text("poster", false);
+      !poster.empty() && add_served_file(exhibit, root, "poster", poster, Medium::image))
+    exhibit.poster = poster;
   if (auto languages = root.texts("languages"); !languages.empty()) exhibit.languages = languages;
   read_exposure(exhibit, root);
   root.object("walk", false, [&](Fields fields) { read_walk(exhibit, std::move(fields)); });

@@ -42,6 +42,7 @@ json describe(const Exhibit& exhibit) {
                 {"title", exhibit.title},
                 {"description", exhibit.description},
                 {"languages", exhibit.languages},
+                {"poster", poster_address(exhibit)},
                 {"viewpoints", json::array()},
                 {"stories", json::array()},
                 {"tours", json::array()},

@@ -141,7 +141,7 @@ struct Show {
   uint64_t her_visits = 0;               // of kiosks' guests that the storyteller has been with
 
   LocalTime local_time;           // set before a tick by whoever has a clock
-  bool others_draw = false;       // likewise: other exhibits of the process need the cores
+  bool others_draw = false;       // likewise: others than its visitors need the cores
   HouseState house;               // at that time
   std::string house_message;      // the last that kiosk pages were sent
   Announcement announced;         // the last; id 0: none yet

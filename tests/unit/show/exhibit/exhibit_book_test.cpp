@@ -124,6 +124,18 @@ TEST(ExhibitBook, AnExhibitWithoutOneHasNone) {
   EXPECT_TRUE(package.exhibit.files.empty());
 }
 
+TEST(ExhibitBook, ThePosterIsAPictureOfThePackage) {
+  Package package;
+  package.load(R"("poster": "picture.png")");
+  EXPECT_EQ(package.exhibit.poster, "picture.png");
+  EXPECT_TRUE(package.exhibit.files.contains("picture.png"));
+  for (const std::string name : {"film.webm", "nowhere.png", "../picture.png"}) {
+    package.load(R"("poster": ")" + name + '"');
+    EXPECT_EQ(package.exhibit.poster, "") << name;
+    EXPECT_EQ(std::ranges::count(package.problems, "/poster", &Problem::where), 1) << name;
+  }
+}
+
 TEST(ExhibitBook, TheReadmesExampleIsGood) {
   Package package;
   test::Folder& folder = package.folder;
