@@ -214,7 +214,7 @@ void pool_cells(Cells& cells) {
 // meanwhile.
 void estimate_variance(Cells& cells) {
   float rest_share = share_of_noise(cells);
-  auto& [mean_variance, rest_detail, rest_noise] = cells.spare;
+  auto &mean_variance = cells.spare[0], &rest_detail = cells.spare[1], &rest_noise = cells.spare[2];
   auto& rest_mean_variance = cells.rest_spare[0];
   pool_cells(cells);
   parallel_ranges(cells.height, 4, [&](int begin, int end) {

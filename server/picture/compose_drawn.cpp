@@ -323,7 +323,7 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
   float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
   Lanes weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
   const int g = n * together<Scale>;
-  using Cell = CellRows<Scale>::Cell;
+  using Cell = typename CellRows<Scale>::Cell;
   const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g), &rows.at(1, g + 1)};
   auto find_nearby = [&](const LaneMask& lonely, Drawn& of) { light_thin(lonely, lx, ly, of); };
   constexpr Lanes beside = together<Scale> == 1 ? Lanes{} : Lanes{0, 0, 0, 0, 1, 1, 1, 1};
