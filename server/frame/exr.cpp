@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <map>
 #include <sstream>
+#include <string_view>
 
 #include "base/load_error.h"
 #include "frame/linear_picture.h"
@@ -39,9 +41,42 @@ std::array<std::string, 3> color_channels(const Imf::ChannelList& channels,
   throw LoadError(path, "channels", "no R, G and B, and no Y");
 }
 
+uint32_t read_word(std::string_view bytes, size_t at) {  // beyond the end: 0
+  uint32_t word = 0;
+  for (size_t i = 0; i < 4 && at + i < bytes.size(); i++)
+    word |= uint32_t(uint8_t(bytes[at + i])) << (8 * i);
+  return word;
+}
+
+// How much OpenEXR reads of a value of this type whose size says `size`: some types by what stands
+// in the value. `rest`: from the value to the file's end.
+uint64_t bytes_read(const std::string& type, std::string_view rest, uint32_t size) {
+  static const std::map<std::string, uint64_t> fixed = {
+      {"box2f", 16},         {"box2i", 16},    {"chromaticities", 32},
+      {"compression", 1},    {"double", 8},    {"envmap", 1},
+      {"deepImageState", 1}, {"float", 4},     {"int", 4},
+      {"keycode", 28},       {"lineOrder", 1}, {"m33d", 72},
+      {"m33f", 36},          {"m44d", 128},    {"m44f", 64},
+      {"rational", 8},       {"v2d", 16},      {"tiledesc", 9},
+      {"timecode", 8},       {"v2f", 8},       {"v2i", 8},
+      {"v3d", 24},           {"v3f", 12},      {"v3i", 12}};
+  if (auto found = fixed.find(type); found != fixed.end()) return found->second;
+  if (type == "floatvector") return size - size % 4;
+  if (type == "preview") return 8 + 4 * uint64_t(read_word(rest, 0)) * read_word(rest, 4);
+  uint64_t at = 0;
+  if (type == "stringvector") {
+    while (at < size) at += 4 + uint64_t(read_word(rest, at));
+    return at;
+  }
+  if (type != "chlist") return size;
+  while (at < rest.size() && rest[at] != 0) at = std::min(rest.find('\0', at), rest.size()) + 17;
+  return at + 1;
+}
+
 // OpenEXR makes room for an attribute of any size before it looks for its bytes. Sizes beyond the
-// file's end are refused here (OpenEXR File Layout, "Header"): name, type, size, value; an empty
-// name ends a header, of which files of several parts have several.
+// file's end, and those that are not what a value of the type takes, are refused here (OpenEXR File
+// Layout, "Header"): name, type, size, value; an empty name ends a header, of which files of
+// several parts have several.
 void check_attributes(const std::string& bytes, const std::string& path) {
   if (bytes.size() < 8) return;  // OpenEXR says what is missing
   const bool parts = bytes[5] & 0x10;
@@ -49,14 +84,21 @@ void check_attributes(const std::string& bytes, const std::string& path) {
   for (bool first = true; at < bytes.size() && (first || parts) && bytes[at] != 0; at++) {
     first = false;
     while (at < bytes.size() && bytes[at] != 0) {
-      for (int text = 0; text < 2; text++) at = std::min(bytes.find('\0', at), bytes.size()) + 1;
+      std::string type;  // the second of two texts
+      for (int text = 0; text < 2 && at < bytes.size(); text++) {
+        type = bytes.c_str() + at;
+        at += type.size() + 1;
+      }
       if (at + 4 > bytes.size()) return;
-      uint32_t size = 0;
-      for (int i = 0; i < 4; i++) size |= uint32_t(uint8_t(bytes[at + size_t(i)])) << (8 * i);
+      const std::string where = "byte " + std::to_string(at);
+      const uint32_t size = read_word(bytes, at);
       at += 4;
       if (size > bytes.size() - at)
-        throw LoadError(path, "byte " + std::to_string(at - 4),
+        throw LoadError(path, where,
                         "an attribute of " + std::to_string(size) + " bytes is cut off");
+      if (bytes_read(type, std::string_view(bytes).substr(at), size) != size)
+        throw LoadError(path, where,
+                        "an attribute of " + std::to_string(size) + " bytes is no " + type);
       at += size;
     }
   }

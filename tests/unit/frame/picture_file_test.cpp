@@ -165,6 +165,37 @@ TEST_F(PictureFile, SizesThatAnExrFileOnlyClaimsAreRefused) {
   EXPECT_EQ(claims(window, 4, {0, 0, 4, 2}), "accepted");
 }
 
+// OpenEXR reads values of its types by what stands in them, not by the size that is said.
+TEST_F(PictureFile, AttributesOfAnExrFileThatAreNotOfTheirTypeAreRefused) {
+  save_picture(path("good.exr"), make_frame(), {});
+  const std::string exr = bytes_of(path("good.exr"));
+  auto with = [&](const std::string& type, const std::string& value) {
+    const char size[4] = {char(value.size())};
+    std::string attribute = std::string("x") + '\0' + type + '\0' + std::string(size, 4) + value;
+    write_bytes(path("with.exr"), exr.substr(0, 8) + attribute + exr.substr(8));
+    try {
+      load_linear_picture(path("with.exr"));
+    } catch (const LoadError& error) {
+      // The header is read; its table of rows was not moved.
+      if (error.what_.find("Unexpected data block") != std::string::npos) return std::string();
+      return error.where + ": " + error.what_;
+    }
+    return std::string("accepted");
+  };
+  const std::string zeros(40, '\0'), many("\xff\xff\xff\x7f", 4), two("\x02\0\0\0", 4);
+  EXPECT_EQ(with("v3f", zeros.substr(0, 8)), "byte 14: an attribute of 8 bytes is no v3f");
+  EXPECT_EQ(with("v3f", zeros.substr(0, 12)), "");
+  EXPECT_EQ(with("stringvector", many + "ab"),
+            "byte 23: an attribute of 6 bytes is no stringvector");
+  EXPECT_EQ(with("stringvector", two + "ab"), "");
+  EXPECT_EQ(with("preview", many + many), "byte 18: an attribute of 8 bytes is no preview");
+  EXPECT_EQ(with("preview", two + two + zeros.substr(0, 16)), "");
+  EXPECT_EQ(with("chlist", "G"), "byte 17: an attribute of 1 bytes is no chlist");
+  EXPECT_EQ(with("chlist", std::string("G", 2) + zeros.substr(0, 17)), "");
+  EXPECT_EQ(with("floatvector", "12345"), "byte 22: an attribute of 5 bytes is no floatvector");
+  EXPECT_EQ(with("of mine", "12345"), "");
+}
+
 TEST(PictureCorpus, MitsubaReferencesAreRead) {
   fs::path folder = fs::path(WELLSPRING_DATA) / "6_reference";
   if (!fs::exists(folder)) GTEST_SKIP() << "no reference pictures beside the checkout";
