@@ -64,6 +64,7 @@ add_library(embree_any INTERFACE)
 target_link_libraries(embree_any INTERFACE embree)
 message(STATUS "Embree ${embree_VERSION}")
 
+find_package(PNG REQUIRED)
 find_library(TURBOJPEG turbojpeg REQUIRED)
 add_library(turbojpeg INTERFACE)
 target_link_libraries(turbojpeg INTERFACE ${TURBOJPEG})
@@ -130,7 +131,7 @@ if(DLIB_INCLUDE AND DLIB AND DLIB_BLAS AND DLIB_LAPACK)
   target_compile_definitions(dlib_any INTERFACE WELLSPRING_DLIB)
 endif()
 
-# World reads pictures and frame writes PNG through stb: headers, not part of a layer's interface.
+# World reads .hdr pictures and frame writes PNG through stb: headers, not part of a layer's interface.
 include_directories(SYSTEM ${STB_INCLUDE})
 include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/server)
 

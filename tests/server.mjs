@@ -34,12 +34,16 @@ export const little_light = ['--technique', 'direct', '--still-technique', 'dire
 
 // Runs a program to its end: {status, stdout, stderr}.
 export function run(name, args, { timeout = 60000 } = {}) {
-  return new Promise((resolve) => {
+  return new Promise((resolve, reject) => {
     const child = spawn(join(bin, name), args, { stdio: ['ignore', 'pipe', 'pipe'] });
     let stdout = '', stderr = '';
     child.stdout.on('data', (chunk) => { stdout += chunk; });
     child.stderr.on('data', (chunk) => { stderr += chunk; });
     const timer = setTimeout(() => child.kill('SIGKILL'), patience * timeout);
+    child.on('error', (error) => {  // there is no such program
+      clearTimeout(timer);
+      reject(error);
+    });
     child.on('close', (status, signal) => {
       clearTimeout(timer);
       resolve({ status: signal ?? status, stdout, stderr });

@@ -33,6 +33,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libopencv_", "OpenCV", "Apache-2.0", "cameras and faces, in the kiosk's program"},
     {"libOpenEXR", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
     {"libopus.", "Opus", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libpng16.", "libpng", "libpng-2.0", "PNG pictures"},
     {"libpugixml.", "pugixml", "MIT", "X3D figures"},
     {"libqrcodegen", "QR Code generator", "MIT", "codes for guests' phones"},
     {"libseccomp.", "libseccomp", "LGPL-2.1-only", "what a process gives up"},
@@ -54,7 +55,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"CLI11", "CLI11", "BSD-3-Clause", "options"},
     {"GLM", "GLM", "MIT", "vectors"},
     {"nlohmann-json", "JSON for Modern C++", "MIT", "JSON"},
-    {"stb", "stb", "MIT OR Unlicense", "PNG and HDR pictures"},
+    {"stb", "stb", "MIT OR Unlicense", "HDR pictures, and PNG written"},
 };
 
 }  // namespace wellspring

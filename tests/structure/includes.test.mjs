@@ -118,6 +118,7 @@ const heavy = [
   [/^(pugixml|sndfile)/, ['avatar']],
   [/^espeak-ng\//, []],  // GPL: the voice program's one file
   [/^turbojpeg/, ['frame', 'world']],
+  [/^png\.h/, ['world']],
   [/^(OpenEXR|Imf)/, ['frame']],
   [/^(dnnl|omp)/, ['denoise']],
   [/^sqlite3/, ['ledger']],

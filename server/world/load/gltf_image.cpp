@@ -7,10 +7,10 @@
 #include <cstring>
 #include <memory>
 
-// Of stb_image's readers that of JPEG is left out: of some files it writes beyond its tables.
+#include "world/load/png_reader.h"
+
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
 #define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS 16384
@@ -53,14 +53,6 @@ std::string check_size(int width, int height, int64_t texels_left) {
   return "";
 }
 
-std::string check_size(std::span<const uint8_t> bytes, int64_t texels_left) {
-  int width = 0, height = 0, components = 0;
-  if (bytes.size() > size_t(INT32_MAX)) return "picture file is too large";
-  if (!stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &components))
-    return std::string("picture cannot be decoded: ") + stbi_failure_reason();
-  return check_size(width, height, texels_left);
-}
-
 // Files that end too early are refused; of what else libjpeg warns, every browser shows, too.
 std::string decode_jpeg_texels(std::span<const uint8_t> bytes, Image& image, int64_t texels_left) {
   const std::unique_ptr<void, CloseHandle> jpeg(tjInitDecompress());
@@ -80,52 +72,52 @@ std::string decode_jpeg_texels(std::span<const uint8_t> bytes, Image& image, int
   return shown && told.find("remature end") == told.npos ? "" : problem_of(jpeg.get());
 }
 
+std::string decode_png_texels(std::span<const uint8_t> bytes, bool srgb, Image& image,
+                              int64_t texels_left) {
+  PngReader png(bytes);
+  const auto cannot = [&] { return "picture cannot be decoded: " + png.problem; };
+  if (!png.read_head()) return cannot();
+  if (std::string problem = check_size(png.width, png.height, texels_left); !problem.empty())
+    return problem;
+  image.width = png.width, image.height = png.height;
+  const size_t count = size_t(image.width) * size_t(image.height);
+  if (png.bits == 8) {
+    image.texels8.resize(count * 4);
+    return png.read_texels(image.texels8.data()) ? "" : cannot();
+  }
+  std::vector<uint16_t> codes(count * 4);
+  if (!png.read_texels(codes.data())) return cannot();
+  image.texels.resize(count);
+  for (size_t i = 0; i < count; i++)
+    for (int c = 0; c < 4; c++) {
+      const uint16_t code = codes[4 * i + size_t(c)];
+      image.texels[i][c] = srgb && c < 3 ? decode_srgb16(code) : float(code) / 65535.0f;
+    }
+  return "";
+}
+
 }  // namespace
 
 std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image,
                          int64_t& texels_left) {
-  bool png = starts_with(bytes, "\x89PNG\r\n\x1a\n", 8),
-       jpeg = starts_with(bytes, "\xff\xd8\xff", 3);
-  if (!png && !jpeg) return "picture is neither PNG nor JPEG";
-  if (jpeg) {
-    if (std::string problem = decode_jpeg_texels(bytes, image, texels_left); !problem.empty())
-      return problem;
-    texels_left -= int64_t(image.width) * image.height;
-    image.srgb = srgb;
-    return "";
-  }
-  if (std::string problem = check_size(bytes, texels_left); !problem.empty()) return problem;
-  int size = int(bytes.size()), components = 0;
-  size_t count = 0;
-  if (stbi_is_16_bit_from_memory(bytes.data(), size)) {
-    std::unique_ptr<uint16_t, Free> texels(
-        stbi_load_16_from_memory(bytes.data(), size, &image.width, &image.height, &components, 4));
-    if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();
-    count = size_t(image.width) * size_t(image.height);
-    image.srgb = false;
-    image.texels.resize(count);
-    for (size_t i = 0; i < count; i++) {
-      const uint16_t* t = texels.get() + 4 * i;
-      for (int c = 0; c < 4; c++)
-        image.texels[i][c] = srgb && c < 3 ? decode_srgb16(t[c]) : float(t[c]) / 65535.0f;
-    }
-  } else {
-    std::unique_ptr<uint8_t, Free> texels(
-        stbi_load_from_memory(bytes.data(), size, &image.width, &image.height, &components, 4));
-    if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();
-    count = size_t(image.width) * size_t(image.height);
-    image.srgb = srgb;
-    image.texels8.assign(texels.get(), texels.get() + count * 4);
-  }
-  texels_left -= int64_t(count);
+  const bool png = starts_with(bytes, "\x89PNG\r\n\x1a\n", 8);
+  if (!png && !starts_with(bytes, "\xff\xd8\xff", 3)) return "picture is neither PNG nor JPEG";
+  std::string problem = png ? decode_png_texels(bytes, srgb, image, texels_left)
+                            : decode_jpeg_texels(bytes, image, texels_left);
+  if (!problem.empty()) return problem;
+  texels_left -= int64_t(image.width) * image.height;
+  image.srgb = srgb && image.texels.empty();
   return "";
 }
 
 std::string decode_radiance(std::span<const uint8_t> bytes, Image& image) {
   if (!starts_with(bytes, "#?", 2)) return "not a Radiance .hdr picture";
-  if (std::string problem = check_size(bytes, image_texel_limit / 4); !problem.empty())
+  int width = 0, height = 0, components = 0;
+  if (bytes.size() > size_t(INT32_MAX)) return "picture file is too large";
+  if (!stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &components))
+    return std::string("picture cannot be decoded: ") + stbi_failure_reason();
+  if (std::string problem = check_size(width, height, image_texel_limit / 4); !problem.empty())
     return problem;
-  int components = 0;
   std::unique_ptr<float, Free> texels(stbi_loadf_from_memory(
       bytes.data(), int(bytes.size()), &image.width, &image.height, &components, 3));
   if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures: PNG by stb_image and JPEG by libjpeg-turbo to Image, found out by their first bytes,
+// Pictures: PNG by libpng and JPEG by libjpeg-turbo to Image, found out by their first bytes,
 // not by their names.
 #pragma once
 #include <span>

@@ -2,6 +2,7 @@
 // Pictures on surfaces from files that are right, cut off, or made to break a reader.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -42,6 +43,16 @@ TEST(Picture, CutOffFilesAreRefused) {
     Image image;
     EXPECT_NE(decode(bytes, image), "") << name;
   }
+}
+
+TEST(Picture, AChunkThatClaimsMoreThanThereIsIsRefused) {
+  Image image;
+  std::vector<uint8_t> bytes = read_seed("small.png");
+  const std::string kind = "IDAT";
+  const auto chunk = std::search(bytes.begin(), bytes.end(), kind.begin(), kind.end()) - 4;
+  ASSERT_LT(chunk, bytes.end() - 4);
+  *chunk = 0x70;
+  EXPECT_EQ(decode(bytes, image), "picture cannot be decoded: the file is cut off");
 }
 
 // A Huffman table of more codes than there are bytes, which some readers write beyond theirs by.
