@@ -99,7 +99,8 @@ function(wellspring_script_test file timeout)
   endif()
   math(EXPR limit "2 * ${timeout} * ${WELLSPRING_PATIENCE}")  # other tests take turns with it
   add_test(NAME ${label}.${name} COMMAND ${NODE} --test ${PROJECT_SOURCE_DIR}/tests/${file})
-  set_tests_properties(${label}.${name} PROPERTIES TIMEOUT ${limit} LABELS ${label} ENVIRONMENT
+  set_tests_properties(${label}.${name} PROPERTIES TIMEOUT ${limit} LABELS ${label}
+    SKIP_REGULAR_EXPRESSION "of npm is not installed, so this script is skipped" ENVIRONMENT
     "WELLSPRING_BIN=${CMAKE_BINARY_DIR}/bin;WELLSPRING_NODE=${node_modules};WELLSPRING_SOURCE=${PROJECT_SOURCE_DIR};WELLSPRING_DATA=${WELLSPRING_DATA}")
   if(WELLSPRING_SANITIZE)
     wellspring_sanitizer_options(${label}.${name} ":log_path=${reports}/${name}")
@@ -115,6 +116,7 @@ if(NODE)
   wellspring_script_test(structure/schema.test.mjs 60)
   wellspring_script_test(structure/commands.test.mjs 120)
   wellspring_script_test(structure/words.test.mjs 30)
+  wellspring_script_test(structure/launcher.test.mjs 30)
   wellspring_script_test(structure/docker.test.mjs 30)
   wellspring_script_test(structure/lint.test.mjs 120)
   wellspring_script_test(scripted/curator.test.mjs 240)

@@ -181,7 +181,7 @@ test('visitors who stop reading hold up nobody', async () => {
 
 test('clients that are killed in any state leave nothing behind', async () => {
   for (const signals of [['SIGKILL'], ['SIGSTOP', 'SIGKILL']]) {  // stopped: nobody answers
-    const program = join(import.meta.dirname, 'clients_in_states.mjs');
+    const program = join(process.env.WELLSPRING_SOURCE, 'tests/scripted/clients_in_states.mjs');
     const child = spawn(process.execPath, [program, server.port],
         { stdio: ['ignore', 'pipe', 'inherit'] });
     await new Promise((resolve) => child.stdout.once('data', resolve));
