@@ -108,9 +108,15 @@ struct Observer::Impl {
     return head.person;
   }
 
+  EyeNetworks networks() const {
+    if (!finder->finds_landmarks()) return EyeNetworks::none;
+    return settings.expression && !classes ? EyeNetworks::no_expression : EyeNetworks::all;
+  }
+
   Observation finish(double time, bool moving, bool face) {
     Observation out;
     out.time = time;
+    out.networks = networks();
     out.state = step_presence(presence, settings.presence, time, moving, face);
     const double hold = settings.presence.hold_person;
     if (out.state == Presence::person)

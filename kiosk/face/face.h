@@ -51,6 +51,8 @@ class FaceFinder {
   // The face near `last` (one frame to half a second later). `roll` is how far the head was tilted
   // (positive: its top towards image left).
   virtual std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll = 0) = 0;
+  // Whether faces come with landmarks, from which the head's pose follows.
+  virtual bool finds_landmarks() const = 0;
 };
 
 }  // namespace wellspring

@@ -77,6 +77,7 @@ class CascadeFinder : public FaceFinder {
   // Frontal or in profile; about 2 ms. The cascades know upright faces, so the window is turned
   // back by `roll`.
   std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll) override;
+  bool finds_landmarks() const override { return false; }
 
  private:
   FaceSettings settings;

@@ -72,6 +72,7 @@ class NetworkFinder : public FaceFinder {
   std::vector<Face> search_thoroughly(const GrayFrame& frame, const Box& zone) override;
   // About 5 ms, twice that where the head moves quickly.
   std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll) override;
+  bool finds_landmarks() const override { return true; }
 
  private:
   FaceBoxes boxes;

@@ -48,6 +48,14 @@ enum class CameraState : uint8_t {
 };
 inline constexpr const char* camera_states[] = {"good", "dark", "frozen", "missing", "slow"};
 
+// The networks that a kiosk's eye works with: their weights are installed apart from the program.
+enum class EyeNetworks : uint8_t {
+  all,            // those that are asked for
+  no_expression,  // expressions are asked for and not estimated
+  none,           // cascades find faces instead, and say little of how heads are turned
+};
+inline constexpr const char* eye_networks[] = {"all", "no_expression", "none"};
+
 // While a kiosk finds out how its camera sits: where the person is to stand, and for how much of
 // the time it takes they have been steady there.
 struct CalibrationStep {
@@ -67,6 +75,7 @@ struct Observation {
   std::string name;  // of kiosk and camera, for people who look after them; may be empty
   std::optional<CalibrationStep> calibration;  // then nobody is a guest
   std::string kiosk{};                         // its name; empty: the only one of the house
+  EyeNetworks networks = EyeNetworks::all;
   bool operator==(const Observation&) const = default;
 };
 

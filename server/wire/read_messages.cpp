@@ -187,7 +187,7 @@ std::variant<Observation, WireError> read_observation(std::string_view text) {
   Fields fields(object, "observation.", error);
   Observation observation;
   bool present = false;
-  std::string state, camera = "good";
+  std::string state, camera = "good", networks = "all";
   fields.number("time", -max_time, max_time, observation.time, Need::required);
   const bool has_presence = fields.boolean("presence", present);
   fields.word("state", {"absent", "motion", "person"}, state,
@@ -207,6 +207,9 @@ std::variant<Observation, WireError> read_observation(std::string_view text) {
   if (const json* calibration = fields.object("calibration"))
     observation.calibration = read_calibration(*calibration, error);
   fields.text("kiosk", observation.kiosk);
+  fields.word("networks", {"all", "no_expression", "none"}, networks, Need::optional);
+  observation.networks =
+      EyeNetworks(std::ranges::find(eye_networks, networks) - std::begin(eye_networks));
   if (error) return std::move(*error);
 
   const auto distance = [](const Person& person) { return glm::length(person.position); };

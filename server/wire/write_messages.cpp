@@ -49,6 +49,8 @@ std::string write_observation(const Observation& observation) {
                               {"metres", rounded(step->metres)},
                               {"progress", rounded(step->progress)}};
   if (!observation.kiosk.empty()) message["kiosk"] = observation.kiosk;
+  if (observation.networks != EyeNetworks::all)
+    message["networks"] = eye_networks[size_t(observation.networks)];
   return to_text(message);
 }
 

@@ -26,8 +26,11 @@ test('ESLint has nothing to say', async () => {
   rules.push({
     files: ['tests/**/*.mjs'], plugins: { n: load_module('eslint-plugin-n') },
     settings: { node: { version: oldest_node } },
-    rules: { [`${node}/node-builtins`]: ['error', { allowExperimental: true }],
-      [`${node}/es-builtins`]: 'error', [`${node}/es-syntax`]: ['error', { ignores: ['modules'] }] },
+    rules: {
+      [`${node}/node-builtins`]: ['error', { allowExperimental: true }],
+      [`${node}/es-builtins`]: 'error',
+      [`${node}/es-syntax`]: ['error', { ignores: ['modules'] }],
+    },
   });
   const eslint = new ESLint({ cwd: root, overrideConfigFile: true, overrideConfig: rules });
   const looked = await eslint.lintFiles(['web/**/*.js', 'tests/**/*.mjs']);

@@ -132,7 +132,8 @@ std::string describe_api() {
       "camera_state": "good (or left out), dark, frozen, missing or slow",
       "camera_name": "of kiosk and camera, optional: who comes back under it is the same camera",
       "calibration": "{step: near, far, done or failed, metres of that mark from the screen, progress 0..1}, while the person is asked to stand at two marks; then nobody is a guest",
-      "kiosk": "its kiosk's name; left out: the only one of the house"}},
+      "kiosk": "its kiosk's name; left out: the only one of the house",
+      "networks": "all (or left out), no_expression (asked for, and its weights are not installed) or none (cascades find faces)"}},
   "server_to_eye": {
     "kiosk": {"stage": "sleep, awake, person, engaged or farewell",
       "needs": "{faces, expression, gestures}: booleans, what is used at the moment",

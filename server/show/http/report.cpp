@@ -11,8 +11,12 @@
 namespace wellspring {
 
 static CameraReport report_camera(const Eye& eye, double now) {
-  CameraReport report{eye.kiosk, eye.number, eye.seen.name, camera_states[size_t(eye.seen.camera)],
-                      now - eye.camera_since};
+  CameraReport report{eye.kiosk,
+                      eye.number,
+                      eye.seen.name,
+                      camera_states[size_t(eye.seen.camera)],
+                      now - eye.camera_since,
+                      eye.seen.networks};
   if (eye.seen.calibration && eye.seen.camera == CameraState::good) report.state = "calibrating";
   if (is_silent(eye, now))
     report.state = "silent", report.since = now - std::max(eye.received, eye.camera_since);

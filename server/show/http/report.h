@@ -48,6 +48,7 @@ struct CameraReport {
   // One of camera_states; "silent": it has said nothing for long; "disconnected"; "calibrating".
   std::string state;
   double since = 0;  // seconds that it has been so
+  EyeNetworks networks = EyeNetworks::all;
 };
 
 // Of the server's sockets, since the start.

@@ -107,12 +107,28 @@ constexpr CameraWords camera_words[] = {
      "See whether its computer is on and the program 'wellspring kiosk' runs."},
     {"disconnected", "The ", " is gone", "Check its cable and the program 'wellspring kiosk'."}};
 
+// The networks' weights are installed apart from the program, so they may be missing.
+void judge_networks(Judge& judge, const CameraReport& camera, const std::string& name) {
+  if (camera.networks == EyeNetworks::all || camera.state == "disconnected") return;
+  const bool none = camera.networks == EyeNetworks::none;
+  const std::string at = name + at_kiosk(camera.kiosk);
+  judge.tell({.about = fmt::format("networks {}/{}", camera.kiosk, camera.number),
+              .what = none ? "How heads are turned is told badly by the " + at
+                           : "No expressions are told by the " + at + ", though they are asked for",
+              .why = none ? "the weights of the networks for faces are not installed there"
+                          : "the weights of the network for expressions cannot be read there",
+              .remedy = "Start its program once by './wellspring kiosk' with a network: it "
+                        "installs the weights. The kiosk's log names the folder."},
+             {.before = 2});
+}
+
 void judge_camera(Judge& judge, const CameraReport& camera, double now) {
+  const std::string name = camera.name.empty() || camera.name == camera.kiosk
+                               ? "camera "
+                               : "camera '" + camera.name + "' ";
+  judge_networks(judge, camera, name);
   for (const CameraWords& words : camera_words) {
     if (camera.state != words.state) continue;
-    const std::string name = camera.name.empty() || camera.name == camera.kiosk
-                                 ? "camera "
-                                 : "camera '" + camera.name + "' ";
     judge.tell({.about = fmt::format("camera {}/{}", camera.kiosk, camera.number),
                 .grave = true,
                 .what = words.before + name + at_kiosk(camera.kiosk) + words.after,

@@ -100,6 +100,25 @@ TEST(Observe, with_networks_yaw_and_roll_are_known_too) {
   EXPECT_LT(std::sqrt(squares.z / frames), 0.05);
 }
 
+TEST(Observe, networks_that_are_missing_are_told) {
+  EXPECT_EQ(watch_round({}, 0.2).at(0).networks, EyeNetworks::none);
+  const std::string weights = WELLSPRING_WEIGHTS_FOLDER "/face";
+  if (!std::filesystem::exists(weights)) GTEST_SKIP() << weights << " is not here";
+  EXPECT_EQ(watch_round({}, 0.2, weights).at(0).networks, EyeNetworks::all);
+  // Without the network for expressions alone.
+  const std::filesystem::path part = testing::TempDir() + "some_face_networks";
+  std::filesystem::create_directories(part);
+  for (const auto& file : std::filesystem::directory_iterator(weights))
+    if (!file.path().filename().string().starts_with("face_expression"))
+      std::filesystem::copy_file(file.path(), part / file.path().filename(),
+                                 std::filesystem::copy_options::overwrite_existing);
+  ObserverSettings eye;
+  eye.face.weights = part.string();
+  EXPECT_EQ(Observer(eye).step_blind(0).networks, EyeNetworks::all);
+  eye.expression = true;
+  EXPECT_EQ(Observer(eye).step_blind(0).networks, EyeNetworks::no_expression);
+}
+
 TEST(Observe, a_camera_above_the_screen_that_looks_down_gives_the_same_place) {
   Mount mount;
   mount.fov = 75 * pi / 180;

@@ -66,6 +66,27 @@ TEST_F(Judged, EachStateOfACamera) {
   EXPECT_EQ(all(), "");
 }
 
+TEST_F(Judged, NetworksThatAKioskIsMissing) {
+  report.kiosks = {{.name = "hall", .cameras = 1}};
+  report.cameras = {{"hall", 1, "", "good", 100}};
+  report.cameras[0].networks = EyeNetworks::none;
+  wait(5);
+  const char* heads = "How heads are turned is told badly by the camera at kiosk 'hall'";
+  ASSERT_TRUE(found(heads)) << all();
+  EXPECT_FALSE(found(heads)->grave);
+  EXPECT_NE(found(heads)->remedy.find("./wellspring kiosk"), std::string::npos);
+  report.cameras[0].networks = EyeNetworks::no_expression;
+  wait(5);
+  EXPECT_TRUE(
+      found("No expressions are told by the camera at kiosk 'hall', though they are asked "
+            "for"))
+      << all();
+  EXPECT_FALSE(found(heads));
+  report.cameras[0].networks = EyeNetworks::all;
+  wait(5);
+  EXPECT_EQ(all(), "");
+}
+
 TEST_F(Judged, AKioskThatHasLostItsOnlyCamera) {
   report.kiosks = {{.name = "hall", .cameras = 0}};
   wait(10);
