@@ -11,14 +11,15 @@ export const asked_viewpoint = fresh ? asks.get('viewpoint') : null;
 export const asked_story = fresh ? asks.get('story') : null;
 export const asked_group = fresh ? asks.get('group') : null;
 
-// #place=x,y,z,yaw,pitch or with roll behind it, in metres and radians: {position, yaw, pitch, roll};
-// null: none, or a wrong one.
+// #place=x,y,z,yaw,pitch or with roll behind it, in metres and radians: {position, yaw, pitch,
+// roll}; null: none, or a wrong one.
 export function read_place(hash) {
   const text = /^#place=(.*)$/.exec(decodeURIComponent(hash))?.[1];
   const numbers = text?.split(',').map((word) => (word.trim() ? Number(word) : NaN));
   const complete = numbers?.length === 5 || numbers?.length === 6;
   if (!complete || !numbers.every(Number.isFinite)) return null;
-  return { position: numbers.slice(0, 3), yaw: numbers[3], pitch: numbers[4], roll: numbers[5] ?? 0 };
+  const [yaw, pitch, roll = 0] = numbers.slice(3);
+  return { position: numbers.slice(0, 3), yaw, pitch, roll };
 }
 export const asked_place = () => (fresh ? read_place(location.hash) : null);
 
