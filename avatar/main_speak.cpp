@@ -194,7 +194,7 @@ int main(int argc, char** argv) {
   Options options;
   auto* text = app.add_option("text", options.request.text, "what is to be said, UTF-8");
   auto* story =
-      app.add_option("--story", options.story, "a .story, .ssml or .txt file to be told instead");
+      app.add_option("--story", options.story, "a .story, .ssml, .txt or .vtt file told instead");
   story->excludes(text);
   app.add_option("--variant", options.request.variant, "of the voice: f3, m2, ...");
   app.add_option("--vtt", options.vtt, "subtitles to write, WebVTT");

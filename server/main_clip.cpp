@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
       "A figure acts a story: pictures, sound, subtitles, and a film where ffmpeg is installed."};
   Options options;
   app.add_option("figure", options.figure, "file of the figure")->required();
-  app.add_option("story", options.story, ".story, .ssml or .txt")->required();
+  app.add_option("story", options.story, ".story, .ssml, .txt or .vtt")->required();
   app.add_option("--lang", options.clip.lang, "language tag")->capture_default_str();
   app.add_option("--out", options.out, "folder to write to")->capture_default_str();
   app.add_option("--from", options.from, "second of the story to begin with")

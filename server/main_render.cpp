@@ -298,8 +298,9 @@ View choose_view(const Options& o, const Scene& scene, ivec2 size) {
         (names.empty() ? "the scene has none (use --eye and --target)" : "there are " + names));
   }
   if (!chosen) return frame_scene(scene, fov, size);
-  return make_view(scene, chosen->position, chosen->yaw, chosen->pitch,
-                   o.fov > 0 ? fov : chosen->fov, size.x, size.y);
+  Viewpoint at = *chosen;
+  if (o.fov > 0) at.fov = fov;
+  return make_view(scene, at, size.x, size.y);
 }
 
 // What is in the scene, and which parts of light transport it needs.

@@ -11,12 +11,15 @@ export const asked_viewpoint = fresh ? asks.get('viewpoint') : null;
 export const asked_story = fresh ? asks.get('story') : null;
 export const asked_group = fresh ? asks.get('group') : null;
 
-// #place=x,y,z,yaw,pitch in metres and radians: {position, yaw, pitch}; null: none, or a wrong one.
+// #place=x,y,z,yaw,pitch or with roll behind it, in metres and radians: {position, yaw, pitch,
+// roll}; null: none, or a wrong one.
 export function read_place(hash) {
   const text = /^#place=(.*)$/.exec(decodeURIComponent(hash))?.[1];
   const numbers = text?.split(',').map((word) => (word.trim() ? Number(word) : NaN));
-  if (numbers?.length !== 5 || !numbers.every(Number.isFinite)) return null;
-  return { position: numbers.slice(0, 3), yaw: numbers[3], pitch: numbers[4] };
+  const complete = numbers?.length === 5 || numbers?.length === 6;
+  if (!complete || !numbers.every(Number.isFinite)) return null;
+  const [yaw, pitch, roll = 0] = numbers.slice(3);
+  return { position: numbers.slice(0, 3), yaw, pitch, roll };
 }
 export const asked_place = () => (fresh ? read_place(location.hash) : null);
 
@@ -34,9 +37,10 @@ export function group_address(code) {
   return url.href;
 }
 // To a centimetre, and a twentieth of a degree.
-export function place_address({ position, yaw, pitch }) {
+export function place_address({ position, yaw, pitch, roll }) {
   const url = clean_address();
-  const numbers = [...position.map((v) => v.toFixed(2)), yaw.toFixed(3), pitch.toFixed(3)];
+  const numbers = [...position.map((v) => v.toFixed(2)), yaw.toFixed(3), pitch.toFixed(3),
+    ...(roll ? [roll.toFixed(3)] : [])];
   url.hash = `place=${numbers.map(Number).join(',')}`;
   return url.href;
 }

@@ -7,7 +7,7 @@ import { word } from './words.js';
 
 const least = 320, most = 1920;  // pixels of a postcard's longer side
 
-// view() -> {position, yaw, pitch, fov}, or null: none yet; size() -> [width, height] of the
+// view() -> {position, yaw, pitch, roll, fov}, or null: none yet; size() -> [width, height] of the
 // picture.
 export function make_share(view, size) {
   const field = by_id('share-link'), postcard = by_id('share-postcard');
@@ -37,7 +37,8 @@ export function make_share(view, size) {
     const [width, height] = size(), longer = Math.max(width, height);
     const scale = Math.min(Math.max(longer, least), most) / longer;
     const query = new URLSearchParams(/** @type {any} */ ({
-      position: seen.position.join(','), yaw: seen.yaw, pitch: seen.pitch, fov: seen.fov,
+      position: seen.position.join(','), yaw: seen.yaw, pitch: seen.pitch, roll: seen.roll,
+      fov: seen.fov,
       width: Math.round(width * scale), height: Math.round(height * scale), denoise: 1,
     }));
     try {

@@ -8,13 +8,14 @@ import { word } from './words.js';
 const degrees = (radians) => Math.round(radians * 1800 / Math.PI) / 10;
 
 // Of a message `state`, as one of exhibit.json's "viewpoints"; names that nobody has are given.
-export function viewpoint_text({ position, yaw, pitch, fov }, lang, names) {
+export function viewpoint_text({ position, yaw, pitch, roll, fov }, lang, names) {
   let number = 1;
   while (names.includes(`view-${number}`)) number++;
   return JSON.stringify({
     name: `view-${number}`, title: { [lang]: `View ${number}` },
     position: position.map((x) => Math.round(x * 1000) / 1000),
-    yaw_deg: degrees(yaw), pitch_deg: degrees(pitch), fov_deg: degrees(fov),
+    yaw_deg: degrees(yaw), pitch_deg: degrees(pitch),
+    ...(roll ? { roll_deg: degrees(roll) } : {}), fov_deg: degrees(fov),
   });
 }
 

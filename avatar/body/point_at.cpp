@@ -30,6 +30,8 @@ vec3 limited(vec3 v) {
   float out = flat > 1e-4f ? std::atan2(v.x, v.z) : 0;
   // An arm that hangs may hang anywhere; the higher it is, the more the chest is in its way.
   float open = std::clamp((-up - 0.8f) / 0.5f, 0.0f, 1.0f) * pi;
+  // Behind the back the nearer end of the reach counts, round the circle.
+  if (out < 0.5f * (arm_outward - arm_across) - pi) out += 2 * pi;
   out = std::clamp(out, -arm_across - open, arm_outward + open);
   up = std::clamp(up, -arm_down, arm_up);
   return {std::sin(out) * std::cos(up), std::sin(up), std::cos(out) * std::cos(up)};

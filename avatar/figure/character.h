@@ -58,6 +58,7 @@ struct Appearance {
   std::string normal_texture, metallic_roughness_texture, emission_texture;  // likewise
   float normal_scale = 1;
   bool double_sided = false;
+  bool clear_colors = false;  // vertices' colours let light through where their alpha is below 1
   // Where the figure has a material_file: its material there, which says more than the fields
   // above.
   int material = -1;

@@ -224,6 +224,25 @@ quat turn_of(Channel channel, float degrees) {
   return glm::angleAxis(degrees * pi / 180, axis);
 }
 
+// Some programs write where a joint is into the motion alone: a skeleton whose OFFSETs are all zero
+// is that of the first frame.
+void take_missing_offsets(BvhReader& reader, const BvhReader::Frames& frames) {
+  auto& joints = reader.joints;
+  auto has_length = [](const BvhJoint& joint) { return joint.offset != vec3(0); };
+  if (joints.size() < 2 || std::any_of(joints.begin() + 1, joints.end(), has_length)) return;
+  size_t value = 0;
+  for (size_t j = 0; j < joints.size(); j++)
+    for (Channel channel : joints[j].channels) {
+      const size_t at = value++;
+      if (j > 0 && channel < Channel::x_rotation && frames.count > 0)
+        joints[j].offset[int(channel)] = frames.values[at];
+    }
+  const bool found = std::any_of(joints.begin() + 1, joints.end(), has_length);
+  reader.warnings.push_back(
+      found ? "all OFFSETs are zero: bones are as long as the first frame has them"
+            : "all OFFSETs are zero, and no frame says where a joint is: the skeleton has no size");
+}
+
 // Metres a unit of the file: people are between 1 and 2.5 m tall.
 float unit_of(float height, std::vector<std::string>& warnings) {
   if (!(height > 1e-6f)) return 1;
@@ -247,6 +266,7 @@ Character character_from_bvh(const std::string& path, const std::string& text) {
   if (text.compare(0, 3, "\xef\xbb\xbf") == 0) reader.at = 3;
   reader.read_hierarchy();
   BvhReader::Frames frames = reader.read_motion();
+  take_missing_offsets(reader, frames);
 
   std::vector<Bone> bones;
   std::vector<vec3> places;

@@ -9,6 +9,20 @@
 #include "avatar/figure/hanim_names.h"
 
 namespace wellspring {
+namespace {
+
+// A figure brings no light and no eye of its own.
+void note_left_out(gltf::File& file) {
+  auto note = [&](size_t count, const char* where, const char* what) {
+    if (count > 0)
+      gltf::warn(file, where, "left out, as a figure has none: " + std::to_string(count) + what);
+  };
+  note(gltf::items(file.root, "cameras").size(), "/cameras", " camera(s)");
+  if (const auto* lights = gltf::extension(file.root, "KHR_lights_punctual"))
+    note(gltf::items(*lights, "lights").size(), "/extensions/KHR_lights_punctual", " light(s)");
+}
+
+}  // namespace
 
 Character character_from_gltf(const std::string& path) {
   GltfFigure figure;
@@ -35,6 +49,7 @@ Character character_from_gltf(const std::string& path) {
   if (character.parts.empty())
     gltf::warn(figure.file, "",
                figure.vrm.animation ? "a motion without a figure" : "the figure has no surface");
+  note_left_out(figure.file);
   for (std::string& warning : figure.file.warnings)
     character.warnings.push_back(std::move(warning));
   complete_face(character);

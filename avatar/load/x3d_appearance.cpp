@@ -65,13 +65,33 @@ std::string picture_of(X3dFile& file, const X3dNode& material, const char* field
   return "";
 }
 
+// Vertex colours in place of the material's.
+void use_colors(X3dFile& file, Appearance& appearance, bool glows, bool covered,
+                std::vector<vec4>& colors) {
+  if (colors.empty()) return;
+  if (glows) warn_once(file.warnings, "colours of vertices are not used with an UnlitMaterial");
+  if (glows || covered) return colors.clear();
+  appearance.base_color = vec3(1);
+  bool clear = false;
+  for (vec4& color : colors) {
+    color = vec4(linear_from_srgb(vec3(color)), color.w);
+    clear |= color.w < 1;
+  }
+  if (!clear) return;
+  appearance.alpha = 1;  // that of the colours counts (X3D 4, 17.2.2.3)
+  appearance.clear_colors = true;
+}
+
 }  // namespace
 
-X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3* color) {
+X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, std::vector<vec4>& colors) {
   X3dAppearance result;
   Appearance& appearance = result.appearance;
-  if (color) appearance.base_color = linear_from_srgb(*color);
-  if (appearance_node < 0) return result;
+  if (appearance_node < 0) {
+    use_colors(file, appearance, false, false, colors);
+    return result;
+  }
+  bool glows = false, covered = false;
   const X3dNode& node = file.nodes[size_t(appearance_node)];
   appearance.name = node.def;
   int picture = find_child(file, node, "texture", {"ImageTexture"});
@@ -83,9 +103,7 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3
     appearance.alpha = 1 - glm::clamp(float_of(file, m, "transparency", 0), 0.0f, 1.0f);
     vec3 emissive = glm::max(vec3_of(file, m, "emissiveColor", vec3(0)), vec3(0));
     if (m.type == "PhysicalMaterial") {
-      if (!color)
-        appearance.base_color =
-            glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
+      appearance.base_color = glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
       appearance.metallic = glm::clamp(float_of(file, m, "metallic", 1), 0.0f, 1.0f);
       appearance.roughness = glm::clamp(float_of(file, m, "roughness", 1), 0.0f, 1.0f);
       appearance.emission = emissive;
@@ -99,11 +117,11 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3
         warn_once(file.warnings,
                   "occlusionTexture of a PhysicalMaterial is not used: shadows are traced");
     } else if (m.type == "UnlitMaterial") {
+      glows = true;
       appearance.base_color = vec3(0);
       appearance.emission = linear_from_srgb(vec3_of(file, m, "emissiveColor", vec3(1)));
     } else {
-      if (!color)
-        appearance.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
+      appearance.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
       appearance.emission = linear_from_srgb(emissive);
       // Blinn-Phong exponent 128 * shininess as a GGX roughness, as far as there is a highlight at
       // all.
@@ -115,6 +133,12 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3
       int diffuse = find_child(file, m, "diffuseTexture", {});
       if (diffuse >= 0) picture = diffuse;
       appearance.double_sided = m.type == "TwoSidedMaterial";
+      appearance.normal_texture = picture_of(file, m, "normalTexture");
+      appearance.normal_scale = glm::clamp(float_of(file, m, "normalScale", 1), 0.0f, 100.0f);
+      appearance.emission_texture = picture_of(file, m, "emissiveTexture");
+      for (const char* other : {"specularTexture", "shininessTexture", "ambientTexture"})
+        if (find_child(file, m, other, {}) >= 0)
+          warn_once(file.warnings, std::string(other) + " of a Material is not used");
     }
   }
   if (picture >= 0) {
@@ -123,7 +147,8 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3
       appearance.texture = find_picture(file, p);
       // A texture takes the place of the older Material's colour (X3D 4, 17.2.2.3).
       bool physical = material >= 0 && file.nodes[size_t(material)].type == "PhysicalMaterial";
-      if (!appearance.texture.empty() && !physical) appearance.base_color = vec3(1);
+      covered = !appearance.texture.empty() && !physical;
+      if (covered) appearance.base_color = vec3(1);
     } else {
       warn_once(file.warnings, "texture of type " + p.type + " is not used");
     }
@@ -131,6 +156,7 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3
   int transform = find_child(file, node, "textureTransform", {"TextureTransform"});
   if (transform >= 0 && file.nodes[size_t(transform)].type == "TextureTransform")
     result.uv_transform = texture_transform(file, file.nodes[size_t(transform)]);
+  use_colors(file, appearance, glows, covered, colors);
   return result;
 }
 

@@ -12,8 +12,10 @@ struct X3dAppearance {
   mat3 uv_transform{1};  // TextureTransform, for X3D texture coordinates
 };
 
-// `appearance_node` < 0: the default one. `color`: the geometry's own colour, which replaces the
-// material's.
-X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3* color);
+// `appearance_node` < 0: the default one. `colors`: the geometry's own, one a vertex, as written.
+// They take the place of the material's colour, which is white then, and become linear; they are
+// cleared where they are not shown (under a picture that replaces all colours, or by a material
+// that only glows).
+X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, std::vector<vec4>& colors);
 
 }  // namespace wellspring

@@ -17,32 +17,10 @@ namespace {
 
 constexpr int max_visits = 2'000'000;
 
-bool is_group(const std::string& type) {
-  for (const char* name :
-       {"Transform", "Group", "StaticGroup", "Anchor", "Collision", "Billboard", "LOD", "Switch",
-        "CADLayer", "CADAssembly", "CADPart", "Layer", "LayerSet", "ScreenGroup"})
-    if (type == name) return true;
-  return false;
-}
-
-// Nodes that have no shape and need no word.
-bool is_silent(const std::string& type) {
-  for (const char* end :
-       {"Sensor", "Interpolator", "Light", "Trigger", "Sequencer", "Viewpoint", "Sound"})
-    if (type.size() >= std::strlen(end) &&
-        type.compare(type.size() - std::strlen(end), std::string::npos, end) == 0)
-      return true;
-  if (type.rfind("Metadata", 0) == 0) return true;
-  for (const char* name : {"WorldInfo", "NavigationInfo", "Background", "Fog", "Script",
-                           "HAnimDisplacer", "Coordinate", "Normal", "TextureCoordinate",
-                           "HAnimMotion", "IndexedFaceSet", "Appearance", "Material", "AudioClip"})
-    if (type == name) return true;
-  return false;
-}
-
 // Preorder without recursion, each node once; calls found(node, matrix) for each HAnimHumanoid.
+// `shown`: only for those that the file's Switch nodes show.
 template <class Found>
-void find_humanoids(const X3dFile& file, const Found& found) {
+void find_humanoids(const X3dFile& file, bool shown, const Found& found) {
   struct Item {
     int node;
     mat4 matrix;
@@ -59,8 +37,11 @@ void find_humanoids(const X3dFile& file, const Found& found) {
       continue;
     }
     mat4 matrix = node.type == "Transform" ? item.matrix * transform_of(file, node) : item.matrix;
-    for (size_t i = node.children.size(); i-- > 0;)
-      stack.push_back({node.children[i].node, matrix});
+    std::vector<int> children;
+    if (shown) children = shown_children(file, node);
+    else
+      for (const X3dChild& child : node.children) children.push_back(child.node);
+    for (size_t i = children.size(); i-- > 0;) stack.push_back({children[i], matrix});
   }
 }
 
@@ -96,6 +77,7 @@ void HumanoidReader::walk_children(int index, const Context& context) {
 
 void HumanoidReader::walk(int index, const Context& context) {
   const X3dNode& node = file.nodes[size_t(index)];
+  if (!bool_of(node, "visible", true)) return;
   if (++visits > max_visits || depth > 2 * x3d_max_depth)
     throw LoadError(file.path, where(node), "DEF and USE unfold to too large a tree");
   depth++;
@@ -115,16 +97,10 @@ void HumanoidReader::walk(int index, const Context& context) {
     Context inner = context;
     inner.matrix = context.matrix * transform_of(file, node);
     walk_children(index, inner);
-  } else if (node.type == "LOD") {
-    if (!node.children.empty()) walk(node.children[0].node, context);
-  } else if (node.type == "Switch") {
-    std::vector<int> choice = ints_of(file, node, "whichChoice");
-    if (!choice.empty() && choice[0] >= 0 && size_t(choice[0]) < node.children.size())
-      walk(node.children[size_t(choice[0])].node, context);
-  } else if (is_group(node.type)) {
+  } else if (node.type == "LOD" || node.type == "Switch") {
+    for (int child : shown_children(file, node)) walk(child, context);
+  } else if (is_x3d_group(node.type)) {
     walk_children(index, context);
-  } else if (!is_silent(node.type)) {
-    warn_once(file.warnings, "node type " + node.type.substr(0, 60) + " is left out");
   }
   depth--;
 }
@@ -154,7 +130,8 @@ void HumanoidReader::read_joint(int index, Context context) {
   context.matrix = context.matrix * joint_scale(file, node);
   joint.center = vec3(context.matrix * vec4(vec3_of(file, node, "center", vec3(0)), 1));
   joint.rest_rotation = rotation_of(file, node, "rotation");
-  if (std::abs(joint.rest_rotation.w) < 0.9999f)
+  if (std::abs(joint.rest_rotation.w) < 0.9999f ||
+      vec3_of(file, node, "translation", vec3(0)) != vec3(0))
     warn_once(file.warnings, "the file poses the figure: rest is the H-Anim default pose instead");
   if (!is_finite(joint.center))
     throw LoadError(file.path, where(node), "its place is beyond all numbers");
@@ -203,7 +180,7 @@ void HumanoidReader::read_skeleton(int humanoid) {
   if (walk_roots([&](const X3dChild& child) {
         bool anywhere =
             child.field.empty() || child.field == "children" || child.field == "humanoidBody";
-        return anywhere && (type_of(child) == "HAnimJoint" || is_group(type_of(child))) &&
+        return anywhere && (type_of(child) == "HAnimJoint" || is_x3d_group(type_of(child))) &&
                !child.use;
       }))
     return;
@@ -229,10 +206,16 @@ void HumanoidReader::read_skeleton(int humanoid) {
 Character character_from_x3d(X3dFile& file) {
   int humanoid = -1, count = 0;
   mat4 above(1);
-  find_humanoids(file, [&](int node, const mat4& matrix) {
+  auto take = [&](int node, const mat4& matrix) {
     if (count++ == 0) humanoid = node, above = matrix;
     return count < 2;
-  });
+  };
+  find_humanoids(file, true, take);
+  if (humanoid < 0) {
+    find_humanoids(file, false, take);
+    if (humanoid >= 0)
+      warn_once(file.warnings, "the file shows no HAnimHumanoid: the first that it hides is used");
+  }
   if (humanoid < 0) throw LoadError(file.path, "", "no HAnimHumanoid in the file");
   if (count > 1) warn_once(file.warnings, "only the first HAnimHumanoid of the file is used");
   const X3dNode& node = file.nodes[size_t(humanoid)];
@@ -264,6 +247,7 @@ Character character_from_x3d(X3dFile& file) {
                                  ", its joints are those of loa " + std::to_string(character.loa));
   for (const char* field : {"jointBindingPositions", "jointBindingRotations", "jointBindingScales"})
     if (find_field(node, field)) warn_once(file.warnings, std::string(field) + " is not used");
+  note_left_out(file);
   if (character.parts.empty()) warn_once(file.warnings, "the figure has no surface");
   character.warnings = file.warnings;
   check_figure(character);

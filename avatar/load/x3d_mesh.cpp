@@ -14,7 +14,7 @@ namespace {
 constexpr size_t max_corners = 6'000'000;
 
 struct Corner {
-  int point = 0, normal = -1, uv = -1;  // normal and uv: into their nodes' arrays; -1: none
+  int point = 0, normal = -1, uv = -1, color = -1;  // into their nodes' arrays; -1: none
 };
 
 // Polygons as one run of corners.
@@ -179,7 +179,9 @@ struct MeshReader {
       convex = bool_of(node, "convex", true);
       std::vector<int> normal_index = ints_of(file, node, "normalIndex");
       std::vector<int> uv_index = ints_of(file, node, "texCoordIndex");
+      std::vector<int> color_index = ints_of(file, node, "colorIndex");
       bool normal_per_vertex = bool_of(node, "normalPerVertex", true);
+      bool color_per_vertex = bool_of(node, "colorPerVertex", true);
       int face = 0;
       index.push_back(-1);
       for (size_t i = 0; i < index.size(); i++) {
@@ -192,14 +194,16 @@ struct MeshReader {
         auto pick = [&](const std::vector<int>& list, size_t at, int otherwise) {
           return list.empty() ? otherwise : at < list.size() ? list[at] : -1;
         };
-        Corner corner{index[i], -1, pick(uv_index, i, index[i])};
+        Corner corner{index[i], -1, pick(uv_index, i, index[i]), -1};
         corner.normal = normal_per_vertex ? pick(normal_index, i, index[i])
                                           : pick(normal_index, size_t(face), face);
+        corner.color = color_per_vertex ? pick(color_index, i, index[i])
+                                        : pick(color_index, size_t(face), face);
         run.push_back(corner);
       }
       return faces;
     }
-    auto corner = [&](size_t i) { return Corner{index[i], index[i], index[i]}; };
+    auto corner = [&](size_t i) { return Corner{index[i], index[i], index[i], index[i]}; };
     if (type.find("Triangle") != std::string::npos && type.find("Strip") == std::string::npos &&
         type.find("Fan") == std::string::npos) {
       for (size_t i = 0; i + 2 < index.size(); i += 3)
@@ -257,18 +261,25 @@ struct MeshReader {
     return crease_normals(faces, mesh.points, crease);
   }
 
-  void read_color() {
+  // The colours that corners index; empty: there are none, or too few.
+  std::vector<vec4> read_colors(const Faces& faces) {
     int color = find_child(file, node, "color", {"Color", "ColorRGBA"});
-    if (color < 0) return;
-    const X3dNode& colors = file.nodes[size_t(color)];
-    std::vector<float> values = floats_of(file, colors, "color");
-    size_t step = colors.type == "ColorRGBA" ? 4 : 3, count = values.size() / step;
-    if (count == 0) return;
-    vec3 sum(0);
-    for (size_t i = 0; i < count; i++)
-      sum += vec3(values[i * step], values[i * step + 1], values[i * step + 2]);
-    mesh.color = sum / float(count);
-    warn_once(file.warnings, "colours of single vertices are averaged to one colour a part");
+    if (color < 0) return {};
+    const X3dNode& given = file.nodes[size_t(color)];
+    std::vector<float> values = floats_of(file, given, "color");
+    const size_t step = given.type == "ColorRGBA" ? 4 : 3;
+    std::vector<vec4> colors;
+    for (size_t i = 0; i + step <= values.size(); i += step)
+      colors.push_back(
+          glm::clamp(vec4(values[i], values[i + 1], values[i + 2], step == 4 ? values[i + 3] : 1),
+                     vec4(0), vec4(1)));
+    for (const Corner& corner : faces.corners)
+      if (corner.color < 0 || size_t(corner.color) >= colors.size()) {
+        warn_once(file.warnings,
+                  where(node) + ": too few colours, the material's is shown instead");
+        return {};
+      }
+    return colors;
   }
 
   void read() {
@@ -295,15 +306,18 @@ struct MeshReader {
       std::vector<float> v = floats_of(file, file.nodes[size_t(uv_node)], "point");
       for (size_t i = 0; i + 1 < v.size(); i += 2) given_uv.push_back({v[i], v[i + 1]});
     }
-    weld(faces, normals, given_uv, convex);
+    if (uv_node >= 0 && given_uv.empty())
+      warn_once(file.warnings, where(node) + ": texture coordinates of type " +
+                                   file.nodes[size_t(uv_node)].type +
+                                   " are not used, X3D's own are made instead");
+    weld(faces, normals, given_uv, read_colors(faces), convex);
     if (given_uv.empty()) mesh.uv = default_uv(mesh);
-    read_color();
   }
 
   void weld(const Faces& faces, const std::vector<vec3>& normals, const std::vector<vec2>& given_uv,
-            bool convex) {
+            const std::vector<vec4>& colors, bool convex) {
     struct Key {
-      uint32_t word[6];
+      uint32_t word[10];
       bool operator==(const Key& other) const {
         return std::memcmp(word, other.word, sizeof word) == 0;
       }
@@ -328,11 +342,13 @@ struct MeshReader {
       key.word[0] = uint32_t(corner.point);
       std::memcpy(&key.word[1], q, 12);
       std::memcpy(&key.word[4], &uv, 8);
+      if (!colors.empty()) std::memcpy(&key.word[6], &colors[size_t(corner.color)], 16);
       auto [place, added] = vertices.emplace(key, uint32_t(mesh.point_of.size()));
       if (added) {
         mesh.point_of.push_back(uint32_t(corner.point));
         mesh.normals.push_back(normals[i]);
         if (!given_uv.empty()) mesh.uv.push_back(uv);
+        if (!colors.empty()) mesh.colors.push_back(colors[size_t(corner.color)]);
       }
       vertex_of[i] = place->second;
     }
@@ -355,7 +371,6 @@ X3dMesh make_x3d_mesh(X3dFile& file, int geometry) {
       MeshReader{file, node, mesh}.read();
       return mesh;
     }
-  warn_once(file.warnings, "geometry of type " + node.type + " is not drawn");
   return mesh;
 }
 

@@ -2,8 +2,6 @@
 // X3D geometry nodes as triangles: polygons cut, normals made, corners that agree in everything
 // welded.
 #pragma once
-#include <optional>
-
 #include "avatar/load/x3d_node.h"
 
 namespace wellspring {
@@ -16,11 +14,12 @@ struct X3dMesh {
   std::vector<vec2> uv;            // one a vertex or empty; (0,0) bottom left as X3D has it
   std::vector<uvec3> triangles;    // into the vertices
   bool solid = true;               // seen from the front only
-  std::optional<vec3> color;       // mean of the Color node, as written
+  std::vector<vec4> colors;        // one a vertex or empty, as written; alpha last
 };
 
-// Triangles of a geometry node; no triangles where the type is none that has a surface or is
-// unsupported (a warning names it). Faces with indices out of range are left out with a warning.
+// Triangles of a geometry node; none where its type has no surface or is unsupported
+// (x3d_node.h counts those). Faces with indices out of range are left out with a warning, and
+// colours where they are too few.
 X3dMesh make_x3d_mesh(X3dFile& file, int geometry);
 
 // The mesh of Box, Sphere, Cylinder or Cone.

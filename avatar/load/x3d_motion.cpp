@@ -223,7 +223,8 @@ struct Router {
   std::unordered_map<std::string, int> by_def;
   std::unordered_map<int, int> joint_of;  // node -> joint
   std::unordered_map<int, std::vector<const X3dRoute*>> from;
-  size_t followed = 0, looked_at = 0, numbers = 0;
+  std::set<const X3dRoute*> followed;
+  size_t looked_at = 0, numbers = 0;
   static constexpr size_t most_links = 200'000, most_numbers = 16'000'000;
 
   Router(HumanoidReader& of, const Turner& turns, int node)
@@ -262,8 +263,9 @@ struct Router {
         if (target == by_def.end() || !is_field(to_joint->from_field, "value")) continue;
         if (++looked_at > most_links)
           throw LoadError(file.path, where(timer), "ROUTEs lead to too many joints");
-        if (led.insert({curve->second, target->second, to_joint->to_field}).second)
-          add_track(motion, curve->second, target->second, to_joint->to_field, cycle);
+        if (!led.insert({curve->second, target->second, to_joint->to_field}).second ||
+            add_track(motion, curve->second, target->second, to_joint->to_field, cycle))
+          followed.insert({to_curve, to_joint});
       }
     }
     if (motion.tracks.empty() || reader.character.motions.size() >= most_motions) return;
@@ -271,7 +273,8 @@ struct Router {
     reader.character.motions.push_back(std::move(motion));
   }
 
-  void add_track(Motion& motion, int curve_node, int target, const std::string& field,
+  // False: there is nothing to follow, or it leads to nothing that a figure moves.
+  bool add_track(Motion& motion, int curve_node, int target, const std::string& field,
                  float cycle) {
     X3dFile& file = reader.file;
     const X3dNode& curve = file.nodes[size_t(curve_node)];
@@ -280,7 +283,7 @@ struct Router {
     int joint = found != joint_of.end() ? found->second : target == humanoid ? 0 : -1;
     bool rotation = is_field(field, "rotation"), translation = is_field(field, "translation");
     bool weight = is_field(field, "weight") && node.type == "HAnimDisplacer";
-    if (!weight && (joint < 0 || !(rotation || translation))) return;
+    if (!weight && (joint < 0 || !(rotation || translation))) return false;
     size_t width = rotation ? 4 : translation ? 3 : 1;
     MotionTrack track{rotation      ? TrackKind::rotation
                       : translation ? TrackKind::translation
@@ -299,7 +302,7 @@ struct Router {
     if (keys.size() * width != values.size())
       warn_once(file.warnings, where(curve) + ": " + std::to_string(keys.size()) + " keys but " +
                                    std::to_string(values.size()) + " numbers");
-    if (count == 0) return;
+    if (count == 0) return false;
     if (curve.type.rfind("Spline", 0) == 0 || curve.type.rfind("Squad", 0) == 0)
       warn_once(file.warnings, curve.type + " is followed in straight lines from key to key");
     for (size_t k = 0; k < count; k++) {
@@ -326,8 +329,8 @@ struct Router {
       track.target = int(motion.displacers.size());
       motion.displacers.push_back(name.empty() ? node.def : name);
     }
-    followed++;
     motion.tracks.push_back(std::move(track));
+    return true;
   }
 };
 
@@ -343,9 +346,10 @@ void read_x3d_motions(HumanoidReader& reader, int humanoid) {
   for (size_t i = 0; i < reader.file.nodes.size(); i++)
     if (reader.file.nodes[i].type == "TimeSensor" && !reader.file.nodes[i].def.empty())
       router.follow(int(i));
-  if (!reader.file.routes.empty() && router.followed == 0)
+  if (size_t idle = reader.file.routes.size() - router.followed.size())
     warn_once(reader.file.warnings,
-              "no ROUTE leads from a TimeSensor to a joint: none is followed");
+              std::to_string(idle) + " of " + std::to_string(reader.file.routes.size()) +
+                  " ROUTEs are no way from a TimeSensor to a joint or displacer: not followed");
 }
 
 }  // namespace wellspring

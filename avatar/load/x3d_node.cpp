@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <unordered_map>
+#include <utility>
 
 #include "base/load_error.h"
 
@@ -102,6 +104,113 @@ void resolve_uses(X3dFile& file, const std::vector<X3dPendingUse>& pending) {
     children.erase(children.begin() + ptrdiff_t(index));
   }
   refuse_cycles(file);
+}
+
+namespace {
+
+constexpr std::string_view groups[] = {
+    "Transform", "Group",    "StaticGroup", "Anchor",  "Collision", "Billboard", "LOD",
+    "Switch",    "CADLayer", "CADAssembly", "CADPart", "Layer",     "LayerSet",  "ScreenGroup"};
+
+// Of these something is read, a warning says why not, or there is nothing in them for a figure.
+constexpr std::string_view known[] = {"Scene",
+                                      "WorldInfo",
+                                      "NavigationInfo",
+                                      "Shape",
+                                      "Appearance",
+                                      "Material",
+                                      "PhysicalMaterial",
+                                      "UnlitMaterial",
+                                      "TwoSidedMaterial",
+                                      "ImageTexture",
+                                      "PixelTexture",
+                                      "MovieTexture",
+                                      "MultiTexture",
+                                      "TextureTransform",
+                                      "TextureCoordinate",
+                                      "TextureCoordinateGenerator",
+                                      "MultiTextureCoordinate",
+                                      "Coordinate",
+                                      "CoordinateDouble",
+                                      "Normal",
+                                      "Color",
+                                      "ColorRGBA",
+                                      "Box",
+                                      "Sphere",
+                                      "Cylinder",
+                                      "Cone",
+                                      "IndexedFaceSet",
+                                      "IndexedTriangleSet",
+                                      "TriangleSet",
+                                      "IndexedTriangleStripSet",
+                                      "TriangleStripSet",
+                                      "IndexedTriangleFanSet",
+                                      "TriangleFanSet",
+                                      "IndexedQuadSet",
+                                      "QuadSet",
+                                      "TimeSensor",
+                                      "OrientationInterpolator",
+                                      "PositionInterpolator",
+                                      "ScalarInterpolator",
+                                      "SplinePositionInterpolator",
+                                      "SplineScalarInterpolator",
+                                      "SquadOrientationInterpolator"};
+
+template <size_t count>
+bool is_one_of(const std::string& type, const std::string_view (&names)[count]) {
+  return std::find(std::begin(names), std::end(names), type) != std::end(names);
+}
+
+size_t count_shapes_outside(const X3dFile& file) {
+  size_t shapes = 0;
+  std::vector<int> open{0};
+  std::vector<uint8_t> seen(file.nodes.size(), 0);
+  while (!open.empty()) {
+    const int index = open.back();
+    open.pop_back();
+    const X3dNode& node = file.nodes[size_t(index)];
+    if (std::exchange(seen[size_t(index)], 1) || node.type == "HAnimHumanoid") continue;
+    shapes += node.type == "Shape";
+    for (int child : shown_children(file, node)) open.push_back(child);
+  }
+  return shapes;
+}
+
+}  // namespace
+
+bool is_x3d_group(const std::string& type) { return is_one_of(type, groups); }
+
+std::vector<int> shown_children(const X3dFile& file, const X3dNode& node) {
+  if (!bool_of(node, "visible", true)) return {};
+  std::vector<int> children;
+  for (const X3dChild& child : node.children)
+    if (file.nodes[size_t(child.node)].type.rfind("Metadata", 0) != 0)
+      children.push_back(child.node);
+  if (node.type == "LOD" && children.size() > 1) children.resize(1);
+  if (node.type == "Switch") {
+    const std::vector<int> choice = ints_of(file, node, "whichChoice");
+    const bool shows = !choice.empty() && choice[0] >= 0 && size_t(choice[0]) < children.size();
+    return shows ? std::vector<int>{children[size_t(choice[0])]} : std::vector<int>{};
+  }
+  return children;
+}
+
+void note_left_out(X3dFile& file) {
+  std::map<std::string, size_t> kinds;
+  for (const X3dNode& node : file.nodes) {
+    const bool read = node.type.rfind("HAnim", 0) == 0 || node.type.rfind("Metadata", 0) == 0 ||
+                      is_x3d_group(node.type) || is_one_of(node.type, known);
+    if (!read) kinds[node.type.substr(0, 60)]++;
+  }
+  std::string list;
+  for (const auto& [kind, count] : kinds)
+    if (list.size() < 400) list += (list.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+    else if (!list.ends_with("...")) list += ", ...";
+  if (!list.empty()) warn_once(file.warnings, "left out, as a figure has none of them: " + list);
+  if (size_t shapes = count_shapes_outside(file))
+    warn_once(file.warnings,
+              std::to_string(shapes) + (shapes == 1 ? " shape stands" : " shapes stand") +
+                  " beside the humanoid and " + (shapes == 1 ? "is" : "are") + " left out");
 }
 
 }  // namespace wellspring

@@ -101,4 +101,14 @@ int find_child(const X3dFile& file, const X3dNode& node, std::string_view field,
 // HAnimSite, HAnimHumanoid (X3D 4, 10.4.4).
 mat4 transform_of(const X3dFile& file, const X3dNode& node);
 
+bool is_x3d_group(const std::string& type);
+
+// The children of a group that are shown: of a Switch the chosen one, of an LOD the first level;
+// none of what is written as not visible. Metadata are no children.
+std::vector<int> shown_children(const X3dFile& file, const X3dNode& node);
+
+// Warns once of all that is no part of a figure: counts, by kind, the nodes of which nothing is
+// read (lights, sensors, lines, ...), and the shapes that stand beside all humanoids.
+void note_left_out(X3dFile& file);
+
 }  // namespace wellspring

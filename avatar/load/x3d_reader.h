@@ -23,8 +23,8 @@ struct HumanoidReader {
       rest;  // per joint: humanoid's own coordinates to humanoid space, scales of joints included
   std::vector<int> joint_node;  // per joint: its node
   std::unordered_set<int> seen_joints;
-  std::map<std::tuple<int, int, int>, int>
-      appearances;  // (appearance, geometry with colours, solid) -> look
+  std::map<std::tuple<int, int, bool>, int>
+      appearances;  // (appearance, colours: 0 none, 1 some, 2 with alpha; solid) -> look
   int visits = 0, depth = 0;
   size_t bytes_read = 0;  // of geometry
 

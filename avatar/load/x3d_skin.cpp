@@ -109,11 +109,11 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
     throw LoadError(file.path, where(node),
                     "more than " + std::to_string(max_vertices) + " vertices");
   int appearance_node = find_child(file, node, "appearance", {"Appearance"});
-  X3dAppearance appearance =
-      make_x3d_appearance(file, appearance_node, mesh.color ? &*mesh.color : nullptr);
-  auto [place, added] =
-      appearances.emplace(std::tuple(appearance_node, mesh.color ? geometry : -1, int(mesh.solid)),
-                          int(character.appearances.size()));
+  X3dAppearance appearance = make_x3d_appearance(file, appearance_node, mesh.colors);
+  const int colored = mesh.colors.empty() ? 0 : appearance.appearance.clear_colors ? 2 : 1;
+  auto [place, added] = appearances.emplace(std::tuple(appearance_node, colored, mesh.solid),
+                                            int(character.appearances.size()));
+  if (colored) character.colors.resize(character.positions.size(), vec4(1));
   if (added) {
     appearance.appearance.double_sided = appearance.appearance.double_sided || !mesh.solid;
     character.appearances.push_back(appearance.appearance);
@@ -144,6 +144,7 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
     character.normals.push_back(safe_normal(to_rest, mesh.normals[v]));
     vec3 uv = appearance.uv_transform * vec3(mesh.uv[v], 1);
     character.uv.push_back({uv.x, 1 - uv.y});
+    if (colored) character.colors.push_back(mesh.colors[v]);
     character.first_weight.push_back(uint32_t(character.weights.size()));
   }
   bool mirrored = glm::determinant(skin ? root * matrix : matrix) < 0;
@@ -152,6 +153,7 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
     if (mirrored) std::swap(t.y, t.z);
     part.triangles.push_back(t + first);
   }
+  if (!character.colors.empty()) character.colors.resize(character.positions.size(), vec4(1));
   character.parts.push_back(std::move(part));
   placed.push_back({mesh.coordinate, first, std::move(mesh.point_of), mesh.points.size(), matrix});
 }
@@ -221,14 +223,12 @@ void HumanoidReader::read_skin(int humanoid) {
     open.erase(open.begin());
     const X3dNode& part = file.nodes[size_t(index)];
     if (part.type == "Shape") {
-      shapes.push_back({index, matrix});
+      if (bool_of(part, "visible", true)) shapes.push_back({index, matrix});
       continue;
     }
+    if (!is_x3d_group(part.type)) continue;
     if (part.type == "Transform") matrix = matrix * transform_of(file, part);
-    for (const X3dChild& child : part.children) {
-      open.push_back({child.node, matrix});
-      if (part.type == "LOD") break;
-    }
+    for (int child : shown_children(file, part)) open.push_back({child, matrix});
   }
   auto coordinate_of = [&](int shape) {
     int geometry =
@@ -266,9 +266,11 @@ void HumanoidReader::read_skin(int humanoid) {
     if (fits) {
       add_shape(shape, matrix, -1, &skin);
     } else {
-      warn_once(file.warnings, where(file.nodes[size_t(shape)]) +
-                                   ": skin without skinCoord follows the root joint");
+      const size_t parts = character.parts.size();
       add_shape(shape, rest[0] * matrix, 0, nullptr);
+      if (character.parts.size() > parts)
+        warn_once(file.warnings, where(file.nodes[size_t(shape)]) +
+                                     ": skin without skinCoord follows the root joint");
     }
   }
   // Joint displacers move the skin, in the joint's coordinates.

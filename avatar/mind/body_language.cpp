@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/mind/body_language.h"
 
+#include <cmath>
+
+#include "avatar/mind/gaze.h"
+
 namespace wellspring {
 namespace {
 
@@ -21,12 +25,15 @@ void release(GestureState& gesture, const GestureLibrary& library) {
   gesture.hold = std::clamp(gesture.time - clip.hold, 0.0f, gesture.hold);
 }
 
-GestureOrder point_at(const GestureLibrary& library, const vec3& place, const mat4& to_here) {
-  vec3 here(to_here * vec4(place, 1));
+// On the side to which the gaze goes round, too.
+bool is_left(const vec3& here) { return way_round(std::atan2(here.x, here.z)) > 0; }
+
+GestureOrder point_at(const GestureLibrary& library, const vec3& place, const mat4& to_body) {
+  vec3 here(to_body * vec4(place, 1));
   GestureOrder order =
       play(library, glm::length(vec2(here.x, here.z)) < near_place ? "point_near" : "point_far");
   order.seconds = seconds_held;
-  order.mirrored = here.x > 0;  // the hand that is nearer
+  order.mirrored = is_left(here);  // the hand that is nearer
   return order;
 }
 
@@ -34,7 +41,7 @@ GestureOrder point_at(const GestureLibrary& library, const vec3& place, const ma
 
 GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
                             const GestureLibrary& library, const StorytellerInput& input,
-                            const StorytellerEvents& events, Mood mood, const mat4& to_here,
+                            const StorytellerEvents& events, Mood mood, const mat4& to_body,
                             Rng& rng, double now) {
   const StoryCue& story = input.story;
   bool points = story.point && is_finite(*story.point) && mood != Mood::farewell;
@@ -59,13 +66,13 @@ GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
       order.lead = std::max(story.gesture_lead, 0.0f);
       const GestureClip& clip = library.clips[size_t(order.clip)];
       if (clip.aim != Aim::none && points) {
-        vec3 here(to_here * vec4(*story.point, 1));
-        order.mirrored = clip.uses_arm[here.x > 0 ? 0 : 1] == false;
+        vec3 here(to_body * vec4(*story.point, 1));
+        order.mirrored = clip.uses_arm[is_left(here) ? 0 : 1] == false;
       }
       return order;
     }
   }
-  if (begins) return point_at(library, *story.point, to_here);
+  if (begins) return point_at(library, *story.point, to_body);
   if (events.greeted && !input.telling) return play(library, "greet");
   if (gesture.clip >= 0) return {};
   for (const Guest& guest : input.guests)

@@ -26,10 +26,10 @@ inline constexpr double patience_seconds = 18, patience_again_seconds = 40;
 inline constexpr int most_invitations = 3;
 
 // May shorten what `gesture` holds (a pointing hand sinks when the story has finished with the
-// place). `to_here`: world to humanoid space.
+// place). `to_body`: world to humanoid space, turned as the body faces.
 GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
                             const GestureLibrary& library, const StorytellerInput& input,
-                            const StorytellerEvents& events, Mood mood, const mat4& to_here,
+                            const StorytellerEvents& events, Mood mood, const mat4& to_body,
                             Rng& rng, double now);
 
 }  // namespace wellspring

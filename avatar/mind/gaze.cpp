@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "avatar/body/body.h"
 namespace wellspring {
 namespace {
 
@@ -13,6 +14,7 @@ constexpr float eye_rate = nine_tenths / eye_seconds, head_rate = nine_tenths / 
 constexpr float eye_reach_yaw = 22_deg,
                 eye_reach_pitch = 15_deg;  // beyond it the head must come along
 constexpr float head_reach = 55_deg, torso_reach = 18_deg;
+constexpr float torso_showing = 30_deg;  // the chest's reach while the feet stay with a listener
 
 float nearest_turn(float angle, float to) {
   return angle + 2 * pi * std::round((to - angle) / (2 * pi));
@@ -20,13 +22,14 @@ float nearest_turn(float angle, float to) {
 
 // The guest to look at: kiosk guests before remote ones, the nearest first, the present one kept
 // unless another is clearly nearer. nullptr: nobody.
-const Guest* choose_guest(const GazeState& state, std::span<const Guest> guests, vec3 from) {
+const Guest* choose_guest(const GazeState& state, std::span<const Guest> guests, vec3 from,
+                          float radius) {
   const Guest* best = nullptr;
   float least = 1e30f;
   for (const Guest& guest : guests) {
     float distance = glm::length(guest.head - from);
     bool kept = state.at_guest && state.guest == guest.id;
-    if (!guest.kiosk && distance > remote_radius + (kept ? 0.5f : 0)) continue;
+    if (!guest.kiosk && distance > radius + (kept ? 0.5f : 0)) continue;
     float rank = distance - (kept ? 0.3f : 0) + (guest.kiosk ? 0 : 1e6f);
     if (rank < least) least = rank, best = &guest;
   }
@@ -37,11 +40,17 @@ void choose_target(GazeState& state, const BehaviourState& behaviour, const Gaze
                    vec3 from, Rng& rng, double now) {
   float heading = input.heading;
   bool motion = input.kiosk_motion, humanlike = input.humanlike;
-  const Guest* guest = choose_guest(state, input.guests, from);
+  const float radius = behaviour.mood == Mood::telling ? listener_radius : remote_radius;
+  const Guest* guest = choose_guest(state, input.guests, from, radius);
   if (guest && guest->kiosk) {
     state.kiosk_known = true;
     state.kiosk_place = guest->head;
   }
+  // A kiosk's guest who is out of sight for a moment is there still.
+  const bool unseen = behaviour.company && state.kiosk_known;
+  state.listener = guest    ? std::optional(guest->head)
+                   : unseen ? std::optional(state.kiosk_place)
+                            : std::nullopt;
   if (input.look && is_finite(*input.look) && behaviour.mood != Mood::farewell) {
     state.at_guest = false;
     state.guest = 0;
@@ -85,7 +94,16 @@ void choose_target(GazeState& state, const BehaviourState& behaviour, const Gaze
                                               std::cos(yaw) * std::cos(pitch));
 }
 
+float yaw_of(vec3 way, float otherwise) {
+  return glm::length(vec2(way.x, way.z)) > 1e-3f ? std::atan2(way.x, way.z) : otherwise;
+}
+
 }  // namespace
+
+float way_round(float turn, float before) {
+  const float most = before > 150_deg ? 190_deg : before < -150_deg ? 150_deg : 170_deg;
+  return most - (most - turn - 2 * pi * std::floor((most - turn) / (2 * pi)));
+}
 
 vec3 eyes_origin(const Rig& rig, float heading) {
   vec3 axis = rig.character->joints[size_t(rig.root)].center;
@@ -110,7 +128,6 @@ bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour
   vec3 way = state.target - from;
   float distance = std::max(glm::length(way), 0.25f);
   float flat = glm::length(vec2(way.x, way.z));
-  float yaw = flat > 1e-3f ? nearest_turn(std::atan2(way.x, way.z), heading) : heading;
   float pitch = std::atan2(way.y, std::max(flat, 1e-3f));
 
   if (!input.humanlike || !input.saccades) {
@@ -121,12 +138,20 @@ bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour
     state.next_saccade = now + 0.35 + 1.4 * double(rng.uniform());
   }
   // What the head and the chest do about it.
-  float turn = yaw - heading;
+  const float turn = way_round(yaw_of(way, heading) - heading, state.turn);
+  state.turn = turn;
   bool eyes = rig.eyes_move;
-  float torso = std::clamp(0.25f * turn, -torso_reach, torso_reach);
+  const float chest = input.look && state.listener ? torso_showing : torso_reach;
+  float torso = std::clamp(0.25f * turn, -chest, chest);
   float head = eyes ? 0.85f * std::copysign(std::max(std::abs(turn) - 3_deg, 0.0f), turn) : turn;
   if (eyes) head = std::clamp(head, turn - eye_reach_yaw, turn + eye_reach_yaw);
+  if (state.listener) {
+    const float to = way_round(yaw_of(*state.listener - from, heading) - heading);
+    head = std::clamp(head, to - most_away, to + most_away);
+  }
   head = std::clamp(head, torso - head_reach, torso + head_reach);
+  // The eyes stop where their sockets end, on the way that the head goes.
+  const float yaw = heading + std::clamp(turn, head - eye_limit_yaw, head + eye_limit_yaw);
   float nod =
       eyes ? std::clamp(0.65f * pitch, pitch - eye_reach_pitch, pitch + eye_reach_pitch) : pitch;
   nod = std::clamp(nod, -32_deg, 28_deg);
@@ -141,7 +166,7 @@ bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour
     state.torso_yaw = {torso, 0};
     state.begun = true;
   }
-  state.yaw.value = nearest_turn(state.yaw.value, yaw);
+  state.yaw.value = nearest_turn(state.yaw.value, heading);
   state.head_yaw.value = nearest_turn(state.head_yaw.value, heading);
   settle(state.yaw, yaw, eye_rate, dt);
   settle(state.pitch, pitch, eye_rate, dt);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the storyteller looks, and how its eyes, head and chest share the way: eyes first and fast,
-// then the head, then the chest. Angles are in humanoid space, about +Y from +Z (positive to its
-// own left) and up.
+// then the head, then the chest. Who listens is never shown a back: what lies behind is looked at
+// as far as eyes, head and chest go. Angles are in humanoid space, about +Y from +Z (positive to
+// its own left) and up.
 #pragma once
 #include <optional>
 #include <span>
@@ -13,7 +14,10 @@
 
 namespace wellspring {
 
-inline constexpr float remote_radius = 8;  // metres within which a visitor's camera is looked at
+// Metres within which a visitor's camera is looked at, and while it is told a story.
+inline constexpr float remote_radius = 8, listener_radius = 20;
+// The head's largest turn away from who listens, for whatever else is looked at.
+inline constexpr float most_away = 60_deg;
 
 struct GazeState {
   bool begun = false;
@@ -28,6 +32,8 @@ struct GazeState {
   double next_saccade = 0;
   vec2 saccade{0};                         // small step of the eyes around the target
   vec3 target{0, 1.6f, 4};                 // what is looked at, humanoid space
+  std::optional<vec3> listener;            // the head of who is not to be shown a back
+  float turn = 0;                          // from where the body faces to the target, radians
   Spring yaw, pitch, nearness{0.25f, 0};   // line of sight of the eyes; nearness = 1 / distance
   Spring head_yaw, head_pitch, torso_yaw;  // torso_yaw: relative to the heading
 };
@@ -48,6 +54,10 @@ inline constexpr float eye_seconds = 0.14f, head_seconds = 0.65f, torso_seconds 
 bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour,
                const GazeInput& input, Rng& rng, double now, float dt);
 
+// The way round by `turn` from where the body faces: to the left up to 170 degrees, beyond it over
+// the right, as the right hand points to what is straight behind. A way of `before` that is far
+// round stays on its side.
+float way_round(float turn, float before = 0);
 // The middle between the eyes while the body faces `heading`, standing still.
 vec3 eyes_origin(const Rig& rig, float heading);
 // The point the eyes converge on.

@@ -54,18 +54,19 @@ void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const GazeInp
   if (state.detail != Detail::none) state.work.eyes++;
   bool kiosk =
       state.behaviour.company || state.mood == Mood::greeting || state.mood == Mood::farewell;
-  bool shows = look.look && !state.gaze.at_guest;
-  float reach = shows ? 50_deg : kiosk ? 30_deg : state.gaze.at_guest ? 60_deg : -1.0f;
+  // The feet are with who listens, whatever is looked at meanwhile.
+  const std::optional<vec3>& listener = state.gaze.listener;
+  const bool shows = look.look && !state.gaze.at_guest && !listener;
+  float reach = kiosk ? 30_deg : listener ? 60_deg : shows ? 50_deg : -1.0f;
   float patience = state.mood == Mood::greeting ? 0.15f
                    : kiosk || shows             ? 0.5f
-                   : state.gaze.at_guest        ? 1.2f
+                   : listener                   ? 1.2f
                                                 : 4.0f;
-  vec3 way = state.gaze.target - eyes_origin(rig, state.stance.heading.value);
+  vec3 way = listener.value_or(state.gaze.target) - eyes_origin(rig, state.stance.heading.value);
   float heading = state.stance.heading.value, aim = heading;
   if (glm::length(vec2(way.x, way.z)) > 0.05f) {
-    aim = std::atan2(way.x, way.z);
-    aim += 2 * pi * std::round((heading - aim) / (2 * pi));
-    // Who shows something stands between it and the listeners.
+    aim = heading + way_round(std::atan2(way.x, way.z) - heading);
+    // Who shows something stands between it and whoever may come.
     if (shows && std::abs(aim - heading) > reach) aim -= std::copysign(30_deg, aim - heading);
   }
   tick_stance(state.stance, rig.leg[0].complete() && rig.leg[1].complete(), aim, reach, patience,
@@ -183,8 +184,9 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   tick_stance_and_gaze(state, rig, look, dt);
   if (full && input.humanlike) state.work.saccades++;
   const GestureLibrary& library = storyteller.gestures ? *storyteller.gestures : default_gestures();
+  const mat4 to_body = glm::rotate(mat4(1), -state.stance.heading.value, vec3(0, 1, 0)) * to_here;
   GestureOrder order = choose_gesture(state.body_language, state.gesture, library, here, events,
-                                      state.mood, to_here, state.rng, now);
+                                      state.mood, to_body, state.rng, now);
   tick_hold(state.hold, library, input.story.held, dt);
   keep_to_free_arm(order, library, state.hold);
   const HoldingArm holding = eval_hold(state.hold, library);

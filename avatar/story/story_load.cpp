@@ -15,7 +15,9 @@ StoryScript load_story(const std::string& file) {
   text.resize(size_t(std::max<std::streamsize>(in.gcount(), 0)));
   if (text.size() > most_markup_bytes)
     throw LoadError(file, "", "is larger than " + std::to_string(most_markup_bytes >> 20) + " MiB");
-  return file.ends_with(".txt") ? read_plain_story(text, file) : read_story(text, file);
+  if (file.ends_with(".txt")) return read_plain_story(text, file);
+  if (file.ends_with(".vtt")) return read_subtitle_story(text, file);
+  return read_story(text, file);
 }
 
 }  // namespace wellspring

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Story files: .txt is plain text, all else is markup.
+// Story files: .txt is plain text, .vtt are subtitles, all else is markup.
 #pragma once
 #include <string>
 
@@ -8,7 +8,8 @@
 namespace wellspring {
 
 // Throws LoadError naming the file: it cannot be read, it is larger than most_markup_bytes, and
-// what read_story and read_plain_story throw.
+// what read_story, read_plain_story and
+// read_subtitle_story throw.
 StoryScript load_story(const std::string& file);
 
 }  // namespace wellspring

@@ -2,9 +2,9 @@
 #include "avatar/story/story_markup.h"
 
 #include <algorithm>
-#include <array>
 
 #include "avatar/speech/text.h"
+#include "avatar/story/character_reference.h"
 #include "base/load_error.h"
 
 namespace wellspring {
@@ -27,49 +27,6 @@ std::string small(std::string_view text) {
 std::string local_name(std::string_view name) {
   size_t colon = name.rfind(':');
   return small(colon == std::string_view::npos ? name : name.substr(colon + 1));
-}
-
-void append_utf8(std::string& to, uint32_t code) {
-  if (code < 0x80) {
-    to += char(code);
-  } else if (code < 0x800) {
-    to += {char(0xc0 | code >> 6), char(0x80 | (code & 0x3f))};
-  } else if (code < 0x10000) {
-    to += {char(0xe0 | code >> 12), char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
-  } else {
-    to += {char(0xf0 | code >> 18), char(0x80 | (code >> 12 & 0x3f)),
-           char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
-  }
-}
-
-// Appends what "&...;" at the beginning of `text` means; bytes read, 0 when it is no entity.
-size_t read_entity(std::string_view text, std::string& to) {
-  size_t end = text.substr(0, 12).find(';');
-  if (end == std::string_view::npos) return 0;
-  std::string_view name = text.substr(1, end - 1);
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 6> known = {
-      {{"lt", "<"}, {"gt", ">"}, {"amp", "&"}, {"quot", "\""}, {"apos", "'"}, {"nbsp", "\u00a0"}}};
-  for (auto [entity, meaning] : known)
-    if (name == entity) {
-      to += meaning;
-      return end + 1;
-    }
-  if (name.size() < 2 || name[0] != '#') return 0;
-  bool hex = name[1] == 'x' || name[1] == 'X';
-  uint32_t code = 0;
-  std::string_view digits = name.substr(hex ? 2 : 1);
-  if (digits.empty()) return 0;
-  for (char c : digits) {
-    char d = char(c | 32);
-    int value = c >= '0' && c <= '9' ? c - '0' : hex && d >= 'a' && d <= 'f' ? d - 'a' + 10 : -1;
-    if (value < 0) return 0;
-    code = code * (hex ? 16 : 10) + uint32_t(value);
-    if (code > 0x10ffff) return 0;
-  }
-  bool surrogate = code >= 0xd800 && code < 0xe000;
-  if (surrogate || (code < 0x20 && !is_space(char(code)))) return 0;
-  append_utf8(to, code);
-  return end + 1;
 }
 
 struct Reader {
@@ -122,7 +79,7 @@ struct Reader {
     MarkupPlace from = place;
     std::string plain;
     while (!ended() && !is_tag()) {
-      if (size_t bytes = text[at] == '&' ? read_entity(text.substr(at), plain) : 0) {
+      if (size_t bytes = text[at] == '&' ? read_character_reference(text.substr(at), plain) : 0) {
         step(bytes);
       } else {
         plain += text[at];
@@ -161,7 +118,7 @@ struct Reader {
       std::string_view raw = until(quote, "the value of an attribute");
       std::string value;
       for (size_t i = 0; i < raw.size();) {
-        size_t bytes = raw[i] == '&' ? read_entity(raw.substr(i), value) : 0;
+        size_t bytes = raw[i] == '&' ? read_character_reference(raw.substr(i), value) : 0;
         if (bytes == 0) value += raw[i];
         i += std::max(bytes, size_t(1));
       }

@@ -7,6 +7,7 @@
 #include "avatar/speech/text.h"
 #include "avatar/story/story_sentence.h"
 #include "avatar/story/story_value.h"
+#include "avatar/story/subtitle.h"
 #include "base/load_error.h"
 
 namespace wellspring {
@@ -337,6 +338,19 @@ StoryScript read_story(std::string_view text, const std::string& file) {
 
 StoryScript read_plain_story(std::string_view text, const std::string& file) {
   return read_pieces(read_plain_markup(text, file), file, false);
+}
+
+StoryScript read_subtitle_story(std::string_view text, const std::string& file) {
+  const Subtitles subtitles = load_subtitles(text, file);
+  std::vector<MarkupPiece> pieces;
+  for (const SubtitleCue& cue : subtitles.cues) {
+    MarkupPiece& piece = pieces.emplace_back();
+    piece.text = cue.text + "\n";
+    piece.place.line = cue.line;
+  }
+  StoryScript script = read_pieces(pieces, file, false);
+  for (const auto& [line, what] : subtitles.notes) script.notes.push_back({{line, 1}, what});
+  return script;
 }
 
 StoryScript read_story_line(std::string_view text, const std::string& file) {

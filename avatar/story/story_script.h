@@ -55,6 +55,9 @@ inline constexpr size_t most_line_bytes = 2000;
 StoryScript read_story(std::string_view text, const std::string& file);
 // The same of a text without markup: an empty line divides paragraphs.
 StoryScript read_plain_story(std::string_view text, const std::string& file);
+// The same of subtitles (WebVTT), whose cues are one running text: a sentence may go on in the
+// next.
+StoryScript read_subtitle_story(std::string_view text, const std::string& file);
 // One line whatever it says: a greeting, or a sentence of a list. <s> and <p> inside still divide.
 StoryScript read_story_line(std::string_view text, const std::string& file);
 

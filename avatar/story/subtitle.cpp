@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "avatar/speech/text.h"
+#include "avatar/story/character_reference.h"
 #include "base/load_error.h"
 
 namespace wellspring {
@@ -38,6 +39,14 @@ bool is_blank(std::string_view line) {
   return line.find_first_not_of(" \t") == std::string_view::npos;
 }
 
+bool has_arrow(std::string_view line) { return line.find("-->") != std::string_view::npos; }
+
+// Does a block that is no cue begin with this word?
+bool begins_block(std::string_view line, std::string_view word) {
+  return line.substr(0, word.size()) == word &&
+         (line.size() == word.size() || line[word.size()] == ' ' || line[word.size()] == '\t');
+}
+
 std::string_view trim(std::string_view text) {
   size_t first = text.find_first_not_of(" \t\n");
   if (first == std::string_view::npos) return {};
@@ -56,13 +65,14 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-// Digits at the beginning of `text`, which loses them.
-std::optional<int> read_digits(std::string_view& text, size_t least, size_t most) {
-  size_t count = 0;
+// Exactly `count` digits at the beginning of `text`, which loses them.
+std::optional<int> read_digits(std::string_view& text, size_t count) {
   int value = 0;
-  while (count < text.size() && count < most && text[count] >= '0' && text[count] <= '9')
-    value = value * 10 + (text[count++] - '0');
-  if (count < least) return {};
+  if (text.size() < count) return {};
+  for (char c : text.substr(0, count)) {
+    if (c < '0' || c > '9') return {};
+    value = value * 10 + (c - '0');
+  }
   text.remove_prefix(count);
   return value;
 }
@@ -73,51 +83,57 @@ bool take(std::string_view& text, char c) {
   return true;
 }
 
-// [hh:]mm:ss.mmm; `text` loses it.
+// [h...h:]mm:ss.mmm; `text` loses it. Hours have any number of digits, up to nine.
 std::optional<double> read_time(std::string_view& text) {
-  auto first = read_digits(text, 2, 6);
-  if (!first || !take(text, ':')) return {};
-  auto second = read_digits(text, 2, 2);
+  size_t digits = 0;
+  while (digits < text.size() && text[digits] >= '0' && text[digits] <= '9') digits++;
+  if (digits == 0 || digits > 9) return {};
+  const int first = *read_digits(text, digits);
+  if (!take(text, ':')) return {};
+  auto second = read_digits(text, 2);
   if (!second) return {};
   std::optional<int> third;
   if (take(text, ':')) {
-    third = read_digits(text, 2, 2);
+    third = read_digits(text, 2);
     if (!third) return {};
+  } else if (digits != 2) {
+    return {};
   }
   if (!take(text, '.')) return {};
-  auto ms = read_digits(text, 3, 3);
+  auto ms = read_digits(text, 3);
   if (!ms) return {};
-  int hours = third ? *first : 0, minutes = third ? *second : *first,
+  int hours = third ? first : 0, minutes = third ? *second : first,
       seconds = third ? *third : *second;
   if (minutes > 59 || seconds > 59) return {};
   return hours * 3600.0 + minutes * 60 + seconds + *ms / 1000.0;
 }
 
+// Without tags, references resolved.
+std::string resolve(std::string_view text) {
+  std::string result;
+  for (size_t i = 0; i < text.size();) {
+    const size_t bytes = text[i] == '&' ? read_character_reference(text.substr(i), result) : 0;
+    if (bytes == 0) result += text[i];
+    i += std::max(bytes, size_t(1));
+  }
+  return result;
+}
+
 // Text of a cue without its tags; the name in <v Name> goes to `speaker`.
 std::string plain_text(std::string_view text, std::string& speaker) {
   std::string result;
-  for (size_t i = 0; i < text.size();) {
-    std::string_view rest = text.substr(i);
-    if (text[i] == '<') {
-      size_t end = rest.find('>');
-      std::string_view tag = rest.substr(1, end == std::string_view::npos ? end : end - 1);
-      if (speaker.empty() && !tag.empty() && tag[0] == 'v' &&
-          tag.find(' ') != std::string_view::npos)
-        speaker = std::string(trim(tag.substr(tag.find(' '))));
-      i = end == std::string_view::npos ? text.size() : i + end + 1;
-      continue;
-    }
-    static constexpr std::pair<std::string_view, std::string_view> entities[] = {
-        {"&amp;", "&"},       {"&lt;", "<"}, {"&gt;", ">"},
-        {"&nbsp;", "\u00a0"}, {"&lrm;", ""}, {"&rlm;", ""}};
-    bool found = false;
-    for (auto [entity, meaning] : entities)
-      if (!found && rest.substr(0, entity.size()) == entity) {
-        result += meaning;
-        i += entity.size();
-        found = true;
-      }
-    if (!found) result += text[i++];
+  while (!text.empty()) {
+    const size_t begin = std::min(text.find('<'), text.size());
+    result += resolve(text.substr(0, begin));
+    text.remove_prefix(begin);
+    if (text.empty()) break;
+    const size_t end = std::min(text.find('>'), text.size());
+    const std::string_view tag = text.substr(1, end - 1);
+    const size_t name = tag.find_first_of(" \t\n");  // after "v", or "v.loud"
+    if (speaker.empty() && name != std::string_view::npos &&
+        tag.substr(0, std::min(tag.find('.'), name)) == "v")
+      speaker = resolve(trim(tag.substr(name)));
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
   return std::string(trim(result));
 }
@@ -146,55 +162,56 @@ std::string write_subtitles(const std::vector<SubtitleCue>& cues) {
   return text;
 }
 
-std::vector<SubtitleCue> load_subtitles(std::string_view text, const std::string& file) {
+Subtitles load_subtitles(std::string_view text, const std::string& file) {
   auto fail = [&](size_t line, const std::string& what) {
     throw LoadError(file, "line " + std::to_string(line + 1), what);
   };
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
-  std::vector<std::string_view> lines = lines_of(text);
+  const std::vector<std::string_view> lines = lines_of(text);
   size_t broken = find_broken_utf8(text);
   if (broken != std::string_view::npos)
     fail(lines_of(text.substr(0, broken + 1)).size() - 1, "is not UTF-8");
-  bool signed_ = !lines.empty() && lines[0].substr(0, 6) == "WEBVTT" &&
-                 (lines[0].size() == 6 || lines[0][6] == ' ' || lines[0][6] == '\t');
-  if (!signed_) fail(0, "does not begin with WEBVTT");
-  std::vector<SubtitleCue> cues;
+  if (lines.empty() || !begins_block(lines[0], "WEBVTT")) fail(0, "does not begin with WEBVTT");
+  Subtitles read;
   size_t at = 1;
-  while (at < lines.size() && !is_blank(lines[at])) at++;  // the header
+  auto ends = [&] { return at >= lines.size() || is_blank(lines[at]); };
+  while (!ends() && !has_arrow(lines[at])) at++;  // the header
   while (at < lines.size()) {
     if (is_blank(lines[at])) {
       at++;
       continue;
     }
-    std::string_view first = lines[at];
-    bool other = first.substr(0, 4) == "NOTE" || first == "STYLE" || first == "REGION";
-    if (!other && first.find("-->") == std::string_view::npos) at++;  // the cue's name
-    if (!other) {
-      if (at >= lines.size() || lines[at].find("-->") == std::string_view::npos)
-        fail(std::min(at, lines.size() - 1), "a cue has no times");
-      SubtitleCue cue;
-      std::string_view rest = trim(lines[at]);
-      auto begin = read_time(rest);
-      rest = trim(rest);
-      bool arrow = rest.substr(0, 3) == "-->";
-      rest = arrow ? trim(rest.substr(3)) : rest;
-      auto end = read_time(rest);
-      if (!begin || !arrow || !end) fail(at, "times are written 00:00:01.500 --> 00:00:04.000");
-      if (*end < *begin) fail(at, "a cue ends before it begins");
-      cue.begin = *begin;
-      cue.end = *end;
-      std::string body;
-      for (at++; at < lines.size() && !is_blank(lines[at]); at++)
-        body.append(lines[at]).append(1, '\n');
-      cue.text = plain_text(body, cue.speaker);
-      if (cues.size() == most_cues) fail(at - 1, "there are more than 100,000 cues");
-      if (!cue.text.empty()) cues.push_back(std::move(cue));
+    const size_t first = at;
+    const bool other = begins_block(lines[at], "NOTE") || begins_block(lines[at], "STYLE") ||
+                       begins_block(lines[at], "REGION");
+    if (!other && !has_arrow(lines[at])) at++;  // the cue's name
+    if (other || ends() || !has_arrow(lines[at])) {
+      if (!other)
+        read.notes.emplace_back(int(first) + 1, "a block without times is no cue, and left out");
+      while (!ends()) at++;
+      continue;
     }
-    while (at < lines.size() && !is_blank(lines[at])) at++;
+    SubtitleCue cue;
+    std::string_view rest = trim(lines[at]);
+    auto begin = read_time(rest);
+    rest = trim(rest);
+    bool arrow = rest.substr(0, 3) == "-->";
+    rest = arrow ? trim(rest.substr(3)) : rest;
+    auto end = read_time(rest);
+    if (!begin || !arrow || !end) fail(at, "times are written 00:00:01.500 --> 00:00:04.000");
+    if (*end < *begin) fail(at, "a cue ends before it begins");
+    cue.begin = *begin;
+    cue.end = *end;
+    std::string body;
+    cue.line = int(at) + 2;
+    for (at++; !ends() && !has_arrow(lines[at]); at++) body.append(lines[at]).append(1, '\n');
+    cue.text = plain_text(body, cue.speaker);
+    if (read.cues.size() == most_cues) fail(at - 1, "there are more than 100,000 cues");
+    if (!cue.text.empty()) read.cues.push_back(std::move(cue));
   }
-  std::stable_sort(cues.begin(), cues.end(),
+  std::stable_sort(read.cues.begin(), read.cues.end(),
                    [](const SubtitleCue& a, const SubtitleCue& b) { return a.begin < b.begin; });
-  return cues;
+  return read;
 }
 
 }  // namespace wellspring

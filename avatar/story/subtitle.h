@@ -4,6 +4,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace wellspring {
@@ -12,14 +13,21 @@ struct SubtitleCue {
   double begin = 0, end = 0;  // seconds
   std::string text;           // UTF-8; lines divided by \n; no markup
   std::string speaker;        // of <v Name>
+  int line{0};                // of its text, in the file it was read from
+};
+
+struct Subtitles {
+  std::vector<SubtitleCue> cues;                   // in order of their beginning
+  std::vector<std::pair<int, std::string>> notes;  // line, and what was left out there
 };
 
 // Times as hh:mm:ss.mmm; markup characters are escaped.
 std::string write_subtitles(const std::vector<SubtitleCue>& cues);
 
-// Cues in order of their beginning. Cue settings, NOTE, STYLE and REGION blocks and tags inside
-// cues are passed over. Throws LoadError{file, "line n", what}: no WEBVTT at the beginning, not
-// UTF-8, a cue without times, one that ends before it begins, more than 100,000 cues.
-std::vector<SubtitleCue> load_subtitles(std::string_view text, const std::string& file);
+// What the header says (X-TIMESTAMP-MAP, ...), cue settings, NOTE, STYLE and REGION blocks and tags
+// inside cues are passed over; a block without times is no cue, and noted. Throws LoadError{file,
+// "line n", what}: no WEBVTT at the beginning, not UTF-8, times that are none, a cue that ends
+// before it begins, more than 100,000 cues.
+Subtitles load_subtitles(std::string_view text, const std::string& file);
 
 }  // namespace wellspring

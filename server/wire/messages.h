@@ -151,12 +151,13 @@ struct CameraTo {
   static constexpr const char* type = "camera";
   uint32_t seq = 0;
   dvec3 position{0};
-  float yaw = 0, pitch = 0;
+  float yaw = 0, pitch = 0, roll = 0;
   static void list(auto& message, auto& fields) {
     fields.u32("seq", message.seq, "u32", Need::required);
     fields.vector("position", max_coordinate, message.position, "[x, y, z] m", Need::required);
     fields.number("yaw", -max_angle, max_angle, message.yaw, "radians, 0 looks down -Z");
     fields.number("pitch", -max_angle, max_angle, message.pitch, "radians");
+    fields.number("roll", -max_angle, max_angle, message.roll, "radians, positive leans left");
   }
   bool operator==(const CameraTo&) const = default;
 };

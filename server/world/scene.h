@@ -38,6 +38,7 @@ struct Viewpoint {
   dvec3 position{0};  // absolute world coordinates
   float yaw = 0;      // radians about +Y, 0 looks down -Z, positive turns left
   float pitch = 0;    // positive looks up
+  float roll = 0;     // positive leans to its left, about the line of sight, after yaw and pitch
   float fov = 1.0f;   // vertical, radians
 };
 

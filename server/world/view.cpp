@@ -25,11 +25,17 @@ View make_view_from_axes(const Scene& scene, dvec3 position, vec3 forward, vec3 
 
 View make_view(const Scene& scene, dvec3 position, float yaw, float pitch, float fov, int width,
                int height) {
-  if (!std::isfinite(yaw)) yaw = 0;
-  if (!std::isfinite(pitch)) pitch = 0;
+  return make_view(scene, {"", position, yaw, pitch, 0, fov}, width, height);
+}
+
+View make_view(const Scene& scene, const Viewpoint& at, int width, int height) {
+  const float yaw = std::isfinite(at.yaw) ? at.yaw : 0;
+  const float pitch = std::isfinite(at.pitch) ? at.pitch : 0;
   vec3 forward{-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)};
   vec3 right{std::cos(yaw), 0, -std::sin(yaw)};
-  return make_view_from_axes(scene, position, forward, right, fov, width, height);
+  if (at.roll != 0 && std::isfinite(at.roll))
+    right = std::cos(at.roll) * right + std::sin(at.roll) * cross(right, forward);
+  return make_view_from_axes(scene, at.position, forward, right, at.fov, width, height);
 }
 
 View make_view_towards(const Scene& scene, dvec3 eye, dvec3 target, vec3 up, float fov, int width,

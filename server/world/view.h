@@ -21,7 +21,8 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
-// From yaw and pitch as in Viewpoint. `fov` vertical, radians, in (0, pi).
+View make_view(const Scene& scene, const Viewpoint& at, int width, int height);
+// From yaw and pitch as in Viewpoint, upright. `fov` vertical, radians, in (0, pi).
 View make_view(const Scene& scene, dvec3 position, float yaw, float pitch, float fov, int width,
                int height);
 // From a target; `up` may not be parallel to the line of sight (then another is chosen).

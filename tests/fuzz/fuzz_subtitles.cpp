@@ -7,8 +7,8 @@ namespace wellspring::fuzz {
 
 void fuzz_subtitles(Bytes bytes) {
   load([&] {
-    const auto cues = load_subtitles(text_of(bytes), "fuzz.vtt");
-    load_subtitles(write_subtitles(cues), "fuzz.vtt");
+    const Subtitles subtitles = load_subtitles(text_of(bytes), "fuzz.vtt");
+    load_subtitles(write_subtitles(subtitles.cues), "fuzz.vtt");
   });
 }
 

@@ -31,7 +31,8 @@ double rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
 json place_of(const Viewpoint& view) {
   return {rounded(view.position.x), rounded(view.position.y), rounded(view.position.z),
-          rounded(view.yaw),        rounded(view.pitch),      rounded(view.fov)};
+          rounded(view.yaw),        rounded(view.pitch),      rounded(view.fov),
+          rounded(view.roll)};
 }
 
 // All but the day.
@@ -88,6 +89,7 @@ void restore(Show& show, Visitor& visitor, const json& about) {
     place.view.position[i] = within(at.at(size_t(i)), -max_coordinate, max_coordinate);
   place.view.yaw = angle(3), place.view.pitch = angle(4);
   place.view.fov = float(within(at.at(5), 0.05, 3));
+  place.view.roll = at.size() > 6 ? angle(6) : 0;
   const double viewpoint = about.at("viewpoint");
   const bool known = viewpoint >= 0 && viewpoint < double(show.exhibit.viewpoints.size());
   place.viewpoint = known ? int(viewpoint) : -1;

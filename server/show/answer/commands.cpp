@@ -116,6 +116,7 @@ Answer handle_one(Show& show, Visitor& visitor, const CameraTo& camera) {
   place.view.position = camera.position;
   place.view.yaw = std::remainder(camera.yaw, 2 * pi);
   place.view.pitch = std::clamp(camera.pitch, -steepest, steepest);
+  place.view.roll = std::remainder(camera.roll, 2 * pi);
   place.move = place.velocity = vec3(0);
   place.viewpoint = -1;
   stand(place);

@@ -125,6 +125,7 @@ std::string state_message(const Show& show, const Visitor& visitor) {
                   {"position", triple(place.view.position)},
                   {"yaw", place.view.yaw},
                   {"pitch", place.view.pitch},
+                  {"roll", place.view.roll},
                   {"fov", place.view.fov},
                   {"fps", std::round(visitor.shown.measured_fps * 10) / 10},
                   {"converged", std::round(visitor.picture.stats.converged * 1000) / 1000},

@@ -57,6 +57,7 @@ Viewpoint view_at(const Show& show, const Viewpoint& from, dvec3 eye) {
   to.position = eye;
   to.yaw = float(std::atan2(from.position.x - eye.x, from.position.z - eye.z));
   to.pitch = std::clamp(from.pitch, -steepest_gaze, steepest_gaze);
+  to.roll = 0;
   to.fov = show.exhibit.viewpoints[size_t(show.exhibit.start)].view.fov;
   return to;
 }

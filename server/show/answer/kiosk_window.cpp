@@ -44,7 +44,7 @@ View kiosk_window(const Show& show, const std::string& kiosk) {
     const ScreenSize& screen = found->settings.screen;
     width = int(1000 * screen.width), height = int(1000 * screen.height);
   }
-  return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, width, height);
+  return make_view(show.exhibit.scene, at, width, height);
 }
 
 void look_through(const Show& show, Visitor& page, float dt) {

@@ -90,7 +90,7 @@ void check_view(const Exhibit& exhibit, const World& world, const ExhibitViewpoi
                           "', whose surfaces show it their backs; if that is your room, turn "
                           "its faces inwards (Blender: Mesh > Normals > Flip)");
   constexpr int width = 32, height = 18;
-  View view = make_view(exhibit.scene, at.position, at.yaw, at.pitch, at.fov, width, height);
+  View view = make_view(exhibit.scene, at, width, height);
   for (int i = 0; i < width * height; i++) {
     Ray ray = view_ray(view, float(i % width) + 0.5f, float(i / width) + 0.5f);
     Hit hit = world.intersect(ray);

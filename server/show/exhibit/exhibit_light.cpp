@@ -54,7 +54,7 @@ std::optional<float> measure_exposure(const Exhibit& exhibit, World& world) {
   for (size_t i = 0; i < std::min(exhibit.viewpoints.size(), most_viewpoints); i++) {
     check_cancelled();
     const Viewpoint& at = exhibit.viewpoints[i].view;
-    View view = make_view(exhibit.scene, at.position, at.yaw, at.pitch, at.fov, width, height);
+    View view = make_view(exhibit.scene, at, width, height);
     Frame frame = render_still(*find_technique("path"), world, lights, view, settings);
     std::optional<float> exposure = exposure_of(frame, make_guides(world, lights, view, 4));
     if (exposure) sum += std::log(double(*exposure)), count++;

@@ -74,6 +74,7 @@ void read_viewpoints(Exhibit& exhibit, Fields& root) {
     viewpoint.view.position = fields.triple("position", true);
     viewpoint.view.yaw = float(fields.number("yaw_deg", false, 0, -720, 720) * degree);
     viewpoint.view.pitch = float(fields.number("pitch_deg", false, 0, -89, 89) * degree);
+    viewpoint.view.roll = float(fields.number("roll_deg", false, 0, -180, 180) * degree);
     viewpoint.view.fov = float(fields.number("fov_deg", false, 55, 5, 150) * degree);
     fields.finish();
     exhibit.viewpoints.push_back(std::move(viewpoint));

@@ -19,8 +19,8 @@ namespace {
 
 bool is_story_name(const std::string& text) {
   std::string extension = std::filesystem::path(text).extension().string();
-  bool known =
-      extension == ".story" || extension == ".ssml" || extension == ".xml" || extension == ".txt";
+  bool known = extension == ".story" || extension == ".ssml" || extension == ".xml" ||
+               extension == ".txt" || extension == ".vtt";
   return known && text.find_first_of("<> \n") == std::string::npos;
 }
 
@@ -64,8 +64,8 @@ struct StoryReader {
     } else if (value.is_string() && may_be_text) {
       add(lines, where, [&] { return read_story(value.get<std::string>(), where); });
     } else {
-      fields.problem(place,
-                     "must be a list of sentences, or the name of a .story, .ssml or .txt file");
+      fields.problem(
+          place, "must be a list of sentences, or the name of a .story, .ssml, .txt or .vtt file");
     }
   }
 };

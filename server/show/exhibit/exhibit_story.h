@@ -7,8 +7,8 @@
 
 namespace wellspring {
 
-// A text for each language: a sentence list (each a line), or the name of a .story, .ssml, .xml or
-// .txt file of the package. Also one text with markup, whose sentences are lines, where
+// A text for each language: a sentence list (each a line), or the name of a .story, .ssml, .xml,
+// .txt or .vtt file of the package. Also one text with markup, whose sentences are lines, where
 // `may_be_text`.
 LocalScript read_script(const Exhibit& exhibit, Fields& fields, const char* name, bool required,
                         bool may_be_text, std::vector<Problem>& problems);

@@ -55,6 +55,7 @@ json describe(const Exhibit& exhibit) {
           {viewpoint.view.position.x, viewpoint.view.position.y, viewpoint.view.position.z}},
          {"yaw", viewpoint.view.yaw},
          {"pitch", viewpoint.view.pitch},
+         {"roll", viewpoint.view.roll},
          {"fov", viewpoint.view.fov}});
   for (const StoryText& story : exhibit.stories) {
     json& entry = about["stories"].emplace_back(json{{"id", story.id}, {"title", story.title}});

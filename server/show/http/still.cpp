@@ -55,10 +55,13 @@ StillRoom::StillRoom(const Show& show)
 std::optional<Frame> StillRoom::render(const StillJob& order, const std::function<bool()>& given_up,
                                        StillCosts& costs, std::string& comment) const {
   const auto ends = [&] { return given_up && given_up(); };
-  const Viewpoint& at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
-  View view = make_view(exhibit_.scene, order.position.value_or(at.position),
-                        order.yaw.value_or(at.yaw), order.pitch.value_or(at.pitch),
-                        order.fov.value_or(at.fov), order.width, order.height);
+  Viewpoint at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
+  at.position = order.position.value_or(at.position);
+  at.yaw = order.yaw.value_or(at.yaw);
+  at.pitch = order.pitch.value_or(at.pitch);
+  at.roll = order.roll.value_or(at.roll);
+  at.fov = order.fov.value_or(at.fov);
+  View view = make_view(exhibit_.scene, at, order.width, order.height);
   StillSettings settings;
   settings.spp = order.spp;
   settings.transport = transport_;

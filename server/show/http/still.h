@@ -18,7 +18,7 @@ struct StillJob {
   bool denoise = true;  // where there are weights, else nothing is done
   // In place of the viewpoint's own; metres, radians.
   std::optional<dvec3> position;
-  std::optional<float> yaw, pitch, fov;
+  std::optional<float> yaw, pitch, roll, fov;
   bool operator==(const StillJob&) const = default;
   double pixels() const { return double(width) * height; }
 };

@@ -95,6 +95,7 @@ StillQuestion read_still_question(const Exhibit& exhibit,
   if (!position.empty()) job.position = dvec3(position[0], position[1], position[2]);
   fields.number("yaw", -max_angle, max_angle, job.yaw);
   fields.number("pitch", -max_angle, max_angle, job.pitch);
+  fields.number("roll", -max_angle, max_angle, job.roll);
   fields.number("fov", min_still_fov, max_still_fov, job.fov);
   if (asked.status == 200 && double(job.width) * job.height * job.spp > max_still_work)
     fields.refuse(400, "too_much_work", "width * height * spp may be at most 1920 * 1080 * 256");

@@ -60,7 +60,8 @@ Material make_material(const Appearance& appearance, Pictures& pictures) {
   material.metallic = appearance.metallic;
   material.roughness = appearance.roughness;
   material.emission = appearance.emission;
-  material.alpha_mode = appearance.alpha < 1 ? AlphaMode::blend : AlphaMode::opaque;
+  const bool clear = appearance.alpha < 1 || appearance.clear_colors;
+  material.alpha_mode = clear ? AlphaMode::blend : AlphaMode::opaque;
   material.double_sided = appearance.double_sided;
   return material;
 }

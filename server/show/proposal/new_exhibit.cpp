@@ -156,6 +156,7 @@ struct Maker {
                       {"yaw_deg", round_to(double(view.yaw) / one_degree, 0.1)},
                       {"pitch_deg", round_to(double(view.pitch) / one_degree, 0.1)},
                       {"fov_deg", round_to(double(view.fov) / one_degree, 0.1)}});
+      if (view.roll != 0) list.back()["roll_deg"] = round_to(double(view.roll) / one_degree, 0.1);
     }
     return list;
   }

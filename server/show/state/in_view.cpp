@@ -48,8 +48,7 @@ bool in_view(const View& view, vec3 centre, float radius) {
 View rest_view(const Show& show, const Visitor& visitor) {
   const Around& around = visitor.place.around;
   const Viewpoint& at = around.point >= 0 ? around.view : visitor.place.view;
-  View view = make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov,
-                        visitor.wants.width, visitor.wants.height);
+  View view = make_view(show.exhibit.scene, at, visitor.wants.width, visitor.wants.height);
   view.near = around.near;
   return view;
 }

@@ -30,6 +30,7 @@ void find_view(const Viewpoint& from, Around& around) {
   around.view.position = glm::mix(from.position, eye, double(share));
   around.view.yaw = from.yaw + share * std::remainder(around.look.x - from.yaw, 2 * pi);
   around.view.pitch = glm::mix(from.pitch, around.look.y, share);
+  around.view.roll = glm::mix(from.roll, 0.0f, share);
   around.view.fov = glm::mix(from.fov, fov, share);
   const double depth = dot(around.centre - around.view.position,
                            dvec3(forward_of({around.view.yaw, around.view.pitch})));

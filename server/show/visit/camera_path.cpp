@@ -19,10 +19,11 @@ constexpr int pieces = 8;             // of the law of time, between control poi
 constexpr double level_gaze = -0.04;  // pitch of somebody who looks where he goes
 
 Key operator+(const Key& a, const Key& b) {
-  return {a.position + b.position, a.yaw + b.yaw, a.pitch + b.pitch, a.fov + b.fov};
+  return {a.position + b.position, a.yaw + b.yaw, a.pitch + b.pitch, a.roll + b.roll,
+          a.fov + b.fov};
 }
 Key operator*(const Key& a, double s) {
-  return {a.position * s, a.yaw * s, a.pitch * s, a.fov * s};
+  return {a.position * s, a.yaw * s, a.pitch * s, a.roll * s, a.fov * s};
 }
 
 // Control point i of the spline that begins and ends at its first and last key, at rest there.
@@ -83,6 +84,8 @@ std::vector<Key> make_keys(const std::vector<dvec3>& eyes, const Viewpoint& from
   for (size_t i = 1; i < eyes.size(); i++) length += glm::length(eyes[i] - eyes[i - 1]);
   double turn = std::abs(std::remainder(double(to.yaw) - double(from.yaw), 2 * double(pi))) +
                 std::abs(double(to.pitch) - double(from.pitch));
+  const double tilt = std::remainder(double(to.roll) - double(from.roll), 2 * double(pi));
+  turn += std::abs(tilt);
   size_t count = size_t(std::max({length / key_spacing, turn / key_turn, 6.0})) + 2;
   std::vector<dvec3> points = spread(eyes, count);
   bool walks = length >= least_walk;
@@ -99,10 +102,12 @@ std::vector<Key> make_keys(const std::vector<dvec3>& eyes, const Viewpoint& from
     keys[i].position = points[i];
     keys[i].yaw = heading;
     keys[i].pitch = from.pitch + (double(to.pitch) - from.pitch) * ease(0, 1, t);
+    keys[i].roll = from.roll + tilt * ease(0, 1, t);
     keys[i].fov = from.fov + (double(to.fov) - from.fov) * ease(0, 1, t);
     if (walks) {
       double away = ease(0, reach, s) * (1 - ease(length - reach, length, s));
       keys[i].pitch += (level_gaze - keys[i].pitch) * away;
+      keys[i].roll *= 1 - away;
     }
   }
   double first = double(from.yaw);
@@ -135,11 +140,12 @@ Law make_law(const std::vector<Key>& keys, const CameraLimits& limits) {
     SplinePoint at = eval_spline(keys, double(i) * law.du);
     const Key &slope = at.slope, &bend = at.bend;
     double move = std::max(glm::length(slope.position), 1e-9);
-    double turn = std::max({std::abs(slope.yaw), std::abs(slope.pitch), std::abs(slope.fov), 1e-9});
+    double turn = std::max({std::abs(slope.yaw), std::abs(slope.pitch), std::abs(slope.roll),
+                            std::abs(slope.fov), 1e-9});
     // In a bend the acceleration is the square of the speed times the second derivative.
     double swerve =
         std::sqrt(double(limits.acceleration) / std::max(glm::length(bend.position), 1e-9));
-    double twist = std::max({std::abs(bend.yaw), std::abs(bend.pitch), 1e-9});
+    double twist = std::max({std::abs(bend.yaw), std::abs(bend.pitch), std::abs(bend.roll), 1e-9});
     twist = std::sqrt(double(limits.turn_acceleration) / twist);
     most[i] =
         std::min({double(limits.speed) / move, double(limits.turn) / turn, swerve, twist, 20.0});
@@ -212,7 +218,8 @@ double excess(const CameraPath& path, const CameraLimits& limits) {
   Key before = eval_spline(path.keys, path.along.front()).value;
   for (size_t i = 1; i < path.along.size(); i++) {
     Key now = eval_spline(path.keys, path.along[i]).value;
-    double turn = std::max(std::abs(now.yaw - before.yaw), std::abs(now.pitch - before.pitch));
+    double turn = std::max({std::abs(now.yaw - before.yaw), std::abs(now.pitch - before.pitch),
+                            std::abs(now.roll - before.roll)});
     most = std::max({most,
                      glm::length(now.position - before.position) / path.step / double(limits.speed),
                      turn / path.step / double(limits.turn)});
@@ -231,7 +238,7 @@ CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& fro
   const Key &first = path.keys.front(), &last = path.keys.back();
   bool still = glm::length(first.position - last.position) < 1e-6 && points.size() <= 2 &&
                std::abs(first.yaw - last.yaw) < 1e-6 && std::abs(first.pitch - last.pitch) < 1e-6 &&
-               std::abs(first.fov - last.fov) < 1e-6;
+               std::abs(first.roll - last.roll) < 1e-6 && std::abs(first.fov - last.fov) < 1e-6;
   path.along = still ? std::vector<double>{0, length_of(path.keys)}
                      : make_times(path.keys, limits, path.step);
   path.seconds = path.step * double(path.along.size() - 1);
@@ -249,6 +256,7 @@ Viewpoint eval_camera_path(const CameraPath& path, double time) {
   view.position = at.position;
   view.yaw = float(at.yaw);
   view.pitch = float(at.pitch);
+  view.roll = float(at.roll);
   view.fov = float(at.fov);
   return view;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera's trajectory along a way: position, yaw, pitch and field of view as one cubic B-spline
-// (twice continuously differentiable; de Boor 1978), without roll, and a law of time that keeps
+// The camera's trajectory along a way: position, yaw, pitch, roll and field of view as one cubic
+// B-spline (twice continuously differentiable; de Boor 1978), and a law of time that keeps
 // speed, turning and their changes comfortable everywhere, starting and ending at rest. Immutable.
 #pragma once
 #include <vector>
@@ -19,7 +19,7 @@ struct CameraLimits {
 struct CameraPath {
   struct Key {
     dvec3 position{0};  // absolute
-    double yaw = 0, pitch = 0, fov = 1;
+    double yaw = 0, pitch = 0, roll = 0, fov = 1;
   };
   std::vector<Key> keys;      // control points
   std::vector<double> along;  // place on the spline at times i * step

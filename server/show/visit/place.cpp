@@ -9,7 +9,9 @@ namespace wellspring {
 
 namespace {
 constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
-}
+constexpr float level_seconds = 0.4f;  // how softly who walks comes upright
+constexpr float least_roll = 0.001f;   // radians
+}  // namespace
 
 void stand(VisitorPlace& place) {
   place.glide = {};
@@ -57,6 +59,8 @@ TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
   place.velocity += (place.move - place.velocity) * (1 - std::exp(-dt / ease_seconds));
   if (place.move == vec3(0) && glm::length(place.velocity) < 0.01f) place.velocity = vec3(0);
   if (place.velocity == vec3(0)) return {};
+  place.view.roll *= std::exp(-dt / level_seconds);
+  if (std::abs(place.view.roll) < least_roll) place.view.roll = 0;
   place.viewpoint = -1;
   dvec3 next = walk(world, exhibit.walk, place.view.position,
                     move_direction(place.velocity, place.view.yaw), dt);

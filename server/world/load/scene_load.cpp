@@ -186,7 +186,7 @@ class Builder {
     }
   }
 
-  // Looks down the node's -Z; roll is not kept.
+  // Looks down the node's -Z.
   void build_camera(size_t index, size_t camera_index) {
     const json& camera = items(file_.root, "cameras")[camera_index];
     const dmat4& m = global_[index];
@@ -200,6 +200,11 @@ class Builder {
     if (std::abs(forward.y) > 0.99999) heading = dvec3(m[1]) * (forward.y < 0 ? 1.0 : -1.0);
     viewpoint.yaw = float(std::atan2(-heading.x, -heading.z));
     viewpoint.pitch = float(std::asin(glm::clamp(forward.y, -1.0, 1.0)));
+    // How far its own right lies above that of an upright camera.
+    const dvec3 right(std::cos(double(viewpoint.yaw)), 0, -std::sin(double(viewpoint.yaw)));
+    const dvec3 own = cross(forward, dvec3(m[1])), up = cross(right, forward);
+    viewpoint.roll = float(std::atan2(dot(own, up), dot(own, right)));
+    if (!(std::abs(viewpoint.roll) > 1e-5f)) viewpoint.roll = 0;
     const json* perspective = find(camera, "perspective");
     const std::string where = at("/cameras", camera_index);
     if (text(camera, "type") == "perspective" && perspective) {

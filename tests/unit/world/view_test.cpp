@@ -32,6 +32,21 @@ TEST(View, YawAndPitchTurnAsSaid) {
   for (const View& view : {ahead, left, up}) expect_orthonormal(view);
 }
 
+TEST(View, PositiveRollLeansToTheLeft) {
+  Scene scene;
+  Viewpoint at;
+  at.yaw = 0.7f, at.pitch = -0.3f;
+  View upright = make_view(scene, at, 64, 64);
+  at.roll = 30 * degrees;
+  View leans = make_view(scene, at, 64, 64);
+  expect_orthonormal(leans);
+  EXPECT_EQ(leans.forward, upright.forward);
+  EXPECT_NEAR(dot(leans.up, -upright.right), 0.5f, 1e-5f);
+  EXPECT_NEAR(dot(leans.right, upright.up), 0.5f, 1e-5f);
+  at.roll = NAN;
+  EXPECT_EQ(make_view(scene, at, 64, 64), upright);
+}
+
 TEST(View, RayAndProjectionAreInverse) {
   Scene scene;
   scene.origin = dvec3(100, 200, 300);

@@ -60,6 +60,18 @@ TEST(GltfFigure, BonesOfVrmAreJointsOfHAnim) {
   EXPECT_TRUE(rig.leg[0].complete());
 }
 
+TEST(GltfFigure, CamerasAndLightsAreCountedAsLeftOut) {
+  Asset asset = make_person();
+  EXPECT_FALSE(says(load_asset(asset), "left out, as a figure has none"));
+  const json camera = {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}};
+  asset.root["cameras"] = {camera, camera};
+  asset.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  asset.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  Character c = load_asset(asset);
+  EXPECT_TRUE(says(c, "left out, as a figure has none: 2 camera(s)"));
+  EXPECT_TRUE(says(c, "left out, as a figure has none: 1 light(s)"));
+}
+
 TEST(GltfFigure, Vrm0FacesTheOtherWayAndIsTurned) {
   PersonOptions options;
   options.world = quat(0, 0, 1, 0);

@@ -4,6 +4,7 @@
 
 #include "avatar/body/gesture_library.h"
 #include "avatar/speech/process.h"
+#include "avatar/story/story_script.h"
 #include "avatar/story/subtitle.h"
 #include "avatar/story/timeline.h"
 #include "base/load_error.h"
@@ -135,7 +136,7 @@ TEST(SpeechStyleSound, VariantsOfAVoiceDiffer) {
 TEST(Subtitles, ComeBackAsTheyWere) {
   std::vector<SubtitleCue> cues = {{0, 2.5, "Tom & <Jerry> --> run\nand run", "Ludmila"},
                                    {3600.25, 3661.001, "Žriedlo", ""}};
-  auto back = load_subtitles(write_subtitles(cues), "a.vtt");
+  auto back = load_subtitles(write_subtitles(cues), "a.vtt").cues;
   ASSERT_EQ(back.size(), 2u);
   for (size_t i = 0; i < 2; i++) {
     EXPECT_EQ(back[i].text, cues[i].text);
@@ -146,13 +147,15 @@ TEST(Subtitles, ComeBackAsTheyWere) {
 }
 
 TEST(Subtitles, OthersFilesAreRead) {
-  auto cues = load_subtitles(
-      "\xef\xbb\xbfWEBVTT - title\r\nKind: captions\r\n\r\nNOTE a\r\nnote --> not a cue\r\n\r\n"
-      "STYLE\r\n::cue { color: red }\r\n\r\n"
-      "intro\r\n00:05.000 --> 00:06.500 align:start line:0\r\n<c.red>Late</c> &amp; "
-      "<i>last</i>\r\n\r\n"
-      "00:01.000\t-->\t00:02.000\r\n<v Old Anna>First</v>\r\nline <00:01.500>two",
-      "a.vtt");
+  auto cues =
+      load_subtitles(
+          "\xef\xbb\xbfWEBVTT - title\r\nKind: captions\r\n\r\nNOTE a\r\nnote --> not a cue\r\n\r\n"
+          "STYLE\r\n::cue { color: red }\r\n\r\n"
+          "intro\r\n00:05.000 --> 00:06.500 align:start line:0\r\n<c.red>Late</c> &amp; "
+          "<i>last</i>\r\n\r\n"
+          "00:01.000\t-->\t00:02.000\r\n<v Old Anna>First</v>\r\nline <00:01.500>two",
+          "a.vtt")
+          .cues;
   ASSERT_EQ(cues.size(), 2u);
   EXPECT_EQ(cues[0].text, "First\nline two");
   EXPECT_EQ(cues[0].speaker, "Old Anna");
@@ -166,7 +169,7 @@ TEST(Subtitles, MistakesHaveTheirLine) {
            {"WEBVTTX\n", "line 1"},
            {"WEBVTT\n\n00:01.000 --> soon\nx", "line 3"},
            {"WEBVTT\n\n00:99.000 --> 01:00:00.000\nx", "line 3"},
-           {"WEBVTT\n\nname\nx", "line 4"},
+           {"WEBVTT\n\n1:1.000 --> 00:01:03.000\nx", "line 3"},
            {"WEBVTT\n\n00:02.000 --> 00:01.000\nx", "line 3"},
            {"WEBVTT\n\n00:01.000 --> 00:02.000\n\xff", "line 4"}}) {
     try {
@@ -176,6 +179,59 @@ TEST(Subtitles, MistakesHaveTheirLine) {
       EXPECT_EQ(error.where, line) << text;
     }
   }
+}
+
+TEST(Subtitles, ReferencesAreWhatTheyStandFor) {
+  const std::string head = "WEBVTT\n\n00:01.000 --> 00:02.000\n";
+  for (auto [written, read] : std::vector<std::pair<std::string, std::string>>{
+           {"isn&#39;t &#x27;t", "isn't 't"},
+           {"&lt;i&gt; &amp; &quot;x&quot; &apos;", "<i> & \"x\" '"},
+           {"caf&eacute;&nbsp;&hellip; 5&nbsp;&euro; &ndash; &thetasym;",
+            "café\u00a0… 5\u00a0€ – ϑ"},
+           {"&#150; &#x96; &#128;", "– – €"},
+           {"&#127994;", "🏺"},
+           {"&nobody; &#; &#x; & &#55296; &#1114112; AT&T; &",
+            "&nobody; &#; &#x; & &#55296; "
+            "&#1114112; AT&T; &"}}) {
+    auto cues = load_subtitles(head + written, "a.vtt").cues;
+    ASSERT_EQ(cues.size(), 1u) << written;
+    EXPECT_EQ(cues[0].text, read);
+  }
+  auto named =
+      load_subtitles(head + "<v.loud Tom &amp; Ann>Hello</v> <v Bob>you</v>", "a.vtt").cues;
+  EXPECT_EQ(named[0].speaker, "Tom & Ann");
+  EXPECT_EQ(named[0].text, "Hello you");
+}
+
+TEST(Subtitles, BlocksWithoutTimesAreNoCues) {
+  Subtitles read = load_subtitles(
+      "WEBVTT\rX-TIMESTAMP-MAP=LOCAL:00:00:00.000,MPEGTS:0\r\rNOTES of somebody\rwho wrote\r\r"
+      "REGION\rid:fred\r\r1\r123:00:03.000-->1234:00:04.500 align:start\rLate\r"
+      "00:01.000 --> 00:02.000\rFirst\r\rNOTE\rnothing\r\rlonely",
+      "a.vtt");
+  ASSERT_EQ(read.cues.size(), 2u);
+  EXPECT_EQ(read.cues[0].text, "First");
+  EXPECT_EQ(read.cues[0].line, 14);
+  EXPECT_EQ(read.cues[1].text, "Late");
+  EXPECT_DOUBLE_EQ(read.cues[1].begin, 123 * 3600 + 3);
+  ASSERT_EQ(read.notes.size(), 2u);
+  EXPECT_EQ(read.notes[0].first, 4);
+  EXPECT_EQ(read.notes[1].first, 19);
+}
+
+TEST(Subtitles, AreAStoryWhoseSentencesMayGoOnInTheNextCue) {
+  StoryScript script = read_subtitle_story(
+      "WEBVTT\n\n00:05.000 --> 00:06.000\nit was warm. Then\nit rained.\n\n"
+      "00:01.000 --> 00:02.000\n<v Ann>Have a cup of tea &amp; sit,\n\nodd\nblock\n",
+      "a.vtt");
+  ASSERT_EQ(script.lines.size(), 2u);
+  EXPECT_EQ(script.lines[0].text, "Have a cup of tea & sit, it was warm.");
+  EXPECT_EQ(script.lines[0].place.line, 8);
+  EXPECT_EQ(script.lines[1].text, "Then it rained.");
+  EXPECT_EQ(script.lines[1].place.line, 4);
+  ASSERT_EQ(script.notes.size(), 1u);
+  EXPECT_EQ(script.notes[0].place.line, 10);
+  EXPECT_THROW(read_subtitle_story("WEBVTT\n\nNOTE nothing\n", "a.vtt"), LoadError);
 }
 
 }  // namespace

@@ -151,6 +151,15 @@ TEST(ExhibitFiles, MistakesHaveAPlace) {
   EXPECT_EQ(package.says("/scenes", "at least one"), 1) << package.told();
 }
 
+TEST(ExhibitFiles, ViewpointsMayLean) {
+  RoomPackage package;
+  package.manifest["viewpoints"][0]["roll_deg"] = -30;
+  EXPECT_NEAR(package.read().viewpoints[0].view.roll, -pi / 6, 1e-6f);
+  package.manifest["viewpoints"][0]["roll_deg"] = 181;
+  package.read();
+  EXPECT_EQ(package.says("/viewpoints/0/roll_deg", "must be from"), 1) << package.told();
+}
+
 TEST(ExhibitFiles, ScaleIsOfTheWholeScene) {
   RoomPackage package;
   package.manifest["scale"] = 0.5;

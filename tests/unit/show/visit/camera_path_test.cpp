@@ -122,6 +122,21 @@ TEST(CameraPath, TakesAtLeastTheTimeItIsGivenAndNoneForNothing) {
   EXPECT_LT(quick, 6);
 }
 
+TEST(CameraPath, LeansAsItsEndsDoAndGoesLongWaysUpright) {
+  Viewpoint from = view({0, 1.6, 0}, 0), to = view({8, 1.6, 0}, 0), turned = from;
+  from.roll = 0.5f, to.roll = -0.4f, turned.roll = -3;
+  CameraPath path = make_camera_path({from.position, to.position}, from, to, {});
+  EXPECT_NEAR(eval_camera_path(path, 0).roll, 0.5f, 1e-5f);
+  EXPECT_NEAR(eval_camera_path(path, 0.5 * path.seconds).roll, 0, 0.02f);
+  EXPECT_NEAR(eval_camera_path(path, path.seconds).roll, -0.4f, 1e-5f);
+  CameraPath spin = make_camera_path({from.position, from.position}, from, turned, {});
+  EXPECT_NEAR(std::remainder(eval_camera_path(spin, 1e9).roll - turned.roll, 2 * pi), 0, 1e-4f);
+  EXPECT_GT(eval_camera_path(spin, 0.5 * spin.seconds).roll, 0.6f) << "the shorter way round";
+  for (double t = 0; t < spin.seconds; t += 0.05)
+    EXPECT_LT(std::abs(eval_camera_path(spin, t + 0.05).roll - eval_camera_path(spin, t).roll),
+              0.05 * 1.02 * double(CameraLimits{}.turn));
+}
+
 // ---- ways around things ----
 
 struct Ground {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "unit/world/load/asset.h"
+#include "world/view.h"
 
 namespace wellspring {
 namespace {
@@ -142,6 +143,30 @@ TEST(SceneLoad, Cameras) {
   EXPECT_NEAR(scene.viewpoints[2].pitch, -pi / 2, 1e-3f);
   EXPECT_NEAR(scene.viewpoints[2].yaw, 0, 1e-3f);
   EXPECT_TRUE(warns_of(scene, "not perspective"));
+}
+
+// What the camera's node does to its axes is what the view has.
+TEST(SceneLoad, CamerasKeepTheirRoll) {
+  Asset asset = triangle_asset();
+  asset.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  std::vector<quat> turns;
+  for (float yaw : {0.0f, 2.0f})
+    for (float pitch : {0.0f, -0.7f, 1.5f})
+      for (float roll : {0.0f, 0.4f, -1.2f, 3.0f}) {
+        quat q = glm::angleAxis(yaw, vec3(0, 1, 0)) * glm::angleAxis(pitch, vec3(1, 0, 0)) *
+                 glm::angleAxis(roll, vec3(0, 0, 1));
+        turns.push_back(q);
+        asset.add_node({{"camera", 0}, {"rotation", {q.x, q.y, q.z, q.w}}, {"scale", {2, 3, 2}}});
+      }
+  Scene scene = load(asset);
+  ASSERT_EQ(scene.viewpoints.size(), turns.size());
+  for (size_t i = 0; i < turns.size(); i++) {
+    View view = make_view(scene, scene.viewpoints[i], 4, 4);
+    EXPECT_LT(length(view.right - turns[i] * vec3(1, 0, 0)), 1e-4f) << i;
+    EXPECT_LT(length(view.up - turns[i] * vec3(0, 1, 0)), 1e-4f) << i;
+    EXPECT_LT(length(view.forward - turns[i] * vec3(0, 0, -1)), 1e-4f) << i;
+  }
+  EXPECT_EQ(scene.viewpoints[0].roll, 0);
 }
 
 TEST(SceneLoad, PunctualLights) {
