@@ -19,6 +19,7 @@
 #include "base/load_error.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "base/unicode.h"
 #include "denoise/denoise.h"
 #include "frame/picture_file.h"
 #include "light/visible/guides.h"
@@ -201,7 +202,7 @@ void apply_lamps(const std::vector<std::string>& orders, const Scene& scene,
       throw UsageError("--lamp " + order + ": NAME=on or NAME=off expected");
     size_t found = lamps.size();
     for (size_t i = 0; i < lamps.size(); i++) {
-      if (scene.lamps[i].name == name) found = i;
+      if (scene.lamps[i].name == nfc(name)) found = i;
       names += (i ? ", " : "") + scene.lamps[i].name;
     }
     if (found == lamps.size())
@@ -286,7 +287,7 @@ View choose_view(const Options& o, const Scene& scene, ivec2 size) {
   const Viewpoint* chosen =
       o.camera.empty() && !scene.viewpoints.empty() ? &scene.viewpoints[0] : nullptr;
   for (const Viewpoint& v : scene.viewpoints)
-    if (!o.camera.empty() && v.name == o.camera) {
+    if (!o.camera.empty() && v.name == nfc(o.camera)) {
       chosen = &v;
       break;
     }
