@@ -19,6 +19,7 @@
 #include "base/load_error.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "base/unicode.h"
 #include "denoise/denoise.h"
 #include "frame/picture_file.h"
 #include "light/visible/guides.h"
@@ -53,7 +54,7 @@ struct Options {
   int spp = 16, max_depth = 8, threads = 0;
   uint64_t seed = 1;
   std::vector<std::string> lamps;  // NAME=on, NAME=off
-  bool list_techniques = false, explain = false;
+  bool list_techniques = false, explain = false, draw_back_faces = false;
 };
 
 // Exactly `count` finite numbers with commas between.
@@ -201,7 +202,7 @@ void apply_lamps(const std::vector<std::string>& orders, const Scene& scene,
       throw UsageError("--lamp " + order + ": NAME=on or NAME=off expected");
     size_t found = lamps.size();
     for (size_t i = 0; i < lamps.size(); i++) {
-      if (scene.lamps[i].name == name) found = i;
+      if (scene.lamps[i].name == nfc(name)) found = i;
       names += (i ? ", " : "") + scene.lamps[i].name;
     }
     if (found == lamps.size())
@@ -286,7 +287,7 @@ View choose_view(const Options& o, const Scene& scene, ivec2 size) {
   const Viewpoint* chosen =
       o.camera.empty() && !scene.viewpoints.empty() ? &scene.viewpoints[0] : nullptr;
   for (const Viewpoint& v : scene.viewpoints)
-    if (!o.camera.empty() && v.name == o.camera) {
+    if (!o.camera.empty() && v.name == nfc(o.camera)) {
       chosen = &v;
       break;
     }
@@ -368,6 +369,7 @@ void add_options(CLI::App& app, Options& o) {
                  "ELEVATION,AZIMUTH[,TURBIDITY] of a sun and its sky instead: degrees over the "
                  "horizon, degrees clockwise from -Z, 1 (pure air) to 10 (haze)")
       ->excludes("--environment");
+  app.add_flag("--draw-back-faces", o.draw_back_faces, "of single-sided materials, too");
   app.add_option("--lamp", o.lamps,
                  "NAME=on or NAME=off: a lamp of the exhibit that is not to be as it begins");
   app.add_option("--hour", o.hour, "of the exhibit's day, 17.5: half past five")
@@ -413,6 +415,7 @@ void render(const Options& o) {
   if (!o.denoise.empty()) denoiser = load_denoiser(*find_net_size(o.denoise), problem);
   if (!problem.empty()) throw LoadError("--denoise " + o.denoise, "", problem);
   LoadedScene loaded = load_any_scene(o.scene, o.time);
+  if (o.draw_back_faces) loaded.scene.cull_back_faces = false;
   Scene& scene = loaded.scene;
   for (const std::string& warning : scene.warnings) std::cerr << o.scene << ": " << warning << "\n";
   apply_lamps(o.lamps, scene, loaded.lamps);

@@ -218,7 +218,7 @@ void SkinReader::read_primitive(size_t node, size_t mesh_index, size_t index) {
   std::vector<vec4> color;  // MToon ignores it
   if (!mtoon) color = gltf::read_vec4s(file, attributes, "COLOR_0", used);
   std::vector<dmat4> to_rest = read_weights(node, primitive, where, used);
-  bool mirrored = false;
+  const bool mirrored = gltf::is_mirrored(figure.nodes[node].global);
   std::vector<char> bad(used.size(), 0);
   for (size_t v = 0; v < used.size(); v++) {
     vec3 p(to_rest[v] * dvec4(positions[v], 1));
@@ -226,7 +226,6 @@ void SkinReader::read_primitive(size_t node, size_t mesh_index, size_t index) {
     character.positions.push_back(bad[v] ? vec3(0) : p);
     glm::dmat3 m(to_rest[v]);
     double turn = glm::determinant(m);
-    mirrored = turn < 0;
     vec3 n(0, 0, 1);
     if (!flat) {
       dvec3 given(normals[v]);

@@ -47,6 +47,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libsystemd.", "systemd", "LGPL-2.1-or-later", "what a service tells its manager"},
     {"libtbb.", "oneTBB", "Apache-2.0", "loops over cores"},
     {"libturbojpeg.", "libjpeg-turbo", "IJG AND BSD-3-Clause AND Zlib", "JPEG pictures"},
+    {"libutf8proc.", "utf8proc", "MIT AND Unicode-DFS-2016", "names compared by Unicode"},
     {"libvorbis", "Vorbis", "BSD-3-Clause", "recordings, for libsndfile"},
     {"libvpx.", "libvpx", "BSD-3-Clause", "video"},
     {"libz.", "zlib", "Zlib", "compression, for OpenEXR"},

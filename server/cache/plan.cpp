@@ -29,6 +29,7 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
     bool infinite = points.flags[point] & point_infinite;
     vec3 along = infinite ? position : position - view.position;
     request.ray.origin = view.position;
+    request.ray.from_eye = true;
     request.ray.direction = normalize(along);
     request.resample = point;
   } else {

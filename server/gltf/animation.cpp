@@ -104,9 +104,8 @@ Clip read_clip(File& file, const json& animation, const std::string& where,
     // Channels may share their data in the file, not here.
     file.keys_made += int64_t(track.times.size() + track.values.size());
     if (file.keys_made > key_numbers_limit)
-      refuse(
-          file, place,
-          "the file's animations have more than " + std::to_string(key_numbers_limit) + " numbers");
+      refuse_beyond(file, place, key_numbers_limit, "numbers of animations in all",
+                    "sample them less often, or leave out what does not move");
     if (!with_data || !track.times.empty()) clip.tracks.push_back(std::move(track));
   }
   return clip;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gltf/uri.h"
+
 namespace wellspring::gltf {
 namespace {
 
@@ -141,9 +143,11 @@ void check_accessor(File& file, size_t index) {
   int64_t component_type = integer(accessor, "componentType", 0);
   int bytes = component_type <= float_component ? component_size(int(component_type)) : 0;
   int64_t count = integer(accessor, "count", 0);
-  int64_t limit = find(accessor, "bufferView") ? element_limit : dataless_limit;
-  if (count > limit)
-    refuse(file, where + "/count", "more than " + std::to_string(limit) + " elements");
+  // Those with bytes are bounded by these: check_fit.
+  if (const int64_t most = empty_numbers_limit / (type ? type->components : 1);
+      !find(accessor, "bufferView") && count > most)
+    refuse_beyond(file, where + "/count", most, "elements without bytes of their own",
+                  "give it a bufferView");
   if (!type || bytes == 0) {
     warn(file, where, "an accessor of unknown type");
     return;  // refused where it is used
@@ -194,8 +198,11 @@ const Bytes& buffer_bytes(File& file, size_t index) {
     if (const json* uri = find(buffer, "uri")) {
       std::optional<Bytes> found = read_uri(file, where + "/uri", uri->get<std::string>());
       if (!found)
-        refuse(file, where + "/uri", "no such file: " + uri->get<std::string>().substr(0, 200));
+        refuse(file, where + "/uri", no_such_file(file, where + "/uri", uri->get<std::string>()));
       bytes = std::move(*found);
+      file.bytes_read += int64_t(bytes.size());
+      if (file.bytes_read > all_bytes_limit)
+        refuse_beyond(file, where, all_bytes_limit, "bytes of buffers in all", fewer_vertices);
     } else if (index == 0 && file.has_binary) {
       bytes = std::move(file.binary);
     } else {
@@ -226,7 +233,8 @@ const NamedType& readable_type(const File& file, size_t accessor, const Form& fo
 void charge(File& file, size_t accessor, const Form& form) {
   file.numbers_read += form.count * form.components;
   if (file.numbers_read > numbers_limit)
-    refuse(file, accessor_place(accessor), "the file makes too much data out of its bytes");
+    refuse_beyond(file, accessor_place(accessor), numbers_limit,
+                  "numbers in all, each time that something uses an accessor", fewer_vertices);
 }
 
 std::vector<uint32_t> sparse_indices(File& file, const json& sparse, int64_t count,
@@ -310,6 +318,7 @@ std::shared_ptr<const std::vector<float>> read_floats(File& file, size_t accesso
     }
   }
   constexpr int64_t keep = int64_t(1) << 26;
+  if (int64_t(values.size()) > keep) return made;
   if (file.decoded_numbers + int64_t(values.size()) > keep) {
     file.decoded.clear();
     file.decoded_numbers = 0;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "gltf/file.h"
+#include "gltf/limits.h"
 
 namespace wellspring::gltf {
 
@@ -27,15 +28,6 @@ struct Form {
 };
 Form form_of(const File& file, size_t accessor);
 std::string describe(const File& file, size_t accessor);  // "VEC3 of FLOAT", for messages
-
-// What a file may cost: many accessors over the same bytes, or over none, cannot make a small file
-// take unbounded memory or time.
-constexpr int64_t element_limit = int64_t(1) << 24;      // of one accessor
-constexpr int64_t dataless_limit = int64_t(1) << 22;     // of one accessor without bytes of its own
-constexpr int64_t numbers_limit = int64_t(1) << 29;      // decoded in all
-constexpr int64_t vertices_limit = 48'000'000;           // kept in all
-constexpr int64_t triangles_limit = 32'000'000;          // kept in all
-constexpr int64_t key_numbers_limit = int64_t(1) << 26;  // of animations, in all
 
 // Whether an accessor's bytes exist at all: glTF lets a buffer be declared without content.
 bool has_data(const File& file, size_t accessor);

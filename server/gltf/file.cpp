@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// From path to JSON and bytes: the GLB container (glTF 2.0 section 4), nesting limits, URIs, the
-// package.
+// From path to JSON and bytes: the GLB container (glTF 2.0 section 4), nesting limits, the package.
 #include <cmath>
 #include <cstring>
 #include <fstream>
 
 #include "base/load_error.h"
+#include "base/unicode.h"
 #include "gltf/file.h"
+#include "gltf/limits.h"
 
 namespace wellspring::gltf {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t file_limit = size_t(2) << 30;
-constexpr size_t json_limit = size_t(1) << 28;
 constexpr int depth_limit = 100;
 constexpr size_t warning_limit = 200;
 
@@ -45,7 +44,9 @@ void check_depth(const File& file, const char* begin, const char* end) {
 
 void parse_json(File& file, const char* begin, const char* end) {
   if (begin == end) refuse(file, "", "the file is empty");
-  if (size_t(end - begin) > json_limit) refuse(file, "", "more than 256 MiB of JSON");
+  if (end - begin > json_bytes_limit)
+    refuse_beyond(file, "", json_bytes_limit, "bytes of JSON",
+                  "put its data into a binary buffer: as .glb, or as .gltf with a .bin");
   check_depth(file, begin, end);
   if (end - begin >= 3 && std::memcmp(begin, "\xef\xbb\xbf", 3) == 0)
     warn(file, "byte 0", "the text starts with a byte order mark");
@@ -62,7 +63,8 @@ void parse_json(File& file, const char* begin, const char* end) {
   }
 }
 
-void split_glb(File& file, const Bytes& bytes) {
+// Takes the bytes: those of the binary chunk stay, without a copy.
+void split_glb(File& file, Bytes bytes) {
   if (bytes.size() < 20) refuse(file, "byte 0", "GLB header is cut short");
   if (word(bytes, 4) != 2)
     refuse(file, "byte 4", "GLB version " + std::to_string(word(bytes, 4)) + " is not 2");
@@ -73,6 +75,7 @@ void split_glb(File& file, const Bytes& bytes) {
                std::to_string(bytes.size()));
   if (length < bytes.size()) warn(file, "byte 8", "data after the end of the GLB is ignored");
   bool has_json = false;
+  size_t binary_begin = 0, binary_end = 0;
   for (size_t offset = 12; offset < length;) {
     std::string where = "byte " + std::to_string(offset);
     if (length - offset < 8) refuse(file, where, "GLB chunk header is cut short");
@@ -86,7 +89,7 @@ void split_glb(File& file, const Bytes& bytes) {
     } else if (!has_json) {
       refuse(file, where, "the first GLB chunk is not JSON");
     } else if (kind == 0x004e4942 && !file.has_binary) {  // "BIN"
-      file.binary.assign(data, data + size);
+      binary_begin = offset + 8, binary_end = binary_begin + size;
       file.has_binary = true;
     } else {
       warn(file, where, "an unknown GLB chunk is ignored");
@@ -94,55 +97,35 @@ void split_glb(File& file, const Bytes& bytes) {
     offset += 8 + size;
   }
   if (!has_json) refuse(file, "byte 12", "GLB has no JSON chunk");
+  bytes.resize(binary_end);
+  bytes.erase(bytes.begin(), bytes.begin() + std::ptrdiff_t(binary_begin));
+  file.binary = std::move(bytes);
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-Bytes decode_base64(const File& file, const std::string& where, const char* p, const char* end) {
-  auto value = [](char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
+// Names are compared with those of other files: exhibit.json, stories (base/unicode.h).
+void normalise_names(File& file) {
+  auto normalise = [](json& list) {
+    for (json& object : list)
+      if (auto name = object.find("name"); name != object.end())
+        *name = nfc(name->get<std::string>());
   };
-  while (end > p && end[-1] == '=') end--;
-  Bytes bytes;
-  bytes.reserve(size_t(end - p) * 3 / 4);
-  uint32_t bits = 0;
-  int count = 0;
-  for (; p < end; p++) {
-    int v = value(*p);
-    if (v < 0) refuse(file, where, "data URI has a character that is not base64");
-    bits = bits << 6 | uint32_t(v);
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      bytes.push_back(uint8_t(bits >> count));
-    }
-  }
-  return bytes;
-}
-
-// A data URI without ";base64" carries percent-encoded bytes (RFC 2397).
-Bytes decode_data_uri(const File& file, const std::string& where, const std::string& uri) {
-  size_t comma = uri.find(',');
-  if (comma == std::string::npos) refuse(file, where, "data URI without a comma");
-  std::string head = uri.substr(0, comma);
-  if (head.size() >= 7 && head.compare(head.size() - 7, 7, ";base64") == 0)
-    return decode_base64(file, where, uri.data() + comma + 1, uri.data() + uri.size());
-  std::string decoded = percent_decode(file, where, uri.substr(comma + 1));
-  return Bytes(decoded.begin(), decoded.end());
+  for (const char* kind : {"animations", "cameras", "materials", "meshes", "nodes", "scenes"})
+    if (auto list = file.root.find(kind); list != file.root.end()) normalise(*list);
+  if (extension(file.root, "KHR_lights_punctual"))
+    normalise(file.root["extensions"]["KHR_lights_punctual"]["lights"]);
 }
 
 }  // namespace
 
 void refuse(const File& file, const std::string& where, const std::string& what) {
   throw LoadError(file.path, where, what);
+}
+
+void refuse_beyond(const File& file, const std::string& where, int64_t limit,
+                   const std::string& of_what, const std::string& remedy) {
+  refuse(file, where,
+         "more than " + std::to_string(limit) + " " + of_what +
+             ", which is the most that is read (docs/operation.md): " + remedy);
 }
 
 void warn(File& file, const std::string& where, const std::string& what) {
@@ -166,51 +149,6 @@ Bytes read_bytes(const std::string& path, size_t limit) {
   return bytes;
 }
 
-std::string percent_decode(const File& file, const std::string& where, const std::string& uri) {
-  std::string decoded;
-  for (size_t i = 0; i < uri.size(); i++) {
-    if (uri[i] != '%') {
-      decoded += uri[i];
-      continue;
-    }
-    int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
-    int low = i + 2 < uri.size() ? hex_digit(uri[i + 2]) : -1;
-    if (high < 0 || low < 0) refuse(file, where, "bad percent escape in URI");
-    decoded += char(high * 16 + low);
-    i += 2;
-  }
-  return decoded;
-}
-
-std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri) {
-  if (uri.compare(0, 5, "data:") == 0) return decode_data_uri(file, where, uri);
-  std::string name = percent_decode(file, where, uri);
-  auto outside = [&] {
-    refuse(file, where, "\"" + uri.substr(0, 200) + "\" does not lie inside the package");
-  };
-  size_t colon = name.find(':'), slash = name.find_first_of("/?#");
-  if (colon != std::string::npos && (slash == std::string::npos || colon < slash)) outside();
-  if (name.empty() || name.find('\0') != std::string::npos || name.find('\\') != std::string::npos)
-    outside();
-  fs::path relative(name);
-  if (relative.is_absolute()) outside();
-  for (const fs::path& part : relative)
-    if (part == "..") outside();
-  // Links are followed first and judged by where they lead.
-  std::error_code error;
-  fs::path resolved = fs::weakly_canonical(file.folder / relative, error);
-  if (error) outside();
-  auto [end_of_package, rest] =
-      std::mismatch(file.package.begin(), file.package.end(), resolved.begin(), resolved.end());
-  if (end_of_package != file.package.end()) outside();
-  if (!fs::exists(resolved, error)) return std::nullopt;
-  try {
-    return read_bytes(resolved.string(), file_limit);
-  } catch (const LoadError& problem) {
-    refuse(file, where, "file \"" + uri.substr(0, 200) + "\": " + problem.what_);
-  }
-}
-
 File load_gltf(const std::string& path, const std::string& package,
                const std::set<std::string>& further) {
   File file;
@@ -222,15 +160,16 @@ File load_gltf(const std::string& path, const std::string& package,
   file.package = package.empty() ? file.folder : fs::weakly_canonical(fs::path(package), error);
   if (error) throw LoadError(path, "", "package folder \"" + package + "\" cannot be resolved");
   if (!file.package.has_filename()) file.package = file.package.parent_path();  // trailing slash
-  Bytes bytes = read_bytes(path, file_limit);
+  Bytes bytes = read_bytes(path, file_bytes_limit);
   if (bytes.size() >= 4 && word(bytes, 0) == 0x46546c67) {  // "glTF"
-    split_glb(file, bytes);
+    split_glb(file, std::move(bytes));
   } else {
     const char* data = reinterpret_cast<const char*>(bytes.data());
     parse_json(file, data, data + bytes.size());
   }
   bytes = Bytes();
   check_schema(file);
+  normalise_names(file);
   check_extensions(file, further);
   check_layout(file);
   file.buffers.resize(items(file.root, "buffers").size());

@@ -44,8 +44,9 @@ struct File {
   std::map<size_t, std::shared_ptr<const std::vector<float>>> decoded;
   int64_t decoded_numbers = 0;    // held in `decoded`
   std::vector<uint32_t> renamed;  // scratch of primitive.cpp: all unseen between primitives
-  // Bounds of what a file may cost (gltf/data.h).
+  // Bounds of what a file may cost (gltf/limits.h).
   int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0, keys_made = 0;
+  int64_t bytes_read = 0;          // of buffers and pictures
   bool pictures_may_fail = false;  // one that cannot be decoded is warned of, not refused
   std::vector<std::string> warnings;
   std::set<std::string> said;
@@ -57,14 +58,12 @@ File load_gltf(const std::string& path, const std::string& package,
                const std::set<std::string>& further = {});
 
 [[noreturn]] void refuse(const File& file, const std::string& where, const std::string& what);
+// Refuses what is more than a limit of gltf/limits.h, and says what can be done.
+[[noreturn]] void refuse_beyond(const File& file, const std::string& where, int64_t limit,
+                                const std::string& of_what, const std::string& remedy);
 // Adds a warning; the same `what` is said once, with its first place.
 void warn(File& file, const std::string& where, const std::string& what);
 
-// Bytes of a data URI or of a file inside the package; nothing if the package has no such file.
-// Throws LoadError for all else that is wrong.
-std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri);
-// The path that a URI means. Throws LoadError.
-std::string percent_decode(const File& file, const std::string& where, const std::string& uri);
 // A whole file, at most `limit` bytes.
 Bytes read_bytes(const std::string& path, size_t limit);
 

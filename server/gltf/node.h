@@ -18,4 +18,8 @@ struct Node {
   bool shown = false;           // part of the scene that is shown
 };
 
+// Whether a node's global transform turns the winding round, so that clockwise triangles face the
+// viewer (section 3.7.4). It decides for skinned meshes, too, although the node does not move them.
+inline bool is_mirrored(const dmat4& global) { return glm::determinant(glm::dmat3(global)) < 0; }
+
 }  // namespace wellspring::gltf

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gltf/primitive.h"
 
+#include <algorithm>
+
 #include "gltf/data.h"
 
 namespace wellspring::gltf {
@@ -13,8 +15,17 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
     warn(file, where, "points and lines are not drawn");
     return {};
   }
+  const json* indices = find(primitive, "indices");
+  const int64_t corners =
+      indices ? form_of(file, indices->get<size_t>()).count : int64_t(vertex_count);
+  const size_t count = size_t(mode == 4 ? corners / 3 : std::max<int64_t>(corners - 2, 0));
+  if (count == 0) warn(file, where, "a primitive without triangles");
+  if (mode == 4 && corners % 3 != 0)
+    warn(file, where, "the number of indices is not a multiple of three; the rest is ignored");
+  if ((file.triangles_made += int64_t(count)) > triangles_limit)
+    refuse_beyond(file, where, triangles_limit, "triangles in all", fewer_triangles);
   std::vector<uint32_t> list;
-  if (const json* indices = find(primitive, "indices")) {
+  if (indices) {
     list = read_integers(file, indices->get<size_t>());
     for (size_t i = 0; i < list.size(); i++)
       if (list[i] >= vertex_count)
@@ -25,13 +36,6 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
     list.resize(vertex_count);
     for (size_t i = 0; i < vertex_count; i++) list[i] = uint32_t(i);
   }
-  size_t count = mode == 4 ? list.size() / 3 : list.size() < 3 ? 0 : list.size() - 2;
-  if (count == 0) warn(file, where, "a primitive without triangles");
-  if (mode == 4 && list.size() % 3 != 0)
-    warn(file, where, "the number of indices is not a multiple of three; the rest is ignored");
-  if ((file.triangles_made += int64_t(count)) > triangles_limit)
-    refuse(file, where,
-           "the file makes more than " + std::to_string(triangles_limit) + " triangles");
   std::vector<uvec3> triangles;
   triangles.reserve(count);
   for (size_t i = 0; i < count; i++) {
@@ -41,6 +45,7 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
     else t = {list[i + 1], list[i + 2], list[0]};
     if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
   }
+  if (triangles.size() < count / 2) triangles.shrink_to_fit();
   return triangles;
 }
 
@@ -60,7 +65,7 @@ void choose_vertices(File& file, const std::string& where, size_t vertex_count, 
     }
   for (uint32_t vertex : corners.used) renamed[vertex] = unseen;
   if ((file.vertices_made += int64_t(corners.used.size())) > vertices_limit)
-    refuse(file, where, "the file makes more than " + std::to_string(vertices_limit) + " vertices");
+    refuse_beyond(file, where, vertices_limit, "vertices in all", fewer_vertices);
 }
 
 }  // namespace

@@ -22,8 +22,15 @@ inline RTCIntersectArguments intersect_arguments(Context& context, bool coherent
   arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   return arguments;
 }
-inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
+// Scenes are built with it where rays may bring a filter of their own.
+constexpr RTCSceneFlags ray_filter_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+// `filter` is asked after the geometry's own.
+inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray,
+                       RTCFilterFunctionN filter = nullptr) {
   RTCIntersectArguments arguments = intersect_arguments(context, false);
+  arguments.filter = filter;
+  if (filter)
+    arguments.flags = RTCRayQueryFlags(arguments.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
   rtcIntersect1(scene, &ray, &arguments);
 }
 inline void intersect8(RTCScene scene, Context& context, const int* valid, RTCRayHit8& rays) {
@@ -57,8 +64,11 @@ inline void occluded(RTCScene scene, Context& context, const int* valid, RTCRay1
 using Context = RTCIntersectContext;
 inline void init(Context& context) { rtcInitIntersectContext(&context); }
 
-inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
+constexpr RTCSceneFlags ray_filter_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray,
+                       RTCFilterFunctionN filter = nullptr) {
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  context.filter = filter;
   rtcIntersect1(scene, &context, &ray);
 }
 inline void intersect8(RTCScene scene, Context& context, const int* valid, RTCRayHit8& rays) {

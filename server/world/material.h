@@ -55,6 +55,12 @@ struct Material {
   bool repaints = false;
 };
 
+// Whether its surfaces enclose a medium in which light is bent and tinted: it is met from both
+// sides.
+inline bool encloses_medium(const Material& m) {
+  return m.transmission > 0 && m.thickness > 0 && m.metallic < 1;
+}
+
 // How a material looks for a while, told by what is added to it.
 struct Repaint {
   vec4 base_color{0};

@@ -2,6 +2,7 @@
 #include "world/mesh_finish.h"
 
 #include <cmath>
+#include <utility>
 
 namespace wellspring {
 namespace {
@@ -152,6 +153,11 @@ void update_tangents(Mesh& mesh, int uv_set) {
   }
   for (size_t i = 0; i < sum.size(); i++)
     mesh.tangents[i] = vec4(upright(sum[i], mesh.normals[i]), mesh.tangents[i].w);
+}
+
+void turn_winding(Mesh& mesh) {
+  for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+  for (vec4& tangent : mesh.tangents) tangent.w = -tangent.w;
 }
 
 int tangent_uv(const Material& m) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a mesh needs besides its corners: normals from faces, tangents from texture coordinates.
+// What a mesh needs besides its corners: normals from faces, tangents from texture coordinates, and
+// the winding of its mirror image.
 #pragma once
 #include "world/scene.h"
 
@@ -19,6 +20,8 @@ std::vector<uint32_t> make_tangents(Mesh& mesh, int uv_set);
 // The same for a mesh with tangents whose vertices have moved: they stay split as they are, and
 // keep the sign of their bitangent.
 void update_tangents(Mesh& mesh, int uv_set);
+// Of a mesh that was mirrored: its triangles and bitangents become those of their mirror images.
+void turn_winding(Mesh& mesh);
 // The set of texture coordinates that what needs tangents uses; -1: nothing does.
 int tangent_uv(const Material& material);
 

@@ -12,9 +12,10 @@ inline void set_ray(const Ray& ray, int lane, RayPacket& rays) {
   rays.direction_x[lane] = ray.direction.x, rays.direction_y[lane] = ray.direction.y;
   rays.direction_z[lane] = ray.direction.z;
   rays.t_max[lane] = ray.t_max;
+  rays.from_eye = (rays.from_eye & ~(1u << lane)) | uint32_t(ray.from_eye) << lane;
 }
 
-// lane_count of them, from lane `first` on.
+// lane_count of them, from lane `first` on, none of the eye.
 inline void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max, int first,
                      RayPacket& rays) {
   store_lanes(rays.origin_x + first, origin.x);
@@ -24,6 +25,7 @@ inline void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max,
   store_lanes(rays.direction_y + first, direction.y);
   store_lanes(rays.direction_z + first, direction.z);
   store_lanes(rays.t_max + first, t_max);
+  rays.from_eye &= ~(((1u << lane_count) - 1) << first);
 }
 
 }  // namespace wellspring

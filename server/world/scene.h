@@ -73,6 +73,10 @@ struct Scene {
   std::vector<Lamp> lamps;  // what of them, and of emissive materials, can be switched
   int dynamic_lights = 0;   // that move or change over it, and are none of `lights`
   Environment environment;
+  // The eye does not see the back faces of single-sided materials (glTF 2.0 section 3.9.5), but for
+  // those that enclose a medium. Shadows, reflections and bounces of light do: what a wall's back
+  // hides from light is dark, whoever looks.
+  bool cull_back_faces = false;
   std::vector<Viewpoint> viewpoints;
   std::vector<PlacedMotion> motions;  // where they were asked for
   std::vector<std::string> warnings;  // what the file asks for that is not done, each said once

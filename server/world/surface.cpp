@@ -166,6 +166,9 @@ void resolve_layers(const Scene& scene, const PlacedMesh& placed, const Corners&
   }
 }
 
+// A triangle without area faces everything.
+inline bool faces_ray(vec3 winding, vec3 direction) { return dot(winding, direction) <= 0; }
+
 // Fills `place`; `winding` is unit, towards the winding's front.
 struct Side {
   vec3 winding;
@@ -176,7 +179,7 @@ inline Side locate(const Face& face, vec2 barycentric, const Ray& ray, SurfacePl
   place.extent = face.extent;
   vec3 winding = face.normal;
   if (winding == vec3(0)) winding = unit_or(-ray.direction, vec3(0, 1, 0));
-  bool front = dot(winding, ray.direction) <= 0;
+  bool front = faces_ray(winding, ray.direction);
   place.geometric_normal = front ? winding : -winding;
   return {winding, front};
 }
@@ -291,6 +294,11 @@ vec3 eval_mesh_normal(const World& world, const Hit& hit, const Surface& surface
   Corners at = corners_of(*placed.mesh, hit.triangle, hit.barycentric);
   return turned_to_viewer(shading_normal(placed, at, winding), surface.geometric_normal,
                           surface.front);
+}
+
+bool is_behind(const PlacedMesh& placed, uint32_t triangle, vec3 direction) {
+  Face own;
+  return !faces_ray(face_of(placed, triangle, own).normal, direction);
 }
 
 vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric) {

@@ -49,6 +49,8 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit);
 vec3 eval_mesh_normal(const World& world, const Hit& hit, const Surface& surface);
 // The same values in less time, where the material is_lambertian.
 LambertSurface eval_lambert_surface(const World& world, const Ray& ray, const Hit& hit);
+// Whether a ray of that direction meets the triangle from the side that its winding does not face.
+bool is_behind(const PlacedMesh& placed, uint32_t triangle, vec3 direction);
 // Position on a triangle at barycentric weights of its second and third corner, world space.
 vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric);
 // Unit geometric normal towards the side the winding faces (0, 1, 0 for a triangle without area),

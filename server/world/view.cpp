@@ -60,6 +60,7 @@ Ray view_ray(const View& view, float x, float y) {
   Ray ray;
   ray.origin = view.position;
   ray.direction = normalize(direction);
+  ray.from_eye = true;
   if (view.near > 0) ray.t_min = view.near * glm::length(direction);
   return ray;
 }

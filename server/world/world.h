@@ -18,6 +18,9 @@ struct Ray {
   float t_min = 0;
   vec3 direction{0, 0, -1};
   float t_max = std::numeric_limits<float>::infinity();
+  // It comes from the eye, straight or through thin panes: for it back faces are not there
+  // (PlacedMesh::one_sided). view_ray() says so; light is stopped by both sides.
+  bool from_eye = false;
 };
 
 // Rays side by side, as vector units want them; t_min is 0.
@@ -25,6 +28,7 @@ struct RayPacket {
   static constexpr int lanes = 16;
   alignas(64) float origin_x[lanes], origin_y[lanes], origin_z[lanes];
   alignas(64) float direction_x[lanes], direction_y[lanes], direction_z[lanes], t_max[lanes];
+  uint32_t from_eye = 0;  // a bit a lane, as in Ray; packets of occluders have no use for it
 };
 
 struct Hit {
@@ -64,13 +68,14 @@ struct PlacedMesh {
   const Material* material = nullptr;
   uint32_t object = 0;
   bool moving = false;
-  bool in_place = false;  // its vertices are in world space as they are
-  bool mirrored = false;  // to_world turns the winding round (glTF 2.0 section 3.7.4)
+  bool in_place = false;   // its vertices are in world space as they are
+  bool mirrored = false;   // its winding is turned round (gltf::is_mirrored())
   mat4 to_world{1};
   // Inverse transpose of the upper 3x3 up to a positive factor: normalise after using it.
   mat3 normal_to_world{1};
   const Face* faces = nullptr;  // of its triangles; null: it moves, or is one of very many copies
   uint32_t paints = 0;          // how often its material was repainted
+  bool one_sided = false;       // the eye does not see its back faces (Scene::cull_back_faces)
 };
 
 // A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest
@@ -100,8 +105,10 @@ class World {
 
   // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit()
   // afterwards, while no ray is being traced. A vertex that is not finite stays where it was.
-  // Tangents, where the mesh has them, are found anew.
-  void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals);
+  // Tangents, where the mesh has them, are found anew. `mirrored`: the triangles show their front
+  // where they are clockwise.
+  void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals,
+            bool mirrored = false);
   void show(int moving, bool visible);
   void commit();
   // Changes how a material looks that `repaints`, on the meshes that move; the scene's own stays as
@@ -116,6 +123,8 @@ class World {
 
   // Nearest hit. Surfaces with alpha are passed through where their alpha says so (mask: cut-off;
   // blend: stochastically, decided by a hash of the ray and the hit, so that a replay agrees).
+  // Rays of the eye pass back faces of what is one_sided: who meets one is traced again, so that
+  // where none is seen this costs a look at the hit's normal.
   // Thread-safe between commits. A ray that is not finite hits nothing.
   Hit intersect(const Ray& ray) const;
   // Anything between t_min and t_max? Alpha as above. Glass counts as opaque.

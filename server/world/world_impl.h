@@ -33,7 +33,8 @@ struct World::Impl {
       return {{packet->origin_x[i], packet->origin_y[i], packet->origin_z[i]},
               0,
               {packet->direction_x[i], packet->direction_y[i], packet->direction_z[i]},
-              packet->t_max[i]};
+              packet->t_max[i],
+              (packet->from_eye >> i & 1) != 0};
     }
   };
 
@@ -59,7 +60,8 @@ struct World::Impl {
   std::vector<float> built_area;       // of a moving mesh's box when its tree was last built anew
   Bounds moving_bounds;                // of all that is visible
   bool any_moving = false;             // that is visible
-  bool moved = false;                  // since the last commit
+  bool any_one_sided = false;
+  bool moved = false;  // since the last commit
 
   ~Impl() {
     for (RTCGeometry geometry : moving_geometry) rtcReleaseGeometry(geometry);
@@ -69,8 +71,19 @@ struct World::Impl {
   }
 
   static void filter(const RTCFilterFunctionNArguments* arguments);
+  static void filter_culled(const RTCFilterFunctionNArguments* arguments);
   static void filter_shadow(const RTCFilterFunctionNArguments* arguments);
   static Hit hit_of(const RTCFilterFunctionNArguments* arguments, unsigned i);
+  // Whether the eye does not see what it looks at along `direction`.
+  bool is_culled(const Hit& hit, vec3 direction) const;
+  // With `filter`, which every hit must pass, too.
+  Hit nearest(const Ray& ray, RTCFilterFunctionN filter) const;
+  // What the eye sees along a ray whose nearest hit is known.
+  Hit seen(const Ray& ray, const Hit& hit) const {
+    return any_one_sided && ray.from_eye && is_culled(hit, ray.direction)
+               ? nearest(ray, filter_culled)
+               : hit;
+  }
   bool is_occluded(const Ray& ray, PanesPassed* panes) const;
   RTCGeometry make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
                             RTCBuildQuality);

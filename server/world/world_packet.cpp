@@ -155,6 +155,10 @@ void World::intersect_each(const RayPacket& p, uint32_t active, Hit* hits) const
     ask(w.moving_scene);
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) hits[i] = hit(true);
   }
+  for (uint32_t bits = active & p.from_eye; bits; bits &= bits - 1) {
+    const int i = std::countr_zero(bits);
+    hits[i] = w.seen(query.ray(unsigned(i)), hits[i]);
+  }
   count_rays(uint64_t(std::popcount(active)));
 }
 

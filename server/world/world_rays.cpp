@@ -8,6 +8,7 @@
 
 #include "world/mesh_finish.h"
 #include "world/slab.h"
+#include "world/surface.h"
 #include "world/world_impl.h"
 
 namespace wellspring {
@@ -88,7 +89,8 @@ bool World::is_visible(uint32_t instance) const {
   return !is_moving(instance) || impl_->visible[instance - impl_->scene->instances.size()];
 }
 
-void World::move(int moving, std::span<const vec3> positions, std::span<const vec3> normals) {
+void World::move(int moving, std::span<const vec3> positions, std::span<const vec3> normals,
+                 bool mirrored) {
   Impl& w = *impl_;
   Mesh& mesh = w.moving.at(size_t(moving));
   if (positions.size() != mesh.positions.size() || normals.size() != mesh.normals.size())
@@ -96,6 +98,7 @@ void World::move(int moving, std::span<const vec3> positions, std::span<const ve
   for (size_t i = 0; i < positions.size(); i++)
     if (is_finite(positions[i])) mesh.positions[i] = positions[i];
   std::copy(normals.begin(), normals.end(), mesh.normals.begin());
+  w.placed[w.scene->instances.size() + size_t(moving)].mirrored = mirrored;
   if (int uv = w.moving_tangent_uv[size_t(moving)]; uv >= 0) update_tangents(mesh, uv);
   RTCGeometry geometry = w.moving_geometry[size_t(moving)];
   if (mesh.positions.empty()) return;
@@ -154,25 +157,32 @@ void World::commit() {
   rtcCommitScene(impl_->moving_scene);
 }
 
-Hit World::intersect(const Ray& ray) const {
-  const Impl& w = *impl_;
-  Hit hit;
-  if (!is_traceable(ray)) return hit;
+bool World::Impl::is_culled(const Hit& hit, vec3 direction) const {
+  return hit.valid() && placed[hit.instance].one_sided &&
+         is_behind(placed[hit.instance], hit.triangle, direction);
+}
+
+Hit World::Impl::nearest(const Ray& ray, RTCFilterFunctionN filter) const {
   traced++;
-  Impl::Query query;
+  Query query;
   embree::init(query);
   query.rays = &ray;
   RTCRayHit r = to_embree(ray);
-  embree::intersect1(w.still_scene, query, r);
-  hit = w.to_hit(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar, false);
-  if (w.any_moving && meets(w.moving_bounds, ray, r.ray.tfar)) {
+  embree::intersect1(still_scene, query, r, filter);
+  Hit hit =
+      to_hit(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar, false);
+  if (any_moving && meets(moving_bounds, ray, r.ray.tfar)) {
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    embree::intersect1(w.moving_scene, query, r);
+    embree::intersect1(moving_scene, query, r, filter);
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID)
-      hit =
-          w.to_hit(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar, true);
+      hit = to_hit(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar, true);
   }
   return hit;
+}
+
+Hit World::intersect(const Ray& ray) const {
+  if (!is_traceable(ray)) return {};
+  return impl_->seen(ray, impl_->nearest(ray, nullptr));
 }
 
 bool World::Impl::is_occluded(const Ray& ray, PanesPassed* panes) const {
@@ -236,7 +246,11 @@ void World::Impl::intersect8(const Ray* rays, Hit* hits, int count) const {
 void World::intersect_many(const Ray* rays, Hit* hits, int count) const {
   int i = 0;
   if (has_packets())
-    for (; i < count; i += 8) impl_->intersect8(rays + i, hits + i, std::min(8, count - i));
+    for (; i < count; i += 8) {
+      const int end = std::min(i + 8, count);
+      impl_->intersect8(rays + i, hits + i, end - i);
+      for (int k = i; k < end; k++) hits[k] = impl_->seen(rays[k], hits[k]);
+    }
   for (; i < count; i++) hits[i] = intersect(rays[i]);
 }
 

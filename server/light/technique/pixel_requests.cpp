@@ -41,6 +41,7 @@ void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelS
       request.seed = of_pixel;
       request.index = uint32_t(asked.index);
       request.ray.origin = view.position;
+      request.ray.from_eye = true;
       // A sequence apart from the sample's own.
       jitter.set(i, Sampler(mix64(of_pixel ^ 0x6a09e667f3bcc909ull), request.index));
       x[i] = float(asked.x), y[i] = float(asked.y);

@@ -68,6 +68,7 @@ bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered)
   walk.ray.direction = scattered.direction;
   walk.ray.origin = offset_origin(place, scattered.direction);
   if (scattered.bounce == Bounce::pass) return ++walk.panes <= most_panes;
+  walk.ray.from_eye = false;
   walk.panes = 0;
   walk.depth++;
   walk.pdf = scattered.pdf;

@@ -96,6 +96,7 @@ void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) 
   const bool loaded = !exhibit.scene.objects.empty();
   ScenePlace place;
   place.scale = root.number("scale", false, 1, least_scale, most_scale);
+  exhibit.scene.cull_back_faces = !root.flag("draw_back_faces", false);
   double light = root.number("light_scale", false, 1, 0, 1e6);
   if (loaded) place_scene(exhibit.scene, place);
   if (light != 1) scale_light(exhibit.scene, float(light));

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/near_name.h"
+#include "base/unicode.h"
 #include "wire/json.h"
 
 namespace wellspring {
@@ -17,6 +18,20 @@ using nlohmann::json;
 namespace {
 const json empty_object = json::object();
 constexpr size_t max_file_bytes = 8 << 20;
+
+// Names are compared with those of scenes and of files (base/unicode.h).
+void normalise(json& value) {
+  if (value.is_string()) value = nfc(value.get_ref<const std::string&>());
+  if (value.is_array())
+    for (json& item : value) normalise(item);
+  if (!value.is_object()) return;
+  json made = json::object();
+  for (auto& [name, item] : value.items()) {
+    normalise(item);
+    made[nfc(name)] = std::move(item);
+  }
+  value = std::move(made);
+}
 }  // namespace
 
 std::optional<json> read_json_file(const std::string& file, std::vector<Problem>& problems) {
@@ -33,6 +48,7 @@ std::optional<json> read_json_file(const std::string& file, std::vector<Problem>
   text << in.rdbuf();
   auto parsed = parse_json(text.str());
   if (const WireError* error = std::get_if<WireError>(&parsed)) return refuse(error->message);
+  normalise(std::get<json>(parsed));
   return std::get<json>(std::move(parsed));
 }
 

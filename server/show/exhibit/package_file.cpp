@@ -4,29 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/find_file.h"
 #include "base/near_name.h"
 
 namespace wellspring {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-constexpr size_t most_files = 2000;  // of a package, that are looked through
-
-// Their names as exhibit.json would give them, in alphabetical order.
-std::vector<std::string> files_below(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code ec;
-  for (fs::recursive_directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec)) {
-    if (names.size() == most_files) break;
-    if (at->is_regular_file(ec)) names.push_back(at->path().lexically_relative(folder).string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-}  // namespace
 
 std::string package_file(Fields& fields, const char* field, const std::string& folder,
                          const std::string& name) {
@@ -39,16 +22,15 @@ std::string package_file(Fields& fields, const char* field, const std::string& f
     return "";
   }
   std::error_code ec;
-  fs::path path = fs::path(folder) / relative;
+  const fs::path path = find_file(folder, relative).value_or(fs::path(folder) / relative);
   fs::path real = fs::weakly_canonical(path, ec), root = fs::weakly_canonical(folder, ec);
-  auto mismatch = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
-  if (ec || mismatch.first != root.end()) {
+  if (ec || !lies_in(real, root)) {
     fields.problem(field, "'" + name + "' leaves the package's folder");
     return "";
   }
   if (!fs::is_regular_file(path, ec)) {
     fields.problem(field, "there is no file '" + name + "' in the package" +
-                              did_you_mean(name, files_below(root)));
+                              did_you_mean(name, list_files(root)));
     return "";
   }
   return path.string();

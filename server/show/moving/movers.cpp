@@ -28,13 +28,16 @@ class Poser {
   Poser(const Exhibit& exhibit, const std::vector<double>& times)
       : exhibit_(exhibit), times_(times) {}
 
-  void find(const ExhibitMover& one, std::vector<vec3>& positions, std::vector<vec3>& normals) {
+  // Answers whether the mover's triangles are turned round there.
+  bool find(const ExhibitMover& one, std::vector<vec3>& positions, std::vector<vec3>& normals) {
     const PlacedMotion& placed = exhibit_.scene.motions[size_t(one.motion)];
     if (one.motion != posed_)
       pose_motion(*placed.of, clip_times(exhibit_, one.motion, times_), pose_);
     posed_ = one.motion;
     const dmat4 to_scene = glm::translate(dmat4(1), -exhibit_.scene.origin) * placed.to_world;
-    pose_mover(pose_, placed.of->movers[size_t(one.mover)], to_scene, positions, normals);
+    const Mover& mover = placed.of->movers[size_t(one.mover)];
+    pose_mover(pose_, mover, to_scene, positions, normals);
+    return gltf::is_mirrored(to_scene * pose_.nodes[mover.node].global);
   }
 
  private:
@@ -68,30 +71,24 @@ Reach find_reach(const Exhibit& exhibit, size_t animation) {
   return {0.5f * (bounds.low + bounds.high), 0.55f * glm::length(bounds.high - bounds.low)};
 }
 
-// A node that mirrors turns the winding round (glTF 2.0 section 3.7.4): against its normals.
-bool is_inside_out(const Mesh& mesh) {
-  double sum = 0;
-  for (const uvec3& t : mesh.triangles) {
-    const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
-    sum +=
-        dot(cross(b - a, c - a), dvec3(mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]));
-  }
-  return sum < 0;
+Mesh make_mesh(const Exhibit& exhibit, size_t mover, const std::vector<double>& times,
+               bool& mirrored) {
+  const ExhibitMover& one = exhibit.movers[mover];
+  Mesh mesh = exhibit.scene.motions[size_t(one.motion)].of->movers[size_t(one.mover)].mesh;
+  mesh.material = one.material;
+  mirrored = Poser(exhibit, times).find(one, mesh.positions, mesh.normals);
+  if (mirrored) turn_winding(mesh);
+  const int uv =
+      mesh.tangents.empty() ? -1 : tangent_uv(exhibit.scene.materials[size_t(one.material)]);
+  if (uv >= 0 && !mesh.uv[uv].empty()) update_tangents(mesh, uv);
+  return mesh;
 }
 
 }  // namespace
 
 Mesh mover_mesh(const Exhibit& exhibit, size_t mover, const std::vector<double>& times) {
-  const ExhibitMover& one = exhibit.movers[mover];
-  Mesh mesh = exhibit.scene.motions[size_t(one.motion)].of->movers[size_t(one.mover)].mesh;
-  mesh.material = one.material;
-  Poser(exhibit, times).find(one, mesh.positions, mesh.normals);
-  if (is_inside_out(mesh))
-    for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);
-  const int uv =
-      mesh.tangents.empty() ? -1 : tangent_uv(exhibit.scene.materials[size_t(one.material)]);
-  if (uv >= 0 && !mesh.uv[uv].empty()) update_tangents(mesh, uv);
-  return mesh;
+  bool mirrored = false;
+  return make_mesh(exhibit, mover, times, mirrored);
 }
 
 Movers make_movers(const Exhibit& exhibit, std::vector<Mesh>& moving,
@@ -100,7 +97,9 @@ Movers make_movers(const Exhibit& exhibit, std::vector<Mesh>& moving,
   movers.posed.assign(exhibit.animations.size(), 0);
   for (size_t i = 0; i < exhibit.movers.size(); i++) {
     movers.moving.push_back(int(moving.size()));
-    moving.push_back(mover_mesh(exhibit, i, movers.posed));
+    bool mirrored = false;
+    moving.push_back(make_mesh(exhibit, i, movers.posed, mirrored));
+    movers.mirrored.push_back(mirrored);
     moving_object.push_back(exhibit.movers[i].object);
   }
   for (size_t i = 0; i < exhibit.animations.size(); i++)
@@ -119,8 +118,8 @@ bool pose_movers(const Exhibit& exhibit, const std::vector<double>& times, Mover
     for (size_t a = 0; a < times.size(); a++)
       moved |= times[a] != movers.posed[a] && moves_it(exhibit, exhibit.animations[a], one);
     if (!moved) continue;
-    poser.find(one, positions, normals);
-    world.move(movers.moving[i], positions, normals);
+    const bool mirrored = poser.find(one, positions, normals);
+    world.move(movers.moving[i], positions, normals, mirrored != bool(movers.mirrored[i]));
   }
   movers.posed = times;
   return true;

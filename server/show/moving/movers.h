@@ -13,9 +13,10 @@ struct Reach {
 };
 
 struct Movers {
-  std::vector<int> moving;    // of each of Exhibit::movers, which of the World's moving meshes
-  std::vector<Reach> reach;   // of each of Exhibit::animations
-  std::vector<double> posed;  // the times of these for which the world stands
+  std::vector<int> moving;     // of each of Exhibit::movers, which of the World's moving meshes
+  std::vector<Reach> reach;    // of each of Exhibit::animations
+  std::vector<double> posed;   // the times of these for which the world stands
+  std::vector<char> mirrored;  // of each mover: its mesh was turned round when the world was made
   bool empty() const { return moving.empty(); }
 };
 

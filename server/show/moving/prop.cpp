@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "gltf/node.h"
 #include "world/load/scene_join.h"
+#include "world/mesh_finish.h"
 
 namespace wellspring {
 namespace {
@@ -32,8 +34,7 @@ Prop make_prop(const ExhibitProp& prop, Scene& scene, std::vector<Mesh>& moving,
     const mat3 turn = glm::transpose(glm::inverse(mat3(to_fist)));
     for (vec3& p : mesh.positions) p = vec3(to_fist * vec4(p, 1));
     for (vec3& n : mesh.normals) n = normalize(turn * n);
-    if (glm::determinant(mat3(to_fist)) < 0)
-      for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+    if (gltf::is_mirrored(dmat4(to_fist))) turn_winding(mesh);
     mesh.material += first_material;
     PropPart part;
     part.moving = int(moving.size());

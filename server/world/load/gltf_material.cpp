@@ -7,6 +7,7 @@
 
 #include "base/cancel.h"
 #include "gltf/data.h"
+#include "gltf/uri.h"
 #include "world/load/gltf_image.h"
 
 namespace wellspring::gltf {
@@ -255,13 +256,12 @@ class Materials {
     const json& object = items(file_.root, "images")[index];
     Image made;
     std::string uri_text = text(object, "uri");
-    made.name =
-        text(object, "name", uri_text.compare(0, 5, "data:") ? uri_text.substr(0, 100) : "");
+    made.name = text(object, "name", is_data_uri(uri_text) ? "" : uri_text.substr(0, 100));
     std::string problem;
     if (const json* uri = find(object, "uri")) {
       std::optional<Bytes> bytes = read_uri(file_, where + "/uri", uri->get<std::string>());
       if (!bytes) {
-        warn(file_, where + "/uri", "no such picture: " + uri->get<std::string>().substr(0, 200));
+        warn(file_, where + "/uri", no_such_file(file_, where + "/uri", uri_text));
         return -1;
       }
       problem = decode_image(*bytes, srgb, made, texels_left_);

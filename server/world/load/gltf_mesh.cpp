@@ -6,6 +6,7 @@
 
 #include "gltf/attributes.h"
 #include "gltf/data.h"
+#include "gltf/node.h"
 #include "gltf/primitive.h"
 #include "world/mesh_finish.h"
 
@@ -76,7 +77,8 @@ void apply_skin(File& file, const json& primitive, const std::string& where,
     if (!mesh.normals.empty()) {
       glm::dmat3 cofactor(cross(linear[1], linear[2]), cross(linear[2], linear[0]),
                           cross(linear[0], linear[1]));
-      mesh.normals[i] = vec3(cofactor * dvec3(mesh.normals[i]));
+      const double side = is_mirrored(m) ? -1 : 1;  // outside stays outside
+      mesh.normals[i] = vec3(cofactor * dvec3(mesh.normals[i]) * side);
     }
     if (!mesh.tangents.empty())
       mesh.tangents[i] = vec4(vec3(linear * dvec3(vec3(mesh.tangents[i]))), mesh.tangents[i].w);
@@ -184,6 +186,7 @@ BuiltMesh build_primitive(File& file, size_t mesh_index, size_t primitive_index,
   mesh.colors = read_vec4s(file, attributes, "COLOR_0", draft.used);
   apply_targets(file, primitive, deformation.weights, draft);
   if (!deformation.joints.empty()) apply_skin(file, primitive, where, deformation.joints, draft);
+  if (deformation.mirrored) turn_winding(mesh);
   drop_bad_values(file, where, draft);
 
   BuiltMesh built;

@@ -12,6 +12,7 @@ namespace wellspring::gltf {
 struct Deformation {
   std::vector<double> weights;
   std::vector<dmat4> joints;  // joint to world; empty: not skinned
+  bool mirrored = false;      // the node of a skinned mesh turns its winding round
 };
 
 // A mesh and where its vertices' zero lies, so that positions far from zero keep their precision.

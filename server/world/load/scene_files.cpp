@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "gltf/file.h"
+#include "gltf/uri.h"
 
 namespace wellspring {
 
@@ -16,8 +16,10 @@ std::vector<std::string> list_scene_files(const std::string& path) {
     const json& list = items(file.root, kind);
     for (size_t i = 0; i < list.size(); i++) {
       const std::string uri = text(list[i], "uri"), where = at(std::string("/") + kind, i);
-      if (uri.empty() || uri.starts_with("data:") || !read_uri(file, where, uri)) continue;
-      const std::string name = percent_decode(file, where, uri);
+      if (uri.empty() || is_data_uri(uri)) continue;
+      const auto found = find_uri(file, where, uri);
+      if (!found) continue;
+      const std::string name = found->lexically_relative(file.package).string();
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }

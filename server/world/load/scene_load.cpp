@@ -42,8 +42,7 @@ class Builder {
         check_primitive(file, meshes[m]["primitives"][p], where);
         vertices += vertex_bound(file, meshes[m]["primitives"][p]);
         if (vertices > vertices_limit)
-          refuse(file, where,
-                 "the file has more than " + std::to_string(vertices_limit) + " vertices");
+          refuse_beyond(file, where, vertices_limit, "vertices in all", fewer_vertices);
       }
     nodes_ = make_pose(file, time);
     for (const Node& node : nodes_) global_.push_back(node.global);
@@ -109,6 +108,7 @@ class Builder {
       if (!joints.empty() && !skinned)
         warn(file_, at("/nodes", index), "a skin on a mesh without joints is ignored");
       deformation.joints = skinned ? joints : std::vector<dmat4>();
+      deformation.mirrored = skinned && is_mirrored(nodes_[index].global);
       // Nodes share a mesh as long as nothing bends it differently.
       int made = -1;
       auto key = std::make_tuple(mesh_index, p, deformation.weights);
@@ -305,6 +305,7 @@ class Builder {
 Scene load_scene(const std::string& path, const SceneLoadOptions& options) {
   File file = load_gltf(path, options.package);
   Scene scene;
+  scene.cull_back_faces = true;
   scene.name = std::filesystem::path(path).stem().string();
   const json& scenes = items(file.root, "scenes");
   if (!scenes.empty())

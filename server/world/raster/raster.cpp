@@ -194,6 +194,8 @@ void Raster::Impl::fill_block(Block& block, std::span<const RasterPiece> of, con
     RasterTriangle unfinished{};
     unfinished.instance = piece.instance;
     unfinished.has_alpha = has_alpha[piece.instance];
+    unfinished.one_sided = placed.one_sided;
+    unfinished.mirrored = placed.mirrored;
     bool as_it_is = placed.moving || placed.in_place;
     float scale = length(camera.right) * (as_it_is ? 1 : length(vec3(placed.to_world[0])));
     size_t material = size_t(placed.mesh->material);

@@ -55,6 +55,8 @@ void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, Raste
   int64_t area = int64_t(p1.step_x - p0.step_x) * (p2.step_y - p0.step_y) -
                  int64_t(p2.step_x - p0.step_x) * (p1.step_y - p0.step_y);
   if (area == 0) return;
+  // Places are counted downwards, so that what is counterclockwise has a negative area.
+  if (unfinished.one_sided && (area < 0) == unfinished.mirrored) return;
   if (area < 0) std::swap(p1, p2);
   if (left == right && top == bottom &&
       !covers(p0, p1, p2, left * raster_steps - view.centre_steps_x,

@@ -72,6 +72,30 @@ TEST(GltfFigure, CamerasAndLightsAreCountedAsLeftOut) {
   EXPECT_TRUE(says(c, "left out, as a figure has none: 1 light(s)"));
 }
 
+// Of the figure's triangles, how many have their winding's side where their normals are.
+std::pair<int, int> outward_and_inward(const Character& c) {
+  std::pair<int, int> count(0, 0);
+  for (const Part& part : c.parts)
+    for (const uvec3& t : part.triangles) {
+      const vec3 face =
+          cross(c.positions[t.y] - c.positions[t.x], c.positions[t.z] - c.positions[t.x]);
+      const vec3 normal = c.normals[t.x] + c.normals[t.y] + c.normals[t.z];
+      (dot(face, normal) > 0 ? count.first : count.second)++;
+    }
+  return count;
+}
+
+TEST(GltfFigure, TheNodeOfASkinnedMeshDecidesWhichSideIsItsFront) {
+  Asset asset = make_person();
+  add_vrm_1(asset);
+  const auto plain = outward_and_inward(load_asset(asset));
+  ASSERT_NE(plain.first, plain.second);
+  asset.root["nodes"][17]["scale"] = {1, -1, 1};  // the joints stand as they did
+  const auto mirrored = outward_and_inward(load_asset(asset));
+  EXPECT_EQ(mirrored.first, plain.second);
+  EXPECT_EQ(mirrored.second, plain.first);
+}
+
 TEST(GltfFigure, Vrm0FacesTheOtherWayAndIsTurned) {
   PersonOptions options;
   options.world = quat(0, 0, 1, 0);

@@ -143,8 +143,7 @@ TEST(Accessor, BoundsAreChecked) {
     return refused(asset);
   };
   EXPECT_EQ(with([](json& r) { r["accessors"][0]["count"] = 4; }).where, "/accessors/0");
-  EXPECT_EQ(with([](json& r) { r["accessors"][0]["count"] = 4000000000u; }).where,
-            "/accessors/0/count");
+  EXPECT_EQ(with([](json& r) { r["accessors"][0]["count"] = 4000000000u; }).where, "/accessors/0");
   EXPECT_EQ(with([](json& r) { r["accessors"][0]["byteOffset"] = 4; }).where, "/accessors/0");
   EXPECT_EQ(with([](json& r) { r["accessors"][0]["byteOffset"] = 9007199254740991; }).where,
             "/accessors/0");
