@@ -22,9 +22,9 @@ struct ExhibitDoor {
   std::vector<std::string> kiosks;  // their names
 };
 
-// Which of the doors the first text of a peer leads to: the exhibit that a `hello` names; else the
+// Which of the doors the first words of a peer lead to: the exhibit that a `hello` names; else the
 // one that has the kiosk of that name; else the first. -1: there is no exhibit of that name.
-int find_door(const std::vector<ExhibitDoor>& doors, LinkKind kind, const std::string& first_text);
+int find_door(const std::vector<ExhibitDoor>& doors, const Heard& first);
 
 struct ReceptionSettings {
   size_t most_waiting = 2000;        // in the queue; more are told to come back
@@ -60,13 +60,12 @@ class Reception {
  private:
   struct Resting {
     std::shared_ptr<Link> link;
-    std::string hello;
+    Heard hello;
   };
   // All with the lock held.
   std::vector<Shown> find_ready(double now);
   bool receive(const std::shared_ptr<Link>& link, std::vector<Shown>& ready);
-  bool place(std::shared_ptr<Link>& link, const Hello& hello, std::string text, size_t door,
-             std::vector<Shown>& ready);
+  bool place(std::shared_ptr<Link>& link, Heard hello, size_t door, std::vector<Shown>& ready);
   void look_at_resting();
   void turn_away(Link& link);
   const std::vector<ExhibitDoor> doors_;

@@ -16,13 +16,6 @@ constexpr size_t turns_counted = 16;
 
 }  // namespace
 
-std::optional<Hello> read_hello(const std::string& text) {
-  auto said = read_browser_message(text);
-  const BrowserMessage* message = std::get_if<BrowserMessage>(&said);
-  const Hello* hello = message ? std::get_if<Hello>(message) : nullptr;
-  return hello ? std::optional(*hello) : std::nullopt;
-}
-
 size_t WaitingQueue::size_of(size_t door) const {
   return size_t(
       std::ranges::count_if(all_, [&](const Waiting& one) { return one.who.door == door; }));
@@ -33,17 +26,14 @@ void WaitingQueue::join(Newcomer newcomer) { all_.push_back({std::move(newcomer)
 bool WaitingQueue::listen(Waiting& one) {
   Newcomer& who = one.who;
   if (who.link->closed()) return false;
-  for (std::string& text : who.link->take_texts()) {
-    auto said = read_browser_message(text);
-    const BrowserMessage* message = std::get_if<BrowserMessage>(&said);
-    if (!message) continue;
-    if (std::holds_alternative<Bye>(*message)) {
+  for (Heard& heard : who.link->take_heard()) {
+    if (said_as<Bye>(heard)) {
       who.link->close("bye");
       return false;
     }
-    if (const Hello* hello = std::get_if<Hello>(message)) {
+    if (const Hello* hello = said_as<Hello>(heard)) {
       who.pixels = double(hello->width) * hello->height;
-      who.hello = std::move(text);
+      who.hello = std::move(heard);
     }
   }
   return true;

@@ -18,7 +18,7 @@ namespace wellspring {
 // Who is welcomed as soon as there is a seat.
 struct Newcomer {
   std::shared_ptr<Link> link;
-  std::string hello;  // what they said, for the show to read
+  Heard hello;        // what they said, for the show to read
   size_t door = 0;    // of the exhibit that they want
   double pixels = 0;  // of their pictures
   std::unique_ptr<Seat> seat;
@@ -51,8 +51,5 @@ class WaitingQueue {
   std::deque<Waiting> all_;
   std::deque<double> turns_;  // when the last ones were let in
 };
-
-// A visitor's hello; null: the text is none.
-std::optional<Hello> read_hello(const std::string& text);
 
 }  // namespace wellspring

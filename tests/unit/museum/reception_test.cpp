@@ -73,7 +73,7 @@ TEST_F(ReceptionTest, EverybodyComesToWhatTheyAskFor) {
            Case{eye, observation + R"(,"kiosk":"yard"})", 1},
            Case{eye, observation + "}", 0},
        })
-    EXPECT_EQ(find_door(doors, one.kind, one.text), one.door) << one.text;
+    EXPECT_EQ(find_door(doors, one.kind == eye ? hear_camera(one.text) : hear_visitor(one.text)), one.door) << one.text;
 }
 
 TEST_F(ReceptionTest, NothingThatWasSaidIsLost) {
@@ -83,9 +83,9 @@ TEST_F(ReceptionTest, NothingThatWasSaidIsLost) {
   EXPECT_EQ(shown[0].door, 1u);
   EXPECT_EQ(shown[0].link, link);
   EXPECT_TRUE(shown[0].seat);
-  const auto texts = link->take_texts();
-  ASSERT_EQ(texts.size(), 3u);
-  EXPECT_EQ(texts[0], R"({"type":"hello","exhibit":"mill"})");
+  const auto heard = link->take_heard();
+  ASSERT_EQ(heard.size(), 3u);
+  EXPECT_EQ(heard[0].text, R"({"type":"hello","exhibit":"mill"})");
   EXPECT_TRUE(reception.show_in(0).empty());
 }
 
@@ -129,7 +129,7 @@ TEST_F(ReceptionTest, WhereThereIsNoSeatVisitorsWaitAndComeInByTurn) {
   EXPECT_EQ(told(*third)["code"], "full") << "as many as may wait";
   inside.pop_back();
   EXPECT_TRUE(comes_in(first));
-  EXPECT_EQ(first->first_text(), hello);
+  EXPECT_EQ(first->first_heard()->text, hello);
   // Nobody overtakes.
   auto late = visit({hello});
   inside.pop_back();
@@ -161,7 +161,7 @@ TEST_F(ReceptionTest, WhoRestsComesBackAsSoonAsSomebodyIsThere) {
     auto shown = reception.show_in(5);
     ASSERT_EQ(shown.size(), 1u) << back;
     EXPECT_EQ(shown[0].door, 1u);
-    EXPECT_EQ(link->first_text(), goes_on);
+    EXPECT_EQ(link->first_heard()->text, goes_on);
     EXPECT_EQ(reception.standing().resting, 0u);
   }
 }

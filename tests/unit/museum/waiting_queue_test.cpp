@@ -18,7 +18,7 @@ struct WaitingQueueTest : testing::Test {
 
   std::shared_ptr<Link> come(size_t door = 0) {
     links.push_back(std::make_shared<Link>(links.size() + 1, LinkKind::visit, "test"));
-    queue.join({links.back(), R"({"type":"hello"})", door, 1e5, {}});
+    queue.join({links.back(), hear_visitor(R"({"type":"hello"})"), door, 1e5, {}});
     return links.back();
   }
   std::vector<uint64_t> let_in(double now) {
@@ -98,7 +98,7 @@ TEST_F(WaitingQueueTest, WhoLeavesOrIsGoneIsForgottenAndAnotherHelloCounts) {
   });
   ASSERT_EQ(in.size(), 1u);
   EXPECT_EQ(in[0].link, resized);
-  EXPECT_EQ(read_hello(in[0].hello)->width, 64);
+  EXPECT_EQ(said_as<Hello>(in[0].hello)->width, 64);
   std::string why;
   EXPECT_TRUE(leaving->close_requested(why));
 }
