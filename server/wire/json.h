@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text to messages and back. Everything read here comes from strangers: size, nesting, count, types,
-// ranges and finiteness are checked before a value exists. Nothing throws; nothing keeps state.
+// Text to messages and back. Everything read here comes from strangers: size, nesting, count,
+// types, ranges and finiteness are checked before a value exists. Nothing throws; nothing keeps
+// state.
 //
 // Rules of reading. Unknown fields are ignored (older and newer peers understand each other); of
 // equal names the last counts, as in every browser. A field of the wrong type, null included, is
@@ -53,8 +54,8 @@ struct JsonLimits {
   int depth = max_message_depth;  // of `[[1]]` it is 2
   size_t values = SIZE_MAX;       // containers too
 };
-// Parses within limits: nlohmann's own parser takes any depth, but copying or dumping what it made of
-// 100,000 brackets overflows the stack, and 20,000 empty arrays take milliseconds. Stops at the
+// Parses within limits: nlohmann's own parser takes any depth, but copying or dumping what it made
+// of 100,000 brackets overflows the stack, and 20,000 empty arrays take milliseconds. Stops at the
 // first value too many. Returns a WireError (bad_json, too_deep, too_large; bad_field for a number
 // no double can hold) naming the place. `values`: how many were read.
 std::variant<nlohmann::json, WireError> parse_json(std::string_view text,

@@ -214,7 +214,8 @@ TEST(ParseJson, a_hundred_thousand_brackets_neither_crash_nor_fill_memory) {
     ASSERT_TRUE(std::holds_alternative<WireError>(result));
     EXPECT_EQ(std::get<WireError>(result).code, "too_deep");
   }
-  const auto result = parse_json(std::string(100'000, '[') + std::string(100'000, ']'), {.depth = 200});
+  const auto result =
+      parse_json(std::string(100'000, '[') + std::string(100'000, ']'), {.depth = 200});
   EXPECT_EQ(std::get<WireError>(result).code, "too_deep");
 }
 
