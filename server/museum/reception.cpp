@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "show/answer/trust.h"
 #include "wire/json.h"
 
 namespace wellspring {
@@ -47,7 +48,7 @@ Reception::Reception(std::vector<ExhibitDoor> doors, std::shared_ptr<Capacity> c
     : doors_(std::move(doors)),
       capacity_(std::move(capacity)),
       settings_(settings),
-      queue_(settings.most_waiting) {}
+      queue_(settings.most_waiting, settings.most_pixels) {}
 
 void Reception::turn_away(Link& link) {
   turned_away_++;
@@ -85,14 +86,14 @@ bool Reception::place(std::shared_ptr<Link>& link, Heard heard, size_t door,
   const double pixels = std::min(double(hello.width) * hello.height, settings_.most_pixels);
   std::unique_ptr<Seat> seat;
   if (hello.role == "kiosk") seat = capacity_->give_seat(pixels);
-  else if (queue_.size() == 0) seat = capacity_->find_seat(pixels);
+  else if (queue_.size() == 0) seat = capacity_->find_seat(pixels, link->address);
   if (seat) {
     link->put_back(std::move(heard));
     ready.push_back({door, std::move(link), std::move(seat)});
     return true;
   }
   if (queue_.full()) return false;
-  queue_.join({std::move(link), std::move(heard), door, pixels, {}});
+  queue_.join({std::move(link), std::move(heard), door, pixels, {}}, seconds_now());
   return true;
 }
 
@@ -116,8 +117,13 @@ bool Reception::receive(const std::shared_ptr<Link>& stranger, std::vector<Shown
       return true;
     }
     const Hello* hello = said_as<Hello>(*heard);
+    std::string kiosk;
+    const auto distrusted =
+        hello ? check_page(settings_.kiosk_tokens, *link, *hello, kiosk) : std::nullopt;
     if (!hello) {
       link->send_text(write_error({"hello_first", "the first message must be hello"}));
+    } else if (distrusted) {
+      link->send_text(write_error(*distrusted));
     } else if (door < 0) {
       link->send_text(
           write_error({"unknown_exhibit", "there is no exhibit '" + hello->exhibit + "' here"}));
@@ -150,19 +156,16 @@ void Reception::look_at_resting() {
 
 std::vector<Reception::Shown> Reception::find_ready(double now) {
   std::vector<Shown> ready;
-  if (now - looked_at_ >= std::chrono::duration<double>(queue_interval).count()) {
-    looked_at_ = now;
-    look_at_resting();
-    auto find_seat = [&](const Newcomer& who) {
-      return capacity_->find_seat(std::min(who.pixels, settings_.most_pixels));
-    };
-    for (Newcomer& who : queue_.let_in(now, find_seat)) {
+  const bool looks = now - looked_at_ >= std::chrono::duration<double>(queue_interval).count();
+  if (looks) looked_at_ = now, look_at_resting();
+  const uint64_t joined = queue_.joined();
+  std::erase_if(strangers_,
+                [&](const std::shared_ptr<Link>& link) { return receive(link, ready); });
+  if (looks || queue_.joined() != joined)
+    for (Newcomer& who : queue_.let_in(now, *capacity_)) {
       who.link->put_back(std::move(who.hello));
       ready.push_back({who.door, std::move(who.link), std::move(who.seat)});
     }
-  }
-  std::erase_if(strangers_,
-                [&](const std::shared_ptr<Link>& link) { return receive(link, ready); });
   queue_.tell_places(now);
   return ready;
 }

@@ -2,7 +2,7 @@
 // Where peers are until they are shown something: until they have said which exhibit they want;
 // until there is a seat for a visitor's pictures, in a queue; and while nobody is at a page any
 // more (show/answer/idle.h). Such links cost a socket and no pictures. Kiosks and their cameras
-// never wait.
+// never wait, once they are believed to be some.
 #pragma once
 #include <condition_variable>
 #include <memory>
@@ -13,6 +13,7 @@
 #include "museum/waiting_queue.h"
 #include "show/state/capacity.h"
 #include "wire/link.h"
+#include "wire/tokens.h"
 
 namespace wellspring {
 
@@ -31,6 +32,7 @@ struct ReceptionSettings {
   size_t most_resting = 2000;        // more: who came first is told to come back
   size_t most_strangers = 2000;      // who have not said hello; likewise
   double most_pixels = 1920 * 1200;  // of a visitor's pictures, whatever it asks for
+  std::vector<Token> kiosk_tokens;   // show/answer/trust.h
 };
 
 class Reception {

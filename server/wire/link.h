@@ -40,11 +40,12 @@ class Link {
   const LinkKind kind;
   const std::string peer;  // address, for the log
   // Set before the show gets the link, and never changed after.
-  bool local = false;  // HttpQuestion::local
-  std::string kiosk;   // an eye whose token is for the kiosk of that name alone; empty: any
+  bool local = false;   // HttpQuestion::local
+  std::string address;  // with whom it shares seats; empty: with nobody, as it is trusted
+  std::string kiosk;    // an eye whose token is for the kiosk of that name alone; empty: any
 
   // ---- called by the show ----
-  std::vector<Heard> take_heard();          // all that arrived since the last call, in order
+  std::vector<Heard> take_heard();           // all that arrived since the last call, in order
   std::optional<Heard> first_heard() const;  // of those, left there; empty: there is none
   void drop_first_heard();
   void put_back(Heard heard);                        // as the first of those
@@ -67,7 +68,7 @@ class Link {
     std::string text;
     std::shared_ptr<const Packet> packet;
   };
-  bool take_out(Out& out);         // texts and sounds before pictures; false: nothing to send
+  bool take_out(Out& out);  // texts and sounds before pictures; false: nothing to send
   // A message arrived: it is read at once, by who calls. How many values it had.
   size_t push_text_in(std::string);
   void push_delivery(const Delivery& delivery);
