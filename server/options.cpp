@@ -16,6 +16,7 @@ namespace {
 // What is no setting yet when it is read.
 struct Words {
   int port = 8080, agent_port = 0;
+  double visitors_memory = 0;  // MiB
   std::string token_file, kiosk_token_file, display = display_names[0];
 };
 
@@ -100,6 +101,11 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
          "pictures a second that everybody is to have who walks: while the machine makes no "
          "more, newcomers wait")
       ->check(CLI::Range(1.0, 120.0));
+  app.add_option(
+         "--visitors-memory", words.visitors_memory,
+         "MiB that pictures of all visitors may take: while newcomers need more, they wait; "
+         "0: six tenths of what the process may use")
+      ->check(CLI::Range(0.0, 1e6));
   app.add_option("--max-waiting", options.museum.most_waiting,
                  "visitors who wait; more are told to come back")
       ->check(CLI::Range(0, 100000));
@@ -145,6 +151,7 @@ void parse_options(CLI::App& app, ServerOptions& options, Words& words, int argc
   options.museum.show.display = Display(display - std::begin(display_names));
   options.stream.port = uint16_t(words.port);
   options.stream.agent_port = uint16_t(words.agent_port);
+  options.museum.capacity.memory = words.visitors_memory * 1024 * 1024;
   if (options.web.empty()) options.web = installed_share("web");
   if (options.web.empty()) options.web = "web";
   std::string& weights = options.museum.show.weights;

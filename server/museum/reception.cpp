@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "show/answer/trust.h"
 #include "wire/json.h"
 
 namespace wellspring {
@@ -26,13 +27,11 @@ bool tells_of_somebody(const BrowserMessage& message) {
 
 }  // namespace
 
-int find_door(const std::vector<ExhibitDoor>& doors, LinkKind kind, const std::string& first_text) {
+int find_door(const std::vector<ExhibitDoor>& doors, const Heard& first) {
   std::string kiosk;
-  if (kind == LinkKind::eye) {
-    auto said = read_observation(first_text);
-    if (const Observation* observation = std::get_if<Observation>(&said))
-      kiosk = observation->kiosk;
-  } else if (const auto hello = read_hello(first_text)) {
+  if (const Observation* observation = std::get_if<Observation>(&first.said)) {
+    kiosk = observation->kiosk;
+  } else if (const Hello* hello = said_as<Hello>(first)) {
     if (!hello->exhibit.empty()) {
       auto found = std::ranges::find(doors, hello->exhibit, &ExhibitDoor::id);
       return found == doors.end() ? -1 : int(found - doors.begin());
@@ -49,7 +48,7 @@ Reception::Reception(std::vector<ExhibitDoor> doors, std::shared_ptr<Capacity> c
     : doors_(std::move(doors)),
       capacity_(std::move(capacity)),
       settings_(settings),
-      queue_(settings.most_waiting) {}
+      queue_(settings.most_waiting, settings.most_pixels) {}
 
 void Reception::turn_away(Link& link) {
   turned_away_++;
@@ -69,31 +68,32 @@ void Reception::enter(std::shared_ptr<Link> link) {
 
 void Reception::rest(std::shared_ptr<Link> link) {
   std::lock_guard lock(mutex_);
-  const auto hello = link->first_text();
+  auto hello = link->first_heard();
   if (!hello) return;
-  link->drop_first_text();
+  link->drop_first_heard();
   if (resting_.size() >= settings_.most_resting) {
     turn_away(*resting_.front().link);
     resting_.erase(resting_.begin());
   }
-  resting_.push_back({std::move(link), *hello});
+  resting_.push_back({std::move(link), std::move(*hello)});
 }
 
-// Into the exhibit, or into the queue; false: not even that. `text` is the hello, which the link
-// does not have any more.
-bool Reception::place(std::shared_ptr<Link>& link, const Hello& hello, std::string text,
-                      size_t door, std::vector<Shown>& ready) {
+// Into the exhibit, or into the queue; false: not even that. The link does not have its hello any
+// more.
+bool Reception::place(std::shared_ptr<Link>& link, Heard heard, size_t door,
+                      std::vector<Shown>& ready) {
+  const Hello& hello = *said_as<Hello>(heard);
   const double pixels = std::min(double(hello.width) * hello.height, settings_.most_pixels);
   std::unique_ptr<Seat> seat;
   if (hello.role == "kiosk") seat = capacity_->give_seat(pixels);
-  else if (queue_.size() == 0) seat = capacity_->find_seat(pixels);
+  else if (queue_.size() == 0) seat = capacity_->find_seat(pixels, link->address);
   if (seat) {
-    link->put_back(std::move(text));
+    link->put_back(std::move(heard));
     ready.push_back({door, std::move(link), std::move(seat)});
     return true;
   }
   if (queue_.full()) return false;
-  queue_.join({std::move(link), std::move(text), door, pixels, {}});
+  queue_.join({std::move(link), std::move(heard), door, pixels, {}}, seconds_now());
   return true;
 }
 
@@ -101,30 +101,34 @@ bool Reception::place(std::shared_ptr<Link>& link, const Hello& hello, std::stri
 bool Reception::receive(const std::shared_ptr<Link>& stranger, std::vector<Shown>& ready) {
   std::shared_ptr<Link> link = stranger;
   if (link->closed()) return true;
-  while (auto text = link->first_text()) {
-    const int door = find_door(doors_, link->kind, *text);
+  while (auto heard = link->first_heard()) {
+    const int door = find_door(doors_, *heard);
     if (link->kind == LinkKind::eye) {
       ready.push_back({size_t(door), std::move(link), {}});
       return true;
     }
-    link->drop_first_text();
-    auto said = read_browser_message(*text);
-    if (const WireError* wrong = std::get_if<WireError>(&said)) {
+    link->drop_first_heard();
+    if (const WireError* wrong = std::get_if<WireError>(&heard->said)) {
       link->send_text(write_error(*wrong));
       continue;
     }
-    if (std::holds_alternative<Bye>(std::get<BrowserMessage>(said))) {
+    if (said_as<Bye>(*heard)) {
       link->close("bye");
       return true;
     }
-    const Hello* hello = std::get_if<Hello>(&std::get<BrowserMessage>(said));
+    const Hello* hello = said_as<Hello>(*heard);
+    std::string kiosk;
+    const auto distrusted =
+        hello ? check_page(settings_.kiosk_tokens, *link, *hello, kiosk) : std::nullopt;
     if (!hello) {
       link->send_text(write_error({"hello_first", "the first message must be hello"}));
+    } else if (distrusted) {
+      link->send_text(write_error(*distrusted));
     } else if (door < 0) {
       link->send_text(
           write_error({"unknown_exhibit", "there is no exhibit '" + hello->exhibit + "' here"}));
     } else {
-      if (!place(link, *hello, std::move(*text), size_t(door), ready)) turn_away(*link);
+      if (!place(link, std::move(*heard), size_t(door), ready)) turn_away(*link);
       return true;
     }
   }
@@ -134,16 +138,15 @@ bool Reception::receive(const std::shared_ptr<Link>& stranger, std::vector<Shown
 void Reception::look_at_resting() {
   std::erase_if(resting_, [&](Resting& one) {
     if (one.link->closed()) return true;
-    for (const std::string& text : one.link->take_texts()) {
-      auto said = read_browser_message(text);
-      const BrowserMessage* message = std::get_if<BrowserMessage>(&said);
+    for (Heard& heard : one.link->take_heard()) {
+      const BrowserMessage* message = std::get_if<BrowserMessage>(&heard.said);
       if (!message) continue;
-      if (std::holds_alternative<Bye>(*message)) {
+      if (said_as<Bye>(heard)) {
         one.link->close("bye");
         return true;
       }
       if (!tells_of_somebody(*message)) continue;
-      one.link->put_back(std::holds_alternative<Hello>(*message) ? text : one.hello);
+      one.link->put_back(said_as<Hello>(heard) ? std::move(heard) : std::move(one.hello));
       strangers_.push_back(std::move(one.link));
       return true;
     }
@@ -153,19 +156,16 @@ void Reception::look_at_resting() {
 
 std::vector<Reception::Shown> Reception::find_ready(double now) {
   std::vector<Shown> ready;
-  if (now - looked_at_ >= std::chrono::duration<double>(queue_interval).count()) {
-    looked_at_ = now;
-    look_at_resting();
-    auto find_seat = [&](const Newcomer& who) {
-      return capacity_->find_seat(std::min(who.pixels, settings_.most_pixels));
-    };
-    for (Newcomer& who : queue_.let_in(now, find_seat)) {
+  const bool looks = now - looked_at_ >= std::chrono::duration<double>(queue_interval).count();
+  if (looks) looked_at_ = now, look_at_resting();
+  const uint64_t joined = queue_.joined();
+  std::erase_if(strangers_,
+                [&](const std::shared_ptr<Link>& link) { return receive(link, ready); });
+  if (looks || queue_.joined() != joined)
+    for (Newcomer& who : queue_.let_in(now, *capacity_)) {
       who.link->put_back(std::move(who.hello));
       ready.push_back({who.door, std::move(who.link), std::move(who.seat)});
     }
-  }
-  std::erase_if(strangers_,
-                [&](const std::shared_ptr<Link>& link) { return receive(link, ready); });
   queue_.tell_places(now);
   return ready;
 }

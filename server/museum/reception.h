@@ -2,7 +2,7 @@
 // Where peers are until they are shown something: until they have said which exhibit they want;
 // until there is a seat for a visitor's pictures, in a queue; and while nobody is at a page any
 // more (show/answer/idle.h). Such links cost a socket and no pictures. Kiosks and their cameras
-// never wait.
+// never wait, once they are believed to be some.
 #pragma once
 #include <condition_variable>
 #include <memory>
@@ -13,6 +13,7 @@
 #include "museum/waiting_queue.h"
 #include "show/state/capacity.h"
 #include "wire/link.h"
+#include "wire/tokens.h"
 
 namespace wellspring {
 
@@ -22,15 +23,16 @@ struct ExhibitDoor {
   std::vector<std::string> kiosks;  // their names
 };
 
-// Which of the doors the first text of a peer leads to: the exhibit that a `hello` names; else the
+// Which of the doors the first words of a peer lead to: the exhibit that a `hello` names; else the
 // one that has the kiosk of that name; else the first. -1: there is no exhibit of that name.
-int find_door(const std::vector<ExhibitDoor>& doors, LinkKind kind, const std::string& first_text);
+int find_door(const std::vector<ExhibitDoor>& doors, const Heard& first);
 
 struct ReceptionSettings {
   size_t most_waiting = 2000;        // in the queue; more are told to come back
   size_t most_resting = 2000;        // more: who came first is told to come back
   size_t most_strangers = 2000;      // who have not said hello; likewise
   double most_pixels = 1920 * 1200;  // of a visitor's pictures, whatever it asks for
+  std::vector<Token> kiosk_tokens;   // show/answer/trust.h
 };
 
 class Reception {
@@ -60,13 +62,12 @@ class Reception {
  private:
   struct Resting {
     std::shared_ptr<Link> link;
-    std::string hello;
+    Heard hello;
   };
   // All with the lock held.
   std::vector<Shown> find_ready(double now);
   bool receive(const std::shared_ptr<Link>& link, std::vector<Shown>& ready);
-  bool place(std::shared_ptr<Link>& link, const Hello& hello, std::string text, size_t door,
-             std::vector<Shown>& ready);
+  bool place(std::shared_ptr<Link>& link, Heard hello, size_t door, std::vector<Shown>& ready);
   void look_at_resting();
   void turn_away(Link& link);
   const std::vector<ExhibitDoor> doors_;

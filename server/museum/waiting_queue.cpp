@@ -2,6 +2,8 @@
 #include "museum/waiting_queue.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "wire/json.h"
 
@@ -14,54 +16,72 @@ constexpr double turns_kept = 600;    // seconds that a turn tells how long the 
 constexpr double least_seconds = 10;  // since the first turn, that tell anything
 constexpr size_t turns_counted = 16;
 
+// Pictures of the same shape with no more pixels.
+void ask_for_less(Newcomer& who, double pixels) {
+  Hello hello = *said_as<Hello>(who.hello);
+  const double scale = std::sqrt(pixels / (double(hello.width) * hello.height));
+  hello.width = std::max(min_side, int(hello.width * scale));
+  hello.height = std::max(min_side, int(hello.height * scale));
+  who.hello = hear_visitor(write_message(hello));
+  who.pixels = pixels;
+}
+
 }  // namespace
 
-std::optional<Hello> read_hello(const std::string& text) {
-  auto said = read_browser_message(text);
-  const BrowserMessage* message = std::get_if<BrowserMessage>(&said);
-  const Hello* hello = message ? std::get_if<Hello>(message) : nullptr;
-  return hello ? std::optional(*hello) : std::nullopt;
+void WaitingQueue::join(Newcomer newcomer, double now) {
+  Waiting& one = all_.emplace_back();
+  one.who = std::move(newcomer);
+  one.number = ++joined_;
+  one.since = now;
 }
-
-size_t WaitingQueue::size_of(size_t door) const {
-  return size_t(
-      std::ranges::count_if(all_, [&](const Waiting& one) { return one.who.door == door; }));
-}
-
-void WaitingQueue::join(Newcomer newcomer) { all_.push_back({std::move(newcomer), {}, 0}); }
 
 bool WaitingQueue::listen(Waiting& one) {
   Newcomer& who = one.who;
   if (who.link->closed()) return false;
-  for (std::string& text : who.link->take_texts()) {
-    auto said = read_browser_message(text);
-    const BrowserMessage* message = std::get_if<BrowserMessage>(&said);
-    if (!message) continue;
-    if (std::holds_alternative<Bye>(*message)) {
+  for (Heard& heard : who.link->take_heard()) {
+    if (said_as<Bye>(heard)) {
       who.link->close("bye");
       return false;
     }
-    if (const Hello* hello = std::get_if<Hello>(message)) {
+    if (const Hello* hello = said_as<Hello>(heard)) {
       who.pixels = double(hello->width) * hello->height;
-      who.hello = std::move(text);
+      who.hello = std::move(heard);
     }
   }
   return true;
 }
 
-std::vector<Newcomer> WaitingQueue::let_in(
-    double now, const std::function<std::unique_ptr<Seat>(const Newcomer&)>& find_seat) {
+void WaitingQueue::order(double now, const Capacity& capacity) {
+  std::ranges::sort(all_, {}, &Waiting::number);
+  std::map<std::string, int> rounds;  // of the next one of each address
+  for (Waiting& one : all_) {
+    const std::string& address = one.who.link->address;
+    if (address.empty()) continue;  // shares with nobody
+    const auto [next, is_first] = rounds.try_emplace(address, capacity.seats_of(address));
+    one.round = is_first && now - one.since > patience ? 0 : next->second;
+    next->second++;
+  }
+  std::ranges::stable_sort(all_, {}, &Waiting::round);
+}
+
+std::vector<Newcomer> WaitingQueue::let_in(double now, Capacity& capacity) {
   std::erase_if(all_, [&](Waiting& one) { return !listen(one); });
+  order(now, capacity);
   std::vector<Newcomer> in;
-  while (!all_.empty()) {
-    Newcomer& who = all_.front().who;
-    who.seat = find_seat(who);
-    if (!who.seat) break;
-    in.push_back(std::move(who));
-    all_.pop_front();
+  for (Waiting& one : all_) {
+    Newcomer& who = one.who;
+    const std::string& address = who.link->address;
+    who.seat = capacity.find_seat(std::min(who.pixels, most_pixels_), address);
+    if (!who.seat && now - one.since > patience && who.pixels > small_pixels) {
+      who.seat = capacity.find_seat(small_pixels, address);
+      if (who.seat) ask_for_less(who, small_pixels);
+    }
+    if (!who.seat) continue;
     turns_.push_back(now);
     if (turns_.size() > turns_counted) turns_.pop_front();
+    in.push_back(std::move(who));
   }
+  std::erase_if(all_, [](const Waiting& one) { return !one.who.link; });
   while (!turns_.empty() && now - turns_.front() > turns_kept) turns_.pop_front();
   return in;
 }

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Visitors who wait for a seat and are let in by turn. Times are seconds of a clock that does not
 // run backwards; not for several threads at once.
+//
+// Turns go round among addresses, and then among the visits of each: the second of an address comes
+// after the first of all others, and one whose address has seats already after as many rounds as it
+// has seats. Whoever waits first of its address for `patience` is not put back for these. Among
+// those who have the same turn, who came first comes first. Who does not fit is passed over, and
+// after `patience` let in with smaller pictures as soon as these fit.
 #pragma once
 #include <deque>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,7 +23,7 @@ namespace wellspring {
 // Who is welcomed as soon as there is a seat.
 struct Newcomer {
   std::shared_ptr<Link> link;
-  std::string hello;  // what they said, for the show to read
+  Heard hello;        // what they said, for the show to read
   size_t door = 0;    // of the exhibit that they want
   double pixels = 0;  // of their pictures
   std::unique_ptr<Seat> seat;
@@ -26,15 +31,17 @@ struct Newcomer {
 
 class WaitingQueue {
  public:
-  explicit WaitingQueue(size_t most) : most_(most) {}
+  static constexpr double patience = 60;             // seconds
+  static constexpr double small_pixels = 640 * 360;  // of who has waited so long
+
+  WaitingQueue(size_t most, double most_pixels) : most_(most), most_pixels_(most_pixels) {}
   bool full() const { return all_.size() >= most_; }
   size_t size() const { return all_.size(); }
-  size_t size_of(size_t door) const;
-  void join(Newcomer newcomer);  // not while it is full
-  // Those whose turn it is: from its beginning, while `find_seat` finds one. What they say
-  // meanwhile is left out, but for another hello, which counts instead, and bye.
-  std::vector<Newcomer> let_in(
-      double now, const std::function<std::unique_ptr<Seat>(const Newcomer&)>& find_seat);
+  uint64_t joined() const { return joined_; }  // ever
+  void join(Newcomer newcomer, double now);    // not while it is full
+  // Those whose turn it is and for whom there is a seat. What they say meanwhile is left out, but
+  // for another hello, which counts instead, and bye.
+  std::vector<Newcomer> let_in(double now, Capacity& capacity);
   // Tells each their place: at once; when it has changed, at most every two seconds; and every
   // four, so that pages know that the line is good.
   void tell_places(double now);
@@ -42,17 +49,20 @@ class WaitingQueue {
  private:
   struct Waiting {
     Newcomer who;
+    uint64_t number = 0;  // of who joins
+    double since = 0;
+    int round = 0;  // of turns
     std::optional<WaitingPlace> told;
     double told_at = 0;
   };
   bool listen(Waiting& one);  // false: they are gone
+  void order(double now, const Capacity& capacity);
   std::optional<double> seconds_for(size_t place, double now) const;
   const size_t most_;
-  std::deque<Waiting> all_;
+  const double most_pixels_;
+  std::deque<Waiting> all_;  // in the order of their turns
+  uint64_t joined_ = 0;
   std::deque<double> turns_;  // when the last ones were let in
 };
-
-// A visitor's hello; null: the text is none.
-std::optional<Hello> read_hello(const std::string& text);
 
 }  // namespace wellspring

@@ -13,7 +13,8 @@ Admission::Admission(const Limits& limits)
     : limits_(limits),
       reserve_(size_t(std::clamp(limits.reserve, 0, std::max(0, limits.connections / 4)))),
       all_requests_{limits.all_requests_a_second, limits.all_requests_at_once},
-      all_frames_{limits.all_frames_a_second, limits.all_frames_at_once} {}
+      all_frames_{limits.all_frames_a_second, limits.all_frames_at_once},
+      all_bytes_{limits.all_bytes_a_second, limits.all_bytes_at_once} {}
 
 Admission::Guest& Admission::guest(const Address& part) {
   auto found = guests_.find(part);
@@ -27,6 +28,7 @@ Admission::Guest& Admission::guest(const Address& part) {
     made.new_connections = {limits_.new_connections_a_second, limits_.new_connections_at_once};
     made.requests = {limits_.requests_a_second, limits_.requests_at_once};
     made.frames = {limits_.frames_a_second, limits_.frames_at_once};
+    made.bytes = {limits_.bytes_a_second, limits_.bytes_at_once};
   }
   return found->second;
 }
@@ -115,11 +117,14 @@ Admission::Taken Admission::take_request(const Address& from, double now) {
   return all_requests_.take(1, now) ? Taken::yes : Taken::too_many_in_all;
 }
 
-Admission::Taken Admission::take_frames(const Address& from, double frames, bool modest,
-                                        double now) {
+Admission::Taken Admission::take_input(const Address& from, const WireInput& input, bool modest,
+                                       double now) {
   std::lock_guard lock(mutex_);
-  if (!guest(limited_part(from)).frames.take(frames, now)) return Taken::too_many;
-  return all_frames_.take(frames, now) || modest ? Taken::yes : Taken::too_many_in_all;
+  Guest& one = guest(limited_part(from));
+  const bool own = one.frames.take(input.frames, now) && one.bytes.take(input.bytes, now);
+  if (!own) return Taken::too_many;
+  const bool all = all_frames_.take(input.frames, now) && all_bytes_.take(input.bytes, now);
+  return all || modest ? Taken::yes : Taken::too_many_in_all;
 }
 
 Admission::Taken Admission::open_websocket(const Address& from, double now) {

@@ -35,10 +35,20 @@ struct Limits {
   int websockets_an_address = 128;
   double requests_a_second = 100, requests_at_once = 3000;  // HTTP
   double frames_a_second = 8000, frames_at_once = 16000;    // of all its WebSockets
+  // Likewise; a value of JSON that was read counts as value_bytes, so these bound reading, too.
+  double bytes_a_second = 2.5e6, bytes_at_once = 5e6;
   // Of all strangers together: three hundred first loads at once, two hundred who walk. More than
   // two hundred walkers are no flood, as each of them says no more than a page.
   double all_requests_a_second = 1000, all_requests_at_once = 10000;
   double all_frames_a_second = 20000, all_frames_at_once = 40000;
+  double all_bytes_a_second = 8e6, all_bytes_at_once = 16e6;
+};
+
+inline constexpr double value_bytes = 16;  // about as long as those take to be read
+
+// What a WebSocket says.
+struct WireInput {
+  double frames = 0, bytes = 0;
 };
 
 enum class Standing : uint8_t { stranger, proxy, trusted };
@@ -63,7 +73,7 @@ class Admission {
   enum class Taken : uint8_t { yes, too_many, too_many_in_all };
   Taken take_request(const Address& from, double now);
   // `modest`: its WebSocket says no more than a page does, so it is not closed for others' sake.
-  Taken take_frames(const Address& from, double frames, bool modest, double now);
+  Taken take_input(const Address& from, const WireInput& input, bool modest, double now);
   Taken open_websocket(const Address& from, double now);
   void close_websocket(const Address& from);
 
@@ -79,7 +89,7 @@ class Admission {
   struct Guest {  // what one address has and does
     int connections = 0, websockets = 0;
     std::set<uint64_t> waiting;  // numbers in the queue
-    RateBound new_connections, requests, frames;
+    RateBound new_connections, requests, frames, bytes;
   };
   Guest& guest(const Address& part);
   std::optional<uint64_t> take_oldest(const std::set<uint64_t>& numbers);
@@ -92,7 +102,7 @@ class Admission {
   std::unordered_map<uint64_t, Place> places_;
   std::map<uint64_t, uint64_t> queue_;  // strangers who wait, oldest first: number to id
   std::map<Address, Guest> guests_;
-  RateBound all_requests_, all_frames_;
+  RateBound all_requests_, all_frames_, all_bytes_;
   uint64_t next_number_ = 1;
 };
 

@@ -27,7 +27,7 @@ inline constexpr double max_frames_a_second = 400;      // WebSocket, of all kin
 inline constexpr double max_bytes_a_second = 1 << 20;   // WebSocket
 // Likewise, as a page says at most: an input, an acknowledgement and a pong for each picture of a
 // display of 60 Hz, and some. More is too much where all together say too much.
-inline constexpr double modest_frames_a_second = 250;
+inline constexpr double modest_frames_a_second = 250, modest_bytes_a_second = 100e3;
 inline constexpr double burst_seconds = 2;
 inline constexpr double flood_linger = 1;  // seconds in which a peer that is closed may read why
 
@@ -117,7 +117,7 @@ class Session : public std::enable_shared_from_this<Session> {
   bool take_pong(beast::string_view payload);
   void want_close(websocket::close_code code, std::string reason);
   void hear(std::string text);
-  bool count_input(double frames, double bytes);
+  bool count_input(const WireInput& input);
   void start_first_deadline();
   void start_deadline();
   void end_deadline();
@@ -157,6 +157,7 @@ class Session : public std::enable_shared_from_this<Session> {
   RateBound frames_{max_frames_a_second, max_frames_a_second* burst_seconds};
   RateBound bytes_{max_bytes_a_second, max_bytes_a_second* burst_seconds};
   RateBound modest_{modest_frames_a_second, modest_frames_a_second* burst_seconds};
+  RateBound modest_bytes_{modest_bytes_a_second, modest_bytes_a_second* burst_seconds};
 };
 
 }  // namespace wellspring

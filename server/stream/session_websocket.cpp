@@ -79,7 +79,7 @@ net::awaitable<void> Session::serve_websocket() {
         self->writer_ended_.raise();
       });
   stream().watch([this](std::span<const uint8_t> bytes) {
-    return count_input(double(frame_counter_.count(bytes)), double(bytes.size()));
+    return count_input({double(frame_counter_.count(bytes)), double(bytes.size())});
   });
   core_->admission.begin_waiting(id_);
   start_first_deadline();
@@ -101,10 +101,10 @@ net::awaitable<void> Session::serve_websocket() {
             link_->pictures_sent.load(), link_->bytes_sent.load());
 }
 
-// A text came. With its first one the peer joins: who says nothing takes no place among visitors.
+// A text came, and is read here. With its first one the peer joins: who says nothing takes no place among visitors.
 void Session::hear(std::string text) {
-  link_->push_text_in(std::move(text));
-  if (joined_) return;
+  const size_t values = link_->push_text_in(std::move(text));
+  if (!count_input({0, value_bytes * double(values)}) || joined_) return;
   joined_ = true;
   core_->admission.end_waiting(id_);
   log::info("{} {} joined from {}", link_->kind == LinkKind::eye ? "eye" : "visit", link_->id,
@@ -150,15 +150,16 @@ net::awaitable<bool> Session::read_messages() {
 
 // Of bytes as they come. False: more than a peer may say, the connection is being closed, and
 // nothing more is read: the peer has a moment to read why.
-bool Session::count_input(double frames, double bytes) {
+bool Session::count_input(const WireInput& input) {
   if (flooded_) return false;
   const double now = seconds_now();
-  const bool own = frames_.take(frames, now) && bytes_.take(bytes, now);
-  const bool modest = modest_.take(frames, now);
+  const bool own = frames_.take(input.frames, now) && bytes_.take(input.bytes, now);
+  const bool few = modest_.take(input.frames, now), small = modest_bytes_.take(input.bytes, now);
+  const bool modest = few && small;
   using Taken = Admission::Taken;
   const Taken shared = !own || caller_.trusted
                            ? Taken::yes
-                           : core_->admission.take_frames(caller_.address, frames, modest, now);
+                           : core_->admission.take_input(caller_.address, input, modest, now);
   if (own && shared == Taken::yes) return true;
   flooded_ = true;
   core_->flood_closed++;

@@ -20,7 +20,8 @@
 //   first_message_timeout.
 // - Close codes of a WebSocket: 1003 binary message, 1007 not UTF-8, 1008 no first message, or more
 //   than 400 frames of any kind or 1 MiB a second for longer than a burst of two seconds' worth, or
-//   250 frames where all strangers together say too much (admission.h),
+//   250 frames or 100 kB where all strangers together say too much (admission.h), or too much from
+//   its address,
 //   1009 message above 64 KiB, 1001 the server stops, 1000 the show closed the link.
 // - A peer that is silent (not even pongs) is dropped after idle_timeout + half of it at most; one
 // that does not

@@ -197,11 +197,14 @@ const json* Fields::array(const char* name, size_t max_size) {
   return field;
 }
 
-std::variant<Envelope, WireError> open_envelope(std::string_view text) {
-  if (text.size() > max_message_bytes)
-    return WireError{"too_large",
-                     "message of more than " + std::to_string(max_message_bytes) + " bytes"};
-  auto parsed = parse_json(text);
+WireError too_large(size_t most_bytes) {
+  return {"too_large", "message of more than " + std::to_string(most_bytes) + " bytes"};
+}
+
+std::variant<Envelope, WireError> open_envelope(std::string_view text,
+                                                const EnvelopeLimits& limits, size_t* values) {
+  if (text.size() > limits.bytes) return too_large(limits.bytes);
+  auto parsed = parse_json(text, {.values = limits.values}, values);
   if (auto* error = std::get_if<WireError>(&parsed)) return std::move(*error);
   Envelope envelope{std::move(std::get<json>(parsed)), {}};
   if (!envelope.object.is_object()) return WireError{"bad_json", "a message must be an object"};

@@ -60,13 +60,19 @@ class Fields {
   std::optional<WireError>& error_;
 };
 
-// The object of a message whose size, syntax and depth are good and which has a "type" of type
-// string.
+// The object of a message whose size, syntax, depth and count of values are good and which has a
+// "type" of type string.
 struct Envelope {
   nlohmann::json object;
   std::string type;
 };
-std::variant<Envelope, WireError> open_envelope(std::string_view text);
+struct EnvelopeLimits {
+  size_t bytes = max_message_bytes, values = max_observation_values;
+};
+std::variant<Envelope, WireError> open_envelope(std::string_view text,
+                                                const EnvelopeLimits& limits = {},
+                                                size_t* values = nullptr);
+WireError too_large(size_t most_bytes);
 
 // A piece of a stranger's text made fit for a message of ours: short, no control characters.
 std::string short_quote(std::string_view text);

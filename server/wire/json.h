@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text to messages and back. Everything read here comes from strangers: size, nesting, types,
-// ranges and finiteness are checked before a value exists. Nothing throws; nothing keeps state.
+// Text to messages and back. Everything read here comes from strangers: size, nesting, count,
+// types, ranges and finiteness are checked before a value exists. Nothing throws; nothing keeps
+// state.
 //
 // Rules of reading. Unknown fields are ignored (older and newer peers understand each other); of
 // equal names the last counts, as in every browser. A field of the wrong type, null included, is
@@ -9,6 +10,7 @@
 // (camera), name (viewpoint), action (tour), frame (ack); and time, id, position, rotation and
 // confidence of an observation; showing of a browser's kiosk, stage of a server's.
 #pragma once
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -25,10 +27,13 @@ struct WireError {
   std::string code, message;
 };
 
-std::variant<BrowserMessage, WireError> read_browser_message(std::string_view text);
+// `values`: how many of JSON were read, good or not; null: nobody asks.
+std::variant<BrowserMessage, WireError> read_browser_message(std::string_view text,
+                                                             size_t* values = nullptr);
 // People come out nearest first whatever their order in the text. `state` rules; where only
 // `presence` is given, true means person and false absent.
-std::variant<Observation, WireError> read_observation(std::string_view text);
+std::variant<Observation, WireError> read_observation(std::string_view text,
+                                                      size_t* values = nullptr);
 // What a server says to an eye; needs that are left out are there.
 std::variant<EyeOrder, WireError> read_eye_order(std::string_view text);
 
@@ -44,11 +49,17 @@ std::string write_message(const BrowserMessage& message);
 // {type: {field: what it means}} of all of them, for GET /api/v1/.
 nlohmann::json describe_browser_messages();
 
-// Parses with a depth limit: nlohmann's own parser takes any depth, but copying or dumping what it
-// made of 100,000 brackets overflows the stack. Stops at the first bracket too many (depth of
-// `[[1]]` is 2). Returns a WireError (bad_json, too_deep; bad_field for a number no double can
-// hold) naming the place.
+// How much of a text is made into values.
+struct JsonLimits {
+  int depth = max_message_depth;  // of `[[1]]` it is 2
+  size_t values = SIZE_MAX;       // containers too
+};
+// Parses within limits: nlohmann's own parser takes any depth, but copying or dumping what it made
+// of 100,000 brackets overflows the stack, and 20,000 empty arrays take milliseconds. Stops at the
+// first value too many. Returns a WireError (bad_json, too_deep, too_large; bad_field for a number
+// no double can hold) naming the place. `values`: how many were read.
 std::variant<nlohmann::json, WireError> parse_json(std::string_view text,
-                                                   int max_depth = max_message_depth);
+                                                   const JsonLimits& limits = {},
+                                                   size_t* values = nullptr);
 
 }  // namespace wellspring

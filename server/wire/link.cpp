@@ -5,32 +5,32 @@
 
 namespace wellspring {
 
-std::vector<std::string> Link::take_texts() {
+std::vector<Heard> Link::take_heard() {
   std::lock_guard lock(mutex_);
-  std::vector<std::string> texts(std::make_move_iterator(in_.begin()),
-                                 std::make_move_iterator(in_.end()));
+  std::vector<Heard> heard(std::make_move_iterator(in_.begin()),
+                           std::make_move_iterator(in_.end()));
   in_.clear();
   bytes_in_ = 0;
-  return texts;
+  return heard;
 }
 
-std::optional<std::string> Link::first_text() const {
+std::optional<Heard> Link::first_heard() const {
   std::lock_guard lock(mutex_);
   if (in_.empty()) return {};
   return in_.front();
 }
 
-void Link::drop_first_text() {
+void Link::drop_first_heard() {
   std::lock_guard lock(mutex_);
   if (in_.empty()) return;
-  bytes_in_ -= in_.front().size();
+  bytes_in_ -= in_.front().text.size();
   in_.pop_front();
 }
 
-void Link::put_back(std::string text) {
+void Link::put_back(Heard heard) {
   std::lock_guard lock(mutex_);
-  bytes_in_ += text.size();
-  in_.push_front(std::move(text));
+  bytes_in_ += heard.text.size();
+  in_.push_front(std::move(heard));
 }
 
 void Link::send_text(std::string text) {
@@ -122,15 +122,19 @@ bool Link::take_out(Out& out) {
   return false;
 }
 
-void Link::push_text_in(std::string text) {
+size_t Link::push_text_in(std::string text) {
+  Heard heard =
+      kind == LinkKind::eye ? hear_camera(std::move(text)) : hear_visitor(std::move(text));
+  const size_t values = heard.values;
   std::lock_guard lock(mutex_);
-  bytes_in_ += text.size();
-  in_.push_back(std::move(text));
+  bytes_in_ += heard.text.size();
+  in_.push_back(std::move(heard));
   while (in_.size() > max_texts_in || (bytes_in_ > max_bytes_in && in_.size() > 1)) {
-    bytes_in_ -= in_.front().size();
+    bytes_in_ -= in_.front().text.size();
     in_.pop_front();
     texts_dropped_++;
   }
+  return values;
 }
 
 void Link::push_delivery(const Delivery& delivery) {

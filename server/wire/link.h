@@ -17,6 +17,7 @@
 
 #include "base/latest.h"
 #include "wire/delivery.h"
+#include "wire/heard.h"
 #include "wire/packet.h"
 
 namespace wellspring {
@@ -39,14 +40,15 @@ class Link {
   const LinkKind kind;
   const std::string peer;  // address, for the log
   // Set before the show gets the link, and never changed after.
-  bool local = false;  // HttpQuestion::local
-  std::string kiosk;   // an eye whose token is for the kiosk of that name alone; empty: any
+  bool local = false;   // HttpQuestion::local
+  std::string address;  // with whom it shares seats; empty: with nobody, as it is trusted
+  std::string kiosk;    // an eye whose token is for the kiosk of that name alone; empty: any
 
   // ---- called by the show ----
-  std::vector<std::string> take_texts();          // all that arrived since the last call, in order
-  std::optional<std::string> first_text() const;  // of those, left there; empty: there is none
-  void drop_first_text();
-  void put_back(std::string text);                   // as the first of those
+  std::vector<Heard> take_heard();           // all that arrived since the last call, in order
+  std::optional<Heard> first_heard() const;  // of those, left there; empty: there is none
+  void drop_first_heard();
+  void put_back(Heard heard);                        // as the first of those
   void send_text(std::string text);                  // small JSON
   void send_picture(std::shared_ptr<const Packet>);  // replaces an unsent one
   // Kept in order with texts. False: the peer is too slow, all unsent sound is gone with this one.
@@ -66,8 +68,9 @@ class Link {
     std::string text;
     std::shared_ptr<const Packet> packet;
   };
-  bool take_out(Out& out);         // texts and sounds before pictures; false: nothing to send
-  void push_text_in(std::string);  // a message arrived
+  bool take_out(Out& out);  // texts and sounds before pictures; false: nothing to send
+  // A message arrived: it is read at once, by who calls. How many values it had.
+  size_t push_text_in(std::string);
   void push_delivery(const Delivery& delivery);
   void set_wake(
       std::function<void()> wake);  // called (from any thread) after something became sendable
@@ -83,7 +86,7 @@ class Link {
   void drop_unsent_sound();  // with the lock held
   void wake();
   mutable std::mutex mutex_;
-  std::deque<std::string> in_;
+  std::deque<Heard> in_;
   size_t bytes_in_ = 0;
   std::vector<Delivery> deliveries_;  // a few: the oldest are dropped
   std::deque<Out> out_;

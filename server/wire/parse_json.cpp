@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text to a tree of values, stopping at the first bracket beyond the depth limit.
+// Text to a tree of values, stopping at the first value beyond the limits.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -15,9 +15,10 @@ namespace {
 // costs no stack while parsing.
 class TreeBuilder {
  public:
-  TreeBuilder(std::string_view text, int max_depth) : text_(text), max_depth_(max_depth) {}
+  TreeBuilder(std::string_view text, const JsonLimits& limits) : text_(text), limits_(limits) {}
   json root;
   WireError error;
+  size_t values = 0;
 
   bool null() { return add(nullptr); }
   bool boolean(bool value) { return add(value); }
@@ -63,12 +64,19 @@ class TreeBuilder {
   }
   bool add(json&& value) {
     json* place = nullptr;
-    return add(std::move(value), place) != nullptr;
+    return count() && add(std::move(value), place) != nullptr;
+  }
+  bool count() {
+    if (values >= limits_.values)
+      return fail("too_large", "more than " + std::to_string(limits_.values) + " values");
+    values++;
+    return true;
   }
   // Addresses stay valid while open: a container only grows after what it holds was shut.
   bool open(json&& value) {
-    if (int(open_.size()) >= max_depth_)
-      return fail("too_deep", "nested deeper than " + std::to_string(max_depth_));
+    if (int(open_.size()) >= limits_.depth)
+      return fail("too_deep", "nested deeper than " + std::to_string(limits_.depth));
+    if (!count()) return false;
     json* place = nullptr;
     open_.push_back(add(std::move(value), place));
     return true;
@@ -83,16 +91,19 @@ class TreeBuilder {
   }
 
   std::string_view text_;
-  int max_depth_;
+  const JsonLimits limits_;
   std::string key_;
   std::vector<json*> open_;
 };
 
 }  // namespace
 
-std::variant<json, WireError> parse_json(std::string_view text, int max_depth) {
-  TreeBuilder builder(text, max_depth);
-  if (!json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.error);
+std::variant<json, WireError> parse_json(std::string_view text, const JsonLimits& limits,
+                                         size_t* values) {
+  TreeBuilder builder(text, limits);
+  const bool good = json::sax_parse(text.begin(), text.end(), &builder);
+  if (values) *values = builder.values;
+  if (!good) return std::move(builder.error);
   return std::move(builder.root);
 }
 

@@ -125,10 +125,12 @@ bool read_one_of(const std::string& type, Fields& fields, std::variant<Messages.
 
 }  // namespace
 
-std::variant<BrowserMessage, WireError> read_browser_message(std::string_view text) {
-  auto opened = open_envelope(text);
+std::variant<BrowserMessage, WireError> read_browser_message(std::string_view text,
+                                                             size_t* values) {
+  auto opened = open_envelope(text, {max_hello_bytes, max_order_values}, values);
   if (auto* error = std::get_if<WireError>(&opened)) return std::move(*error);
   const auto& [object, type] = std::get<Envelope>(opened);
+  if (type != Hello::type && text.size() > max_order_bytes) return too_large(max_order_bytes);
   std::optional<WireError> error;
   Fields fields(object, type + ".", error);
   BrowserMessage message;
@@ -177,8 +179,8 @@ static CalibrationStep read_calibration(const json& object, std::optional<WireEr
   return calibration;
 }
 
-std::variant<Observation, WireError> read_observation(std::string_view text) {
-  auto opened = open_envelope(text);
+std::variant<Observation, WireError> read_observation(std::string_view text, size_t* values) {
+  auto opened = open_envelope(text, {}, values);
   if (auto* error = std::get_if<WireError>(&opened)) return std::move(*error);
   const auto& [object, type] = std::get<Envelope>(opened);
   if (type != "observation") return WireError{"unknown_type", "unknown type " + short_quote(type)};

@@ -14,8 +14,9 @@ void fuzz_still_question(Bytes bytes) {
   const StillQuestion still = read_still_question(exhibit, question.query);
   require(still.status == 200 || !still.problem.empty(), "a refusal says why");
   if (still.status != 200) return;
-  require(still.job.width > 0 && still.job.height > 0 && still.job.spp > 0 &&
-              still.job.viewpoint >= 0 && size_t(still.job.viewpoint) < exhibit.viewpoints.size(),
+  require(still.job.width > 0 && still.job.height > 0 && still.job.spp >= 0 &&
+              still.job.seconds > 0 && still.job.viewpoint >= 0 &&
+              size_t(still.job.viewpoint) < exhibit.viewpoints.size(),
           "an order can be drawn");
 }
 

@@ -167,6 +167,22 @@ test('empty fragments and senseless messages are a flood', async () => {
   } while (performance.now() < began + soak * 1000);
 });
 
+// Each says less than one peer may; together it is more than an address may say.
+test('large texts are not read, and too many of them from one address are a flood', async () => {
+  const floods = await metric('floods_closed_total');
+  const arrays = `{"type":"input","seq":1,"x":[${'[],'.repeat(20999)}[]]}`;
+  assert.ok(arrays.length < 64 * 1024);
+  const wordy = many(12, () => new Visitor(server, { options: { localAddress: '127.0.6.1' } }));
+  const told = wordy[0].message('error', ({ code }) => code === 'too_large');
+  for (const one of wordy) await one.hello({ width: 16, height: 16 });
+  for (const one of wordy)
+    for (let i = 0; i < 25; i++) one.send(arrays);
+  await told;
+  await until(async () => await metric('floods_closed_total') > floods, 'some are closed');
+  await others_go_on();
+  for (const one of wordy) one.socket.terminate();
+});
+
 test('visitors who stop reading hold up nobody', async () => {
   const lazy = many(8, (i) =>
     new Visitor(server, { acknowledge: false, options: { localAddress: `127.0.3.${i}` } }));

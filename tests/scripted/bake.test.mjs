@@ -110,7 +110,8 @@ test('servers bake while nobody needs the cores, nor waits for a still picture',
   };
   await until(async () => await read('bake_working') === 1);
   const gone = new AbortController();
-  const still = fetch(`${server.url}/api/v1/exhibits/room/still.jpg?width=1920&height=1080&spp=32`,
+  const still = fetch(`${server.url}/api/v1/exhibits/room/still.jpg?` +
+      'width=1920&height=1080&spp=32&seconds=3600',
       { signal: gone.signal }).catch(() => 'given up');
   await until(async () => await read('bake_working') === 0);
   assert.equal(await read('stills_waiting'), 1);

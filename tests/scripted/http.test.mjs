@@ -69,13 +69,22 @@ test('a still picture, and its wrong parameters', async () => {
   const comment = (jpeg) => jpeg.subarray(6, 4 + jpeg.readUInt16BE(4)).toString();
   assert.equal(bytes.readUInt16BE(2), 0xfffe, 'a comment comes first');
   assert.match(comment(bytes),
-      /^4 samples a pixel by path, (denoised by the network base|not denoised)$/);
+      /^4 samples a pixel by gather, (denoised by the network base|not denoised: .*)$/);
   const plain = Buffer.from(await (await get(
       `${path}?viewpoint=hall&width=96&height=64&spp=4&denoise=0`)).arrayBuffer());
-  assert.match(comment(plain), /^4 samples a pixel by path, not denoised$/);
+  assert.match(comment(plain), /^4 samples a pixel by gather, not denoised$/);
   assert.equal(plain.subarray(50).equals(bytes.subarray(50)), !comment(bytes).includes('network'));
+  // The example of README.md: however slow the machine is, it comes, and says what it has.
+  const example = await get(`${path}?viewpoint=hall&width=1280&height=720&spp=16`);
+  assert.equal(example.status, 200);
+  const samples = Number(example.headers.get('still-samples'));
+  assert.ok(samples >= 1 && samples <= 16, `${samples}`);
+  assert.match(example.headers.get('still-denoised'),
+      /^(yes|no; the network's weights are missing)$/);
+  const has = comment(Buffer.from(await example.arrayBuffer()));
+  assert.match(has, new RegExp(`^${samples} samples a pixel by gather, `));
   for (const query of ['width=0', 'width=99999', 'height=-4', 'spp=zero', 'spp=1e9', 'denoise=2',
-      'width=3840&height=3840&spp=1024'])
+      'seconds=0', 'seconds=long'])
     assert.equal((await get(`${path}?${query}`)).status, 400, query);
   assert.equal((await get(`${path}?viewpoint=moon`)).status, 404);
 });

@@ -46,7 +46,7 @@ const still = (server, query, options) =>
     fetch(`${server.url}/api/v1/exhibits/first-room/still.jpg?${query}`, options);
 // A minute and more each, and on no machine more than it may take.
 const spp = Math.ceil(64 / patience);
-const dear = (i) => `width=1920&height=1080&spp=${spp}&denoise=0&yaw=${i / 10}`;
+const dear = (i) => `width=1920&height=1080&spp=${spp}&seconds=3600&denoise=0&yaw=${i / 10}`;
 
 test('dear pictures are given up when nobody waits, and when the server ends', async () => {
   const server = await start_server([...usual, '--still-seconds', '3600']);

@@ -36,10 +36,9 @@ bool is_kiosk_full(const Show& show, const Eye& eye, const std::string& kiosk) {
 }
 
 // What is wrong with it.
-std::optional<WireError> read_text(Show& show, Eye& eye, const std::string& text) {
-  auto observation = read_observation(text);
-  if (const WireError* bad = std::get_if<WireError>(&observation)) return *bad;
-  Observation& seen = std::get<Observation>(observation);
+std::optional<WireError> take_in(Show& show, Eye& eye, Heard& heard) {
+  if (const WireError* bad = std::get_if<WireError>(&heard.said)) return *bad;
+  Observation& seen = std::get<Observation>(heard.said);
   if (auto wrong = check_camera(*eye.link, seen)) return wrong;
   const bool moves = eye.observations == 0 || seen.kiosk != eye.seen.kiosk;
   if (moves && is_kiosk_full(show, eye, seen.kiosk)) {
@@ -57,8 +56,8 @@ std::optional<WireError> read_text(Show& show, Eye& eye, const std::string& text
 }
 
 void read_texts(Show& show, Eye& eye) {
-  for (const std::string& text : eye.link->take_texts()) {
-    const auto wrong = read_text(show, eye, text);
+  for (Heard& heard : eye.link->take_heard()) {
+    const auto wrong = take_in(show, eye, heard);
     if (!wrong) continue;
     eye.refused++;
     show.totals.refused_messages++;

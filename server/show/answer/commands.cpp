@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/answer/commands.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +19,7 @@
 #include "show/state/animations.h"
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
+#include "wire/json.h"
 
 namespace wellspring {
 
@@ -41,9 +44,17 @@ void set_size(PictureWishes& wants, const ShowSettings& settings, int width, int
   wants.height = std::max(16, height / 8 * 8);
 }
 
-void set_size(Visitor& visitor, const ShowSettings& settings, int width, int height) {
-  set_size(visitor.wants, settings, width, height);
-  if (visitor.seat) visitor.seat->resize(double(visitor.wants.width) * visitor.wants.height);
+// What is larger needs room, as a newcomer does.
+Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int height) {
+  PictureWishes& wants = visitor.wants;
+  PictureWishes sized = wants;
+  set_size(sized, settings, width, height);
+  if (visitor.seat && !visitor.seat->resize(double(sized.width) * sized.height))
+    return WireError{"no_room", fmt::format("there is no room for larger pictures at the moment: "
+                                            "they stay {}x{}",
+                                            wants.width, wants.height)};
+  wants = sized;
+  return {};
 }
 
 int find_tour(const Exhibit& exhibit, const std::string& id) {
@@ -57,11 +68,13 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
     return WireError{"unknown_exhibit", "there is no exhibit '" + hello.exhibit +
                                             "' here; this is '" + show.exhibit.id + "'"};
   std::string kiosk;
-  if (Answer wrong = check_page(show, *visitor.link, hello, kiosk)) return wrong;
+  if (Answer wrong = check_page(show.settings.kiosk_tokens, *visitor.link, hello, kiosk))
+    return wrong;
   visitor.lang = hello.lang.empty() ? show.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = kiosk;
-  set_size(visitor, show.settings, hello.width, hello.height);
+  if (Answer wrong = set_size(visitor, show.settings, hello.width, hello.height))
+    visitor.link->send_text(write_error(*wrong));
   visitor.wants.parts = hello.parts.value_or(false);
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
@@ -216,14 +229,15 @@ Answer handle_one(Show& show, Visitor& visitor, const Settings& settings) {
     wants.attention = !on || *on;
     if (!on) wants.task_weight = std::get<float>(*settings.attention);
   }
+  Answer wrong;
   if (settings.width || settings.height)
-    set_size(visitor, show.settings, settings.width.value_or(wants.width),
-             settings.height.value_or(wants.height));
+    wrong = set_size(visitor, show.settings, settings.width.value_or(wants.width),
+                     settings.height.value_or(wants.height));
   if (!settings.lang.empty() && settings.lang != visitor.lang) {
     visitor.lang = settings.lang;
     visitor.link->send_text(welcome_message(show, visitor));
   }
-  return {};
+  return wrong;
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const Ack& ack) {

@@ -43,7 +43,7 @@ void send_to_rest(Show& show, std::list<Visitor>::iterator visitor) {
   hello.resume = visit_token(show, *visitor);
   visitor->link->drop_sound();
   visitor->link->send_text(idle_message("paused", 0));
-  visitor->link->put_back(write_message(hello));
+  visitor->link->put_back(hear_visitor(write_message(hello)));
   show.resting.push_back(visitor->link);
   count_leaving(show, *visitor);
   show.visitors.erase(visitor);

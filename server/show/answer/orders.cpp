@@ -132,13 +132,12 @@ std::span<const OrderBound> order_bounds() { return bounds; }
 void follow_orders(Show& show, Visitor& visitor) {
   if (visitor.left) return;  // its picture may be drawn yet, and what it says counts no more
   VisitorOrders& orders = visitor.orders;
-  for (const std::string& text : visitor.link->take_texts()) {
+  for (Heard& heard : visitor.link->take_heard()) {
     show.totals.messages++;
-    auto message = read_browser_message(text);
-    if (const WireError* wrong = std::get_if<WireError>(&message)) refuse(show, visitor, *wrong);
-    else
-      show.totals.orders_left_out +=
-          put(std::move(std::get<BrowserMessage>(message)), orders.waiting);
+    if (auto* message = std::get_if<BrowserMessage>(&heard.said))
+      show.totals.orders_left_out += put(std::move(*message), orders.waiting);
+    else if (const WireError* wrong = std::get_if<WireError>(&heard.said))
+      refuse(show, visitor, *wrong);
   }
   for (WaitingOrder& order : std::exchange(orders.waiting, {})) {
     if (is_due(show, orders, order.message)) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/answer/trust.h"
 
-#include "wire/tokens.h"
-
 namespace wellspring {
 
 namespace {
@@ -18,11 +16,11 @@ std::optional<WireError> check_name(const std::string& own, std::string& kiosk) 
 
 }  // namespace
 
-std::optional<WireError> check_page(const Show& show, const Link& link, const Hello& hello,
-                                    std::string& kiosk) {
+std::optional<WireError> check_page(const std::vector<Token>& kiosk_tokens, const Link& link,
+                                    const Hello& hello, std::string& kiosk) {
   kiosk = hello.kiosk;
   if (hello.role != "kiosk") return {};
-  const Token* token = find_token(show.settings.kiosk_tokens, hello.token);
+  const Token* token = find_token(kiosk_tokens, hello.token);
   if (token) return check_name(token->name, kiosk);
   if (link.local) return {};
   return WireError{

@@ -4,16 +4,18 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "show/state/show.h"
 #include "wire/json.h"
+#include "wire/link.h"
+#include "wire/tokens.h"
 
 namespace wellspring {
 
 // Of a `hello` with the role kiosk; any other needs no trust. `kiosk`: becomes the name of the
 // kiosk that it speaks for. Else `not_trusted`, and what to do.
-std::optional<WireError> check_page(const Show& show, const Link& link, const Hello& hello,
-                                    std::string& kiosk);
+std::optional<WireError> check_page(const std::vector<Token>& kiosk_tokens, const Link& link,
+                                    const Hello& hello, std::string& kiosk);
 // Of a camera, which was let in. One whose token names its kiosk need not name it.
 std::optional<WireError> check_camera(const Link& link, Observation& seen);
 

@@ -106,8 +106,14 @@ HttpReply still_reply(StillOutcome outcome) {
   if (outcome.status == 200) {
     reply.content_type = "image/jpeg";
     reply.headers["Cache-Control"] = "public, max-age=60";
-    reply.headers["ETag"] = make_etag(outcome.jpeg);
-    reply.body = std::move(outcome.jpeg);
+    const StillPicture& made = outcome.picture;
+    reply.headers["ETag"] = make_etag(made.jpeg);
+    constexpr const char* denoised[] = {"yes", "no", "no; the network's weights are missing"};
+    if (made.spp > 0) {
+      reply.headers["Still-Samples"] = std::to_string(made.spp);
+      reply.headers["Still-Denoised"] = denoised[size_t(made.denoised)];
+    }
+    reply.body = std::move(outcome.picture.jpeg);
   } else {
     reply = error_reply(outcome.status, outcome.code, outcome.problem);
     if (outcome.retry_seconds > 0)

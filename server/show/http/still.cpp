@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <oneapi/tbb/task_arena.h>
 
-#include "base/clock.h"
 #include "denoise/denoise.h"
 #include "frame/jpeg.h"
 #include "frame/tonemap.h"
@@ -23,11 +22,12 @@ struct GivenUp {};
 
 }  // namespace
 
-StillRoom::StillRoom(const Show& show)
+StillRoom::StillRoom(const Show& show, std::function<double()> clock)
     : exhibit_(show.exhibit),
-      technique_(show.still_technique),
+      technique_(show.lights.grid ? show.technique : show.still_technique),
       transport_(show.settings.transport),
-      weights_(show.settings.weights) {
+      weights_(show.settings.weights),
+      clock_(std::move(clock)) {
   // The moving meshes as they are now: at the show's start.
   std::vector<Mesh> moving;
   std::vector<uint32_t> moving_object;
@@ -49,12 +49,45 @@ StillRoom::StillRoom(const Show& show)
       moving_lights.back().intensity *= brightness_of(levels[size_t(light.lamp)]);
   }
   lights_ = make_lights(*world_, moving_lights);
-  transport_.clamp = 0;
+  lights_.grid = show.lights.grid;
+  if (!lights_.grid) transport_.clamp = 0;  // it is the reference
+}
+
+// One sample a pixel, and as many more as there is time for by what that took.
+std::optional<Frame> StillRoom::trace(const View& view, const StillJob& order, double seconds,
+                                      const std::function<bool()>& given_up,
+                                      StillCosts& costs) const {
+  StillSettings settings;
+  settings.spp = 1;
+  settings.transport = transport_;
+  settings.progress = [&](double) {
+    if (given_up && given_up()) throw GivenUp{};
+  };
+  const double began = clock_();
+  Frame frame;
+  try {
+    frame = render_still(*technique_, *world_, lights_, view, settings);
+    const double each = clock_() - began;
+    const int most = order.spp > 0 ? order.spp : max_still_spp;
+    const double fit = each > 0 ? (seconds - each) / each : most;
+    const int more = int(std::clamp(fit, 0.0, double(most - 1)));
+    if (more > 0) {
+      settings.spp = more;
+      settings.seed++;
+      const Frame others = render_still(*technique_, *world_, lights_, view, settings);
+      for (size_t i = 0; i < frame.color.size(); i++)
+        frame.color[i] = (frame.color[i] + float(more) * others.color[i]) / float(1 + more);
+    }
+    costs.spp = 1 + more;
+  } catch (const GivenUp&) {}
+  costs.trace_seconds = clock_() - began;
+  if (costs.spp == 0) return {};
+  return frame;
 }
 
 std::optional<Frame> StillRoom::render(const StillJob& order, const std::function<bool()>& given_up,
-                                       StillCosts& costs, std::string& comment) const {
-  const auto ends = [&] { return given_up && given_up(); };
+                                       double denoise_seconds, StillCosts& costs,
+                                       StillPicture& picture) const {
   Viewpoint at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
   at.position = order.position.value_or(at.position);
   at.yaw = order.yaw.value_or(at.yaw);
@@ -62,78 +95,83 @@ std::optional<Frame> StillRoom::render(const StillJob& order, const std::functio
   at.roll = order.roll.value_or(at.roll);
   at.fov = order.fov.value_or(at.fov);
   View view = make_view(exhibit_.scene, at, order.width, order.height);
-  StillSettings settings;
-  settings.spp = order.spp;
-  settings.transport = transport_;
-  settings.progress = [&](double) {
-    if (ends()) throw GivenUp{};
-  };
-  const double began = thread_seconds_now();
-  Frame frame;
-  try {
-    frame = render_still(*technique_, *world_, lights_, view, settings);
-  } catch (const GivenUp&) {}
-  costs.trace_seconds = thread_seconds_now() - began;
-  if (frame.color.empty()) return {};
+  auto frame = trace(view, order, order.seconds - denoise_seconds, given_up, costs);
+  if (!frame) return {};
+  picture.spp = costs.spp;
+  if (!order.denoise) return frame;
+  const double began = clock_();
   std::string problem;
-  auto denoiser = order.denoise ? load_denoiser(still_net, problem, weights_) : nullptr;
-  if (denoiser) {
-    GuidePlanes guides = make_guides(*world_, lights_, view);
-    denoiser->start({view.width, view.height, frame.color, guides.albedo, guides.normal});
-    while (denoiser->advance(slice))
-      if (ends()) return {};
-    denoiser->finish(frame.color);
-    costs.denoise_seconds = thread_seconds_now() - began - costs.trace_seconds;
+  auto denoiser = denoises() ? load_denoiser(still_net, problem, weights_) : nullptr;
+  if (!denoiser) {
+    picture.denoised = StillPicture::Denoised::no_weights;
+    return frame;
   }
-  comment = std::to_string(order.spp) + " samples a pixel by " + technique_->name +
-            (denoiser ? std::string(", denoised by the network ") + net_name(still_net)
-                      : ", not denoised");
+  GuidePlanes guides = make_guides(*world_, lights_, view);
+  denoiser->start({view.width, view.height, frame->color, guides.albedo, guides.normal});
+  while (denoiser->advance(slice))
+    if (given_up && given_up()) return {};
+  denoiser->finish(frame->color);
+  costs.denoise_seconds = clock_() - began;
+  picture.denoised = StillPicture::Denoised::yes;
   return frame;
+}
+
+std::string StillRoom::comment(const StillPicture& picture) const {
+  const std::string samples =
+      std::to_string(picture.spp) + " samples a pixel by " + technique_->name;
+  switch (picture.denoised) {
+    case StillPicture::Denoised::yes:
+      return samples + ", denoised by the network " + net_name(still_net);
+    case StillPicture::Denoised::no_weights:
+      return samples + ", not denoised: the network's weights are missing";
+    default: return samples + ", not denoised";
+  }
 }
 
 StillCosts StillRoom::measure(const StillJob& order) {
   StillCosts costs;
-  std::string comment;
+  StillPicture picture;
   oneapi::tbb::task_arena arena(1, 1, oneapi::tbb::task_arena::priority::low);
   arena.execute([&] {
-    render(order, {}, costs, comment);  // what it needs is at hand then
-    render(order, {}, costs, comment);
+    render(order, {}, 0, costs, picture);  // what it needs is at hand then
+    render(order, {}, 0, costs, picture);
   });
   return costs;
 }
 
-std::optional<std::string> StillRoom::find(const StillJob& order) {
+std::optional<StillPicture> StillRoom::find(const StillJob& order) {
   std::lock_guard lock(mutex_);
   auto found = std::ranges::find(kept_, order, &Kept::order);
   if (found == kept_.end()) return {};
   kept_.splice(kept_.begin(), kept_, found);
-  return kept_.front().jpeg;
+  return kept_.front().picture;
 }
 
-std::string StillRoom::make(const StillJob& order, const std::function<bool()>& given_up, int cores,
-                            StillCosts* costs) {
+StillPicture StillRoom::make(const StillJob& order, const std::function<bool()>& given_up,
+                             int cores, double denoise_seconds, StillCosts* costs) {
   if (auto kept = find(order)) return *kept;
   std::vector<uint8_t> bytes;
   StillCosts spent;
   oneapi::tbb::task_arena arena(cores, 1, oneapi::tbb::task_arena::priority::low);
+  StillPicture picture;
   arena.execute([&] {
-    std::string comment;
-    const std::optional<Frame> frame = render(order, given_up, spent, comment);
+    const std::optional<Frame> frame = render(order, given_up, denoise_seconds, spent, picture);
     if (!frame) return;
     Image8 image;
     tonemap(*frame, Tonemap{exhibit_.exposure}, image);
     encode_jpeg(image, still_jpeg_quality, true, bytes);
-    add_jpeg_comment(comment, bytes);
+    add_jpeg_comment(comment(picture), bytes);
   });
   if (costs) *costs = spent;
   if (bytes.empty()) return {};
+  picture.jpeg.assign(bytes.begin(), bytes.end());
   std::lock_guard lock(mutex_);
-  kept_.push_front({order, std::string(bytes.begin(), bytes.end())});
+  kept_.push_front({order, std::move(picture)});
   size_t kept_bytes = 0;
-  for (const Kept& kept : kept_) kept_bytes += kept.jpeg.size();
+  for (const Kept& kept : kept_) kept_bytes += kept.picture.jpeg.size();
   for (; kept_.size() > 1 && kept_bytes > most_kept_bytes; kept_.pop_back())
-    kept_bytes -= kept_.back().jpeg.size();
-  return kept_.front().jpeg;
+    kept_bytes -= kept_.back().picture.jpeg.size();
+  return kept_.front().picture;
 }
 
 }  // namespace wellspring

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finished pictures on request (still.jpg): their own copy of the world, so that a running show is
-// never waited for; the last few are remembered. Who may ask for how much is the desk's
+// Finished pictures on request (still.jpg), in a given time: as many samples as fit, at least one a
+// pixel, by the light that the show knows. They have their own copy of the world, so that a running
+// show is never waited for; the last few are remembered. Who may ask for how much is the desk's
 // (show/http/still_desk.h). Thread-safe; may take minutes.
 #pragma once
 #include <functional>
@@ -9,13 +10,16 @@
 #include <optional>
 #include <string>
 
+#include "base/clock.h"
 #include "show/state/show.h"
 
 namespace wellspring {
 
 struct StillJob {
-  int viewpoint = 0, width = 640, height = 360, spp = 16;
-  bool denoise = true;  // where there are weights, else nothing is done
+  int viewpoint = 0, width = 640, height = 360;
+  double seconds = 8;   // of the thread that makes it, unless one sample a pixel takes longer
+  int spp = 0;          // samples a pixel at most; 0: as many as fit
+  bool denoise = true;  // where there are weights
   // In place of the viewpoint's own; metres, radians.
   std::optional<dvec3> position;
   std::optional<float> yaw, pitch, roll, fov;
@@ -23,9 +27,19 @@ struct StillJob {
   double pixels() const { return double(width) * height; }
 };
 
+inline constexpr int max_still_spp = 1024;
+
+// One that was made.
+struct StillPicture {
+  std::string jpeg;
+  int spp = 0;  // samples a pixel that it has
+  enum class Denoised : uint8_t { yes, not_asked, no_weights } denoised = Denoised::not_asked;
+};
+
 // What pictures take: seconds of the thread that makes them, so that others' work does not count.
 struct StillCosts {
   double trace_seconds = 0, denoise_seconds = 0;  // the latter without samples: guides, network
+  int spp = 0;                                    // samples a pixel in the former
 };
 
 class StillRoom {
@@ -33,29 +47,35 @@ class StillRoom {
   // Borrows `show`'s exhibit for its lifetime (not its world, which moves). The storyteller who is
   // there stands in its first pose, and lamps are as at first. Bounds of an order: see
   // still_question.cpp.
-  explicit StillRoom(const Show& show);
-  // JPEG bytes, whose comment says whether it was denoised, on at most `cores`. Empty: given up, as
-  // `given_up` (any thread, every few milliseconds) said so.
-  std::string make(const StillJob& order, const std::function<bool()>& given_up = {}, int cores = 1,
-                   StillCosts* costs = nullptr);
+  // `clock`: seconds that its time is taken by.
+  explicit StillRoom(const Show& show, std::function<double()> clock = thread_seconds_now);
+  // A JPEG, whose comment says what it has, on at most `cores`. Empty: given up, as `given_up` (any
+  // thread, every few milliseconds) said so. `denoise_seconds`: of its time that are kept for that.
+  StillPicture make(const StillJob& order, const std::function<bool()>& given_up = {},
+                    int cores = 1, double denoise_seconds = 0, StillCosts* costs = nullptr);
   // Of a small picture that is made, and not remembered.
   StillCosts measure(const StillJob& order);
-  std::optional<std::string> find(const StillJob& order);  // among those that are remembered
+  std::optional<StillPicture> find(const StillJob& order);  // among those that are remembered
   bool denoises() const { return !weights_.empty(); }
 
  private:
   struct Kept {
     StillJob order;
-    std::string jpeg;
+    StillPicture picture;
   };
+  std::optional<Frame> trace(const View& view, const StillJob& order, double seconds,
+                             const std::function<bool()>& given_up, StillCosts& costs) const;
   std::optional<Frame> render(const StillJob& order, const std::function<bool()>& given_up,
-                              StillCosts& costs, std::string& comment) const;
+                              double denoise_seconds, StillCosts& costs,
+                              StillPicture& picture) const;
+  std::string comment(const StillPicture& picture) const;
   const Exhibit& exhibit_;
   const Technique* technique_;
   TransportSettings transport_;
   std::string weights_;
   std::unique_ptr<World> world_;
   Lights lights_;
+  const std::function<double()> clock_;
   std::mutex mutex_;      // of what follows
   std::list<Kept> kept_;  // newest first
 };

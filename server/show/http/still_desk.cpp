@@ -21,8 +21,6 @@ constexpr int low_priority = 10;         // of the threads: where cores are shor
 constexpr float newest_share = 0.3f;     // of the speed that is told by the last picture
 constexpr double unknown_network = 4e5;  // pixels a second, until it was measured
 
-double samples_of(const StillJob& job) { return job.pixels() * job.spp; }
-
 void smooth_speed(double& speed, double measured) {
   speed = speed > 0 ? speed + double(newest_share) * (measured - speed) : measured;
 }
@@ -32,7 +30,7 @@ StillOutcome refusal(int status, const char* code, std::string problem, double r
           .code = code,
           .problem = std::move(problem),
           .retry_seconds = retry,
-          .jpeg = {}};
+          .picture = {}};
 }
 
 StillOutcome stopped() { return refusal(503, "stopping", "the server stops", 5); }
@@ -76,7 +74,8 @@ StillDesk::Speed StillDesk::speed_of(StillRoom& room) {
   }
   StillJob job;
   job.width = 96, job.height = 54, job.spp = 2, job.denoise = false;
-  const double samples = samples_of(job) / std::max(room.measure(job).trace_seconds, 1e-4);
+  const StillCosts costs = room.measure(job);
+  const double samples = job.pixels() * costs.spp / std::max(costs.trace_seconds, 1e-4);
   std::lock_guard lock(mutex_);
   speeds_[&room] = {samples, room.denoises() ? unknown_network : 0};
   return speeds_[&room];
@@ -85,7 +84,7 @@ StillDesk::Speed StillDesk::speed_of(StillRoom& room) {
 void StillDesk::learn(const Ticket& ticket, const StillCosts& costs) {
   Speed& speed = speeds_[ticket.room];
   if (costs.trace_seconds > 0)
-    smooth_speed(speed.samples, samples_of(ticket.job) / costs.trace_seconds);
+    smooth_speed(speed.samples, ticket.job.pixels() * costs.spp / costs.trace_seconds);
   if (costs.denoise_seconds > 0)
     smooth_speed(speed.denoised, ticket.job.pixels() / costs.denoise_seconds);
   status_.samples_per_second = speed.samples;
@@ -106,19 +105,15 @@ RateBound& StillDesk::bound_of(const std::string& address) {
   return bound;
 }
 
-StillOutcome StillDesk::judge(const StillJob& job, double cost, const Speed& speed,
-                              RateBound& own) {
-  if (cost > limits_.most_seconds) {
+// `least`: what it would cost with one sample a pixel.
+StillOutcome StillDesk::judge(double cost, double least, double pixels, RateBound& own) {
+  if (least > limits_.most_seconds) {
     status_.too_dear++;
-    const double left = limits_.most_seconds * (cost > 0 ? samples_of(job) / cost : 0);
-    const int spp = int(left / job.pixels());
-    const std::string fits = spp >= 1 ? fmt::format("spp={} would fit", spp)
-                                      : fmt::format("{} pixels with one sample each would fit",
-                                                    int64_t(limits_.most_seconds * speed.samples));
-    return refusal(400, "too_much_work",
-                   fmt::format("it would take {:.0f} s of this machine, and {:.0f} s are given to "
-                               "one picture: {}",
-                               cost, limits_.most_seconds, fits));
+    return refusal(
+        400, "too_much_work",
+        fmt::format("one sample a pixel would take {:.0f} s of this machine, and {:.0f} s "
+                    "are given to one picture: {} pixels would fit",
+                    least, limits_.most_seconds, int64_t(pixels * limits_.most_seconds / least)));
   }
   if (waiting_.size() >= limits_.most_waiting) {
     status_.too_many++;
@@ -135,17 +130,21 @@ StillOutcome StillDesk::judge(const StillJob& job, double cost, const Speed& spe
                  fits ? all_.wait_for(cost) : own.wait_for(cost));
 }
 
-void StillDesk::ask(StillRoom& room, const StillJob& job, Asker asker) {
-  if (std::optional<std::string> found = room.find(job)) {
+void StillDesk::ask(StillRoom& room, const StillJob& wanted, Asker asker) {
+  StillJob job = wanted;
+  job.seconds = std::min(job.seconds, limits_.most_seconds);
+  if (std::optional<StillPicture> found = room.find(job)) {
     {
       std::lock_guard lock(mutex_);
       status_.shared++;
     }
-    return asker.take({.jpeg = std::move(*found)});
+    return asker.take({.picture = std::move(*found)});
   }
   const Speed speed = speed_of(room);
-  double cost = samples_of(job) / speed.samples;
-  if (job.denoise && speed.denoised > 0) cost += job.pixels() / speed.denoised;
+  const double one = job.pixels() / speed.samples;
+  const double denoise = job.denoise && speed.denoised > 0 ? job.pixels() / speed.denoised : 0;
+  const double wished = job.spp > 0 ? one * job.spp : limits_.most_seconds;
+  const double cost = denoise + std::max(one, std::min(wished, job.seconds - denoise));
   StillOutcome outcome;
   {
     std::lock_guard lock(mutex_);
@@ -156,11 +155,12 @@ void StillDesk::ask(StillRoom& room, const StillJob& job, Asker asker) {
           ticket.askers.push_back(std::move(asker));
           return;
         }
-    outcome = closed_ ? stopped() : judge(job, cost, speed, bound_of(asker.address));
+    outcome =
+        closed_ ? stopped() : judge(cost, one + denoise, job.pixels(), bound_of(asker.address));
     if (outcome.status == 200) {
       Ticket& ticket = waiting_.emplace_back();
       ticket.room = &room, ticket.job = job;
-      ticket.cost = cost, ticket.since = seconds_now();
+      ticket.cost = cost, ticket.denoise_seconds = denoise, ticket.since = seconds_now();
       ticket.askers.push_back(std::move(asker));
       for (double most : {limits_.most_seconds, limits_.cheap_seconds})
         if (threads_.size() < 2) threads_.emplace_back([this, most] { live(most); });
@@ -205,7 +205,8 @@ bool StillDesk::make_next(std::unique_lock<std::mutex>& lock, double most) {
   StillCosts costs;
   StillOutcome outcome;
   try {
-    outcome.jpeg = ticket.room->make(ticket.job, given_up, cores, &costs);
+    outcome.picture =
+        ticket.room->make(ticket.job, given_up, cores, ticket.denoise_seconds, &costs);
   } catch (const std::exception& error) {
     log::error("still picture: {}", error.what());
     outcome = refusal(500, "internal", "the picture could not be made");
@@ -214,7 +215,7 @@ bool StillDesk::make_next(std::unique_lock<std::mutex>& lock, double most) {
   const Ticket done = std::move(ticket);
   current_.erase(next);
   give_back(done, done.cost - costs.trace_seconds - costs.denoise_seconds);
-  if (outcome.status == 200 && outcome.jpeg.empty()) {
+  if (outcome.status == 200 && outcome.picture.jpeg.empty()) {
     if (!closed_ && !all_gone(done.askers)) {  // somebody has just come
       waiting_.push_back(done);
       return true;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where finished pictures are asked for. One is made at a time, and beside it a cheap one, at low
 // priority, and while visitors need the cores by one thread each; equal questions share one. What a
-// picture costs is known before it is begun, in seconds of this machine by the speed that earlier
-// ones had, and bounds who may ask for what:
+// picture costs is known before it is begun, in seconds of this machine: those that it is given, or
+// fewer or more by the speed that earlier ones had. They bound who may ask for what:
 //
-// - one that takes too long is refused, and told what would fit;
+// - one that takes too long with a single sample a pixel is refused, and told what would fit;
 // - each address, and all together, have so many seconds, which come back slowly;
 // - cheap ones come before dear ones, which gain a second's worth of patience each second;
 // - one that nobody waits for any more is given up, and what is left of its seconds given back.
@@ -39,7 +39,7 @@ struct StillOutcome {
   int status = 200;  // 400: too dear; 429: too many; 503: the server stops, or the queue is full
   std::string code, problem;
   double retry_seconds = 0;  // 0: not to be tried again
-  std::string jpeg;
+  StillPicture picture;
 };
 
 struct StillStatus {  // since the start, but for the first three: now
@@ -78,6 +78,7 @@ class StillDesk {
     StillRoom* room = nullptr;
     StillJob job;
     double cost = 0, since = 0;  // seconds of the machine; when it was asked for
+    double denoise_seconds = 0;  // of its cost
     std::vector<Asker> askers;
   };
   // Whose pictures a thread makes: of at most so many seconds.
@@ -86,7 +87,7 @@ class StillDesk {
   void drop_gone();
   Speed speed_of(StillRoom& room);  // without the lock
   void learn(const Ticket& ticket, const StillCosts& costs);
-  StillOutcome judge(const StillJob& job, double cost, const Speed& speed, RateBound& own);
+  StillOutcome judge(double cost, double least, double pixels, RateBound& own);
   RateBound& bound_of(const std::string& address);
   void give_back(const Ticket& ticket, double seconds);
 

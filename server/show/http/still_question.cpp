@@ -13,9 +13,7 @@ namespace wellspring {
 namespace {
 
 constexpr int max_still_side = 3840;
-constexpr int max_still_spp = 1024;
-constexpr double max_still_work =
-    1920.0 * 1080 * 256;  // pixels times samples: minutes at the worst
+constexpr double min_still_seconds = 0.1, max_still_seconds = 3600;
 constexpr double min_still_fov = 0.02, max_still_fov = 3;  // radians, vertical
 
 // Reads fields until one is wrong; that one it names.
@@ -87,6 +85,9 @@ StillQuestion read_still_question(const Exhibit& exhibit,
   fields.whole("width", 1, max_still_side, job.width);
   fields.whole("height", 1, max_still_side, job.height);
   fields.whole("spp", 1, max_still_spp, job.spp);
+  if (const auto read = fields.numbers("seconds", 1, min_still_seconds, max_still_seconds);
+      !read.empty())
+    job.seconds = read[0];
   int denoise = 1;
   fields.whole("denoise", 0, 1, denoise);
   job.denoise = denoise == 1;
@@ -97,8 +98,6 @@ StillQuestion read_still_question(const Exhibit& exhibit,
   fields.number("pitch", -max_angle, max_angle, job.pitch);
   fields.number("roll", -max_angle, max_angle, job.roll);
   fields.number("fov", min_still_fov, max_still_fov, job.fov);
-  if (asked.status == 200 && double(job.width) * job.height * job.spp > max_still_work)
-    fields.refuse(400, "too_much_work", "width * height * spp may be at most 1920 * 1080 * 256");
   return asked;
 }
 

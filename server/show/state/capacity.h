@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many visitors a machine serves at once, by what their pictures are found to cost. One for all
-// exhibits of a process: whoever is shown pictures has a Seat; newcomers for whom there is none
-// wait (museum/reception.h). All calls may come from any thread.
+// How many visitors a machine serves at once, by what their pictures are found to cost, and by the
+// memory that they take. One for all exhibits of a process: whoever is shown pictures has a Seat;
+// newcomers for whom there is none wait (museum/reception.h), and whoever wants larger pictures
+// asks anew. All calls may come from any thread.
+//
+// Seats are shared among addresses: who comes from one that has none may take a little more than
+// what is kept for all, so that no address keeps others out, however much it takes.
 #pragma once
+#include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 
 namespace wellspring {
 
 struct CapacitySettings {
-  double rate = 15;  // pictures a second that everybody is to have who walks
-  int most = 1000;   // visitors, whatever they cost
-  double cores = 0;  // of the machine; 0: those that this process may use
+  double rate = 15;   // pictures a second that everybody is to have who walks
+  int most = 1000;    // visitors, whatever they cost; an address gets seven eighths of these seats
+  double cores = 0;   // of the machine; 0: those that this process may use
+  double memory = 0;  // bytes for all visitors; 0: memory_share of what this process may use
 };
+inline constexpr double memory_share =
+    0.6;  // exhibits, sockets and what nobody counts have the rest
 
 // Core-seconds of processor time for each pixel of the visitor's picture: of one that is shown
 // (warped and encoded), and of a keyframe of that size. A machine that is busy with other programs
@@ -27,6 +36,8 @@ struct PictureCost {
 double cores_a_pixel(const PictureCost& cost, double rate);
 // What a picture costs besides its pixels, as more of these.
 double weighed_pixels(double pixels);
+// Bytes that a visitor takes, about: as picture_memory() finds it, and some.
+double visitor_bytes(double pixels);
 
 class Capacity;
 
@@ -36,14 +47,21 @@ class Seat {
   ~Seat();
   Seat(const Seat&) = delete;
   Seat& operator=(const Seat&) = delete;
-  void resize(double pixels);  // of the visitor's picture from now on
+  // The visitor's picture has so many pixels from now on; false: there is no room for more of them,
+  // and nothing has changed.
+  bool resize(double pixels);
 
  private:
   friend class Capacity;
-  Seat(std::shared_ptr<Capacity> capacity, double weight)
-      : capacity_(std::move(capacity)), weight_(weight) {}
+  Seat(std::shared_ptr<Capacity> capacity, double pixels, std::string address, bool always)
+      : capacity_(std::move(capacity)),
+        pixels_(pixels),
+        address_(std::move(address)),
+        always_(always) {}
   const std::shared_ptr<Capacity> capacity_;
-  double weight_;
+  double pixels_;
+  const std::string address_;
+  const bool always_;  // whether there is room or not
 };
 
 class Capacity : public std::enable_shared_from_this<Capacity> {
@@ -52,12 +70,15 @@ class Capacity : public std::enable_shared_from_this<Capacity> {
   // What a picture of so many pixels took, in core-seconds.
   void note_shown(double pixels, double seconds);
   void note_drawn(double pixels, double seconds);
-  // Null: there is none for so large a picture. The first visitor always gets one.
-  std::unique_ptr<Seat> find_seat(double pixels);
+  // Null: there is none for so large a picture. The first visitor always gets one. An empty address
+  // shares with nobody.
+  std::unique_ptr<Seat> find_seat(double pixels, const std::string& address = {});
   std::unique_ptr<Seat> give_seat(double pixels);  // whether there is one or not
+  int seats_of(const std::string& address) const;  // taken
   struct Standing {
-    int seats = 0;               // taken
-    double busy = 0, cores = 0;  // that they take if all of them walk; that there are for it
+    int seats = 0;                 // taken
+    double busy = 0, cores = 0;    // that they take if all of them walk; that there are for it
+    double bytes = 0, memory = 0;  // likewise
     PictureCost cost;
   };
   Standing standing() const;
@@ -72,14 +93,24 @@ class Capacity : public std::enable_shared_from_this<Capacity> {
     int count = 0;
     void note(double sample);
   };
-  void weigh(double more, int seats);
-  std::unique_ptr<Seat> seat(double pixels, bool always);
+  struct Part {  // what some visitors have together
+    int seats = 0;
+    double weight = 0, bytes = 0;
+    void add(double pixels, int count);
+  };
+  // All with the lock held.
+  double each() const;
+  bool fits(double pixels, const std::string& address) const;
+  bool may_grow(const Seat& seat, double pixels) const;
+  void add(double pixels, const std::string& address, int count);
+  double taken_cores(bool from_elsewhere) const;
+  std::unique_ptr<Seat> seat(double pixels, const std::string& address, bool always);
   const CapacitySettings settings_;
-  const double cores_;
+  const double cores_, memory_;
   mutable std::mutex mutex_;
   Measured shown_{PictureCost{}.shown}, drawn_{PictureCost{}.drawn};
-  double weight_ = 0;  // of all seats
-  int seats_ = 0;
+  Part all_;
+  std::map<std::string, Part> parts_;  // by address
 };
 
 }  // namespace wellspring

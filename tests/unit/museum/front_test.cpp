@@ -46,7 +46,7 @@ TEST(Front, PeersWaitWithWhatTheyHaveSaid) {
   front.join(link);
   std::string reason;
   EXPECT_FALSE(link->close_requested(reason));
-  EXPECT_EQ(link->first_text(), "hello");
+  EXPECT_EQ(link->first_heard()->text, "hello");
 }
 
 }  // namespace

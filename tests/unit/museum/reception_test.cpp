@@ -17,12 +17,16 @@ struct ReceptionTest : testing::Test {
   static constexpr int seats = 3;
   std::shared_ptr<Capacity> capacity =
       std::make_shared<Capacity>(CapacitySettings{.most = seats, .cores = 64});
-  Reception reception{doors, capacity, {.most_waiting = 2, .most_resting = 2, .most_strangers = 3}};
+  Reception reception{
+      doors,
+      capacity,
+      {.most_waiting = 2, .most_resting = 2, .most_strangers = 3, .kiosk_tokens = {}}};
   std::vector<Reception::Shown> inside;
   uint64_t numbers = 0;
 
-  std::shared_ptr<Link> come(LinkKind kind, std::vector<std::string> texts) {
+  std::shared_ptr<Link> come(LinkKind kind, std::vector<std::string> texts, bool local = false) {
     auto link = std::make_shared<Link>(++numbers, kind, "test");
+    link->local = local;
     for (std::string& text : texts) link->push_text_in(std::move(text));
     reception.enter(link);
     return link;
@@ -73,7 +77,9 @@ TEST_F(ReceptionTest, EverybodyComesToWhatTheyAskFor) {
            Case{eye, observation + R"(,"kiosk":"yard"})", 1},
            Case{eye, observation + "}", 0},
        })
-    EXPECT_EQ(find_door(doors, one.kind, one.text), one.door) << one.text;
+    EXPECT_EQ(find_door(doors, one.kind == eye ? hear_camera(one.text) : hear_visitor(one.text)),
+              one.door)
+        << one.text;
 }
 
 TEST_F(ReceptionTest, NothingThatWasSaidIsLost) {
@@ -83,9 +89,9 @@ TEST_F(ReceptionTest, NothingThatWasSaidIsLost) {
   EXPECT_EQ(shown[0].door, 1u);
   EXPECT_EQ(shown[0].link, link);
   EXPECT_TRUE(shown[0].seat);
-  const auto texts = link->take_texts();
-  ASSERT_EQ(texts.size(), 3u);
-  EXPECT_EQ(texts[0], R"({"type":"hello","exhibit":"mill"})");
+  const auto heard = link->take_heard();
+  ASSERT_EQ(heard.size(), 3u);
+  EXPECT_EQ(heard[0].text, R"({"type":"hello","exhibit":"mill"})");
   EXPECT_TRUE(reception.show_in(0).empty());
 }
 
@@ -129,7 +135,7 @@ TEST_F(ReceptionTest, WhereThereIsNoSeatVisitorsWaitAndComeInByTurn) {
   EXPECT_EQ(told(*third)["code"], "full") << "as many as may wait";
   inside.pop_back();
   EXPECT_TRUE(comes_in(first));
-  EXPECT_EQ(first->first_text(), hello);
+  EXPECT_EQ(first->first_heard()->text, hello);
   // Nobody overtakes.
   auto late = visit({hello});
   inside.pop_back();
@@ -139,10 +145,31 @@ TEST_F(ReceptionTest, WhereThereIsNoSeatVisitorsWaitAndComeInByTurn) {
 
 TEST_F(ReceptionTest, KiosksAndCamerasDoNotWait) {
   fill();
-  auto kiosk = visit({R"({"type":"hello","role":"kiosk","kiosk":"yard"})"});
+  const std::string page = R"({"type":"hello","role":"kiosk","kiosk":"yard"})";
+  auto kiosk = come(LinkKind::visit, {page}, true);
   auto eye = come(LinkKind::eye, {"whatever"});
   EXPECT_EQ(let_in(), 2u);
   EXPECT_EQ(capacity->standing().seats, seats + 1);
+  auto pretends = visit({page});
+  EXPECT_EQ(let_in(), 0u);
+  EXPECT_EQ(told(*pretends)["code"], "not_trusted");
+  EXPECT_EQ(capacity->standing().seats, seats + 1) << "only who is believed to be one has a seat";
+}
+
+TEST_F(ReceptionTest, LargePicturesOfOneAddressKeepNobodyElseOut) {
+  auto small = std::make_shared<Capacity>(CapacitySettings{.cores = 2, .memory = 1e12});
+  Reception door(doors, small);
+  const auto come_from = [&](const char* address, int width, int height) {
+    auto link = std::make_shared<Link>(++numbers, LinkKind::visit, "test");
+    link->address = address;
+    link->push_text_in(json{{"type", "hello"}, {"width", width}, {"height", height}}.dump());
+    door.enter(link);
+    for (auto& one : door.show_in(0)) inside.push_back(std::move(one));
+    return !inside.empty() && inside.back().link == link;
+  };
+  EXPECT_TRUE(come_from("a", 1920, 1200));
+  EXPECT_FALSE(come_from("a", 1920, 1200)) << "there are no cores for two";
+  EXPECT_TRUE(come_from("b", 640, 360));
 }
 
 TEST_F(ReceptionTest, WhoRestsComesBackAsSoonAsSomebodyIsThere) {
@@ -161,7 +188,7 @@ TEST_F(ReceptionTest, WhoRestsComesBackAsSoonAsSomebodyIsThere) {
     auto shown = reception.show_in(5);
     ASSERT_EQ(shown.size(), 1u) << back;
     EXPECT_EQ(shown[0].door, 1u);
-    EXPECT_EQ(link->first_text(), goes_on);
+    EXPECT_EQ(link->first_heard()->text, goes_on);
     EXPECT_EQ(reception.standing().resting, 0u);
   }
 }

@@ -149,9 +149,9 @@ TEST(Admission, rates_of_an_address_recover_with_time) {
   EXPECT_EQ(admission.take_request(one, 0.05), Taken::too_many);
   EXPECT_EQ(admission.take_request(other, 0.05), Taken::yes);
   EXPECT_EQ(admission.take_request(one, 0.2), Taken::yes);
-  EXPECT_EQ(admission.take_frames(one, 10, true, 0), Taken::yes);
-  EXPECT_EQ(admission.take_frames(one, 1, true, 0), Taken::too_many);
-  EXPECT_EQ(admission.take_frames(one, 5, true, 1), Taken::yes);
+  EXPECT_EQ(admission.take_input(one, {10, 0}, true, 0), Taken::yes);
+  EXPECT_EQ(admission.take_input(one, {1, 0}, true, 0), Taken::too_many);
+  EXPECT_EQ(admission.take_input(one, {5, 0}, true, 1), Taken::yes);
   EXPECT_EQ(admission.open_websocket(one, 1), Taken::yes);
   EXPECT_EQ(admission.open_websocket(one, 1), Taken::yes);
   EXPECT_EQ(admission.open_websocket(one, 1), Taken::too_many);
@@ -172,12 +172,12 @@ TEST(Admission, many_addresses_together_are_bounded_too) {
   }
   EXPECT_EQ(admission.take_request(modest, 0), Taken::too_many_in_all);
   EXPECT_EQ(admission.take_request(modest, 0.2), Taken::yes);
-  EXPECT_EQ(admission.take_frames(loud, 200, false, 0), Taken::yes);
-  EXPECT_EQ(admission.take_frames(loud, 1, false, 0), Taken::too_many_in_all);
-  EXPECT_EQ(admission.take_frames(modest, 1, true, 0), Taken::yes) << "says no more than a page";
+  EXPECT_EQ(admission.take_input(loud, {200, 0}, false, 0), Taken::yes);
+  EXPECT_EQ(admission.take_input(loud, {1, 0}, false, 0), Taken::too_many_in_all);
+  EXPECT_EQ(admission.take_input(modest, {1, 0}, true, 0), Taken::yes) << "says no more than a page";
   EXPECT_EQ(admission.open_websocket(modest, 0), Taken::too_many_in_all);
   EXPECT_EQ(admission.open_websocket(modest, 0.5), Taken::yes);
-  EXPECT_EQ(admission.take_frames(loud, 40, false, 0.5), Taken::yes);
+  EXPECT_EQ(admission.take_input(loud, {40, 0}, false, 0.5), Taken::yes);
 }
 
 // What Limits promises, in numbers of connections, files and messages.
@@ -195,7 +195,21 @@ TEST(Admission, a_school_class_behind_one_address_gets_in) {
     EXPECT_EQ(admission.open_websocket(school, 0), Taken::yes);
   }
   for (int second = 1; second < 60; second++)
-    EXPECT_EQ(admission.take_frames(school, 40 * 120, true, second), Taken::yes);
+    EXPECT_EQ(admission.take_input(school, {40 * 120, 40 * 120 * 300}, true, second), Taken::yes);
+}
+
+TEST(Admission, what_is_said_is_bounded_in_bytes_by_address_and_in_all) {
+  Admission admission({.bytes_a_second = 100,
+                       .bytes_at_once = 1000,
+                       .all_bytes_a_second = 150,
+                       .all_bytes_at_once = 1500});
+  const Address loud = at("203.0.113.1"), other = at("203.0.113.2"), third = at("203.0.113.3");
+  EXPECT_EQ(admission.take_input(loud, {1, 1000}, false, 0), Taken::yes);
+  EXPECT_EQ(admission.take_input(loud, {1, 1}, true, 0), Taken::too_many);
+  EXPECT_EQ(admission.take_input(other, {1, 500}, false, 0), Taken::yes);
+  EXPECT_EQ(admission.take_input(third, {1, 1}, false, 0), Taken::too_many_in_all);
+  EXPECT_EQ(admission.take_input(third, {1, 1}, true, 0), Taken::yes) << "says no more than a page";
+  EXPECT_EQ(admission.take_input(loud, {1, 100}, false, 1), Taken::yes);
 }
 
 TEST(Admission, addresses_that_left_are_forgotten) {

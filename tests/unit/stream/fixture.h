@@ -43,7 +43,7 @@ struct House {
                           .joined =
                               [this](std::shared_ptr<Link> link) {
                                 std::lock_guard lock(mutex);
-                                first_texts += link->take_texts().at(0) + ";";
+                                first_texts += link->take_heard().at(0).text + ";";
                                 links.push_back(std::move(link));
                                 news.notify_all();
                               },
@@ -61,10 +61,10 @@ struct House {
 
   // The only text that the peer of `link` said since the last call.
   static std::string text_from(const std::shared_ptr<Link>& link) {
-    std::vector<std::string> texts;
-    eventually([&] { return !(texts = link->take_texts()).empty(); });
-    EXPECT_EQ(texts.size(), 1u);
-    return texts.empty() ? "nothing came" : texts.front();
+    std::vector<Heard> heard;
+    eventually([&] { return !(heard = link->take_heard()).empty(); });
+    EXPECT_EQ(heard.size(), 1u);
+    return heard.empty() ? "nothing came" : heard.front().text;
   }
 
   static HttpReply echo(const HttpQuestion& question) {

@@ -123,7 +123,7 @@ TEST(Limits, what_all_addresses_together_may_have) {
   for (int i = 0; i < 200; i++) many += frame(0x81, "x");
   size_t arrived = 0;
   auto arrive = [&] {
-    for (size_t i = 0; i < 3; i++) arrived += house.link(i)->take_texts().size();
+    for (size_t i = 0; i < 3; i++) arrived += house.link(i)->take_heard().size();
     return arrived == 200;
   };
   first.send(many);
@@ -160,7 +160,7 @@ TEST(Limits, frames_of_all_visits_of_an_address) {
   ASSERT_TRUE(house.link(0));
   size_t arrived = 0;
   EXPECT_TRUE(eventually([&] {
-    arrived += house.link(0)->take_texts().size() + house.link(1)->take_texts().size();
+    arrived += house.link(0)->take_heard().size() + house.link(1)->take_heard().size();
     return arrived == 200;
   }));
   second.send(many);

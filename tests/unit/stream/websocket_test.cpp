@@ -90,7 +90,7 @@ TEST(WebSocket, breaches_of_the_protocol_close_with_1002) {
     EXPECT_EQ(talk.say(bytes), 1002) << what;
     talk.client.close();
     EXPECT_TRUE(eventually([&] { return talk.link->closed(); })) << what;
-    EXPECT_TRUE(talk.link->take_texts().empty()) << what;
+    EXPECT_TRUE(talk.link->take_heard().empty()) << what;
   }
 }
 
@@ -128,7 +128,7 @@ TEST(WebSocket, binary_messages_close_with_1003) {
   talk.client.send(frame(0x88, "\x03\xeb"));
   EXPECT_TRUE(talk.client.ends());
   EXPECT_TRUE(eventually([&] { return talk.link->closed(); }));
-  EXPECT_TRUE(talk.link->take_texts().empty());
+  EXPECT_TRUE(talk.link->take_heard().empty());
 }
 
 // The peer's close frame is there before the server has sent its own: both sides close at once,
@@ -173,7 +173,7 @@ TEST(WebSocket, what_a_busy_client_says_is_no_flood) {
     for (int i = 0; i < 200; i++) messages += frame(0x81, "{}");
     talk.client.send(messages);
     const size_t wanted = arrived + 200;
-    EXPECT_TRUE(eventually([&] { return (arrived += talk.link->take_texts().size()) == wanted; }));
+    EXPECT_TRUE(eventually([&] { return (arrived += talk.link->take_heard().size()) == wanted; }));
   }
   EXPECT_FALSE(talk.link->closed());
 }

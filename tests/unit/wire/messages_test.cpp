@@ -142,13 +142,57 @@ TEST(Messages, names_may_be_200_bytes) {
   EXPECT_EQ(std::get<WireError>(with_name(201)).code, "bad_field");
 }
 
-TEST(Messages, size_limit_is_64_kib_exactly) {
-  std::string text = R"({"type":"bye"})";
-  text.resize(max_message_bytes, ' ');
-  EXPECT_EQ(error_of(read_browser_message(text)), "");
-  text += ' ';
-  EXPECT_EQ(std::get<WireError>(read_browser_message(text)).code, "too_large");
-  EXPECT_EQ(std::get<WireError>(read_observation(text)).code, "too_large");
+TEST(Messages, each_kind_has_its_size_exactly) {
+  struct Row {
+    std::string text;
+    size_t most;
+  };
+  for (auto [text, most] : {Row{R"({"type":"bye"})", max_order_bytes},
+                            Row{R"({"type":"input","seq":1})", max_order_bytes},
+                            Row{R"({"type":"hello"})", max_hello_bytes}}) {
+    text.resize(most, ' ');
+    EXPECT_EQ(error_of(read_browser_message(text)), "") << text.substr(0, 20);
+    text += ' ';
+    EXPECT_EQ(std::get<WireError>(read_browser_message(text)).code, "too_large");
+  }
+  std::string seen = R"({"type":"observation","time":1,"presence":false})";
+  seen.resize(max_message_bytes, ' ');
+  EXPECT_EQ(error_of(read_observation(seen)), "");
+  seen += ' ';
+  EXPECT_EQ(std::get<WireError>(read_observation(seen)).code, "too_large");
+}
+
+TEST(Messages, the_largest_that_a_page_may_say_fit) {
+  const auto name = [](size_t bytes) {  // as long as escapes make it
+    std::string text;
+    for (size_t i = 0; i < bytes; i++) text += "\\u0041";
+    return text;
+  };
+  EXPECT_EQ(error_of(read_browser_message(R"({"type":"ask","text":")" + name(200) + "\"}")), "");
+  const std::string token(max_token_bytes, 't');
+  EXPECT_EQ(error_of(read_browser_message(R"({"type":"hello","resume":")" + token +
+                                          R"(","token":")" + token + R"(","kiosk":")" + name(200) +
+                                          R"(","exhibit":")" + name(200) + "\"}")),
+            "");
+}
+
+// However large it is: what is read of it, and how many values are made, has an end.
+TEST(Messages, reading_ends_where_nothing_is_meant) {
+  const auto arrays = [](size_t count) {
+    std::string text = R"({"type":"input","seq":1,"x":[)";
+    for (size_t i = 1; i < count; i++) text += "[],";
+    return text + "[]]}";
+  };
+  size_t values = 0;
+  EXPECT_EQ(error_of(read_browser_message(arrays(100), &values)), "");
+  EXPECT_EQ(values, 104u);
+  EXPECT_EQ(std::get<WireError>(read_browser_message(arrays(600), &values)).code, "too_large");
+  EXPECT_EQ(values, max_order_values);
+  values = 0;
+  EXPECT_EQ(std::get<WireError>(read_browser_message(arrays(20'000), &values)).code, "too_large");
+  EXPECT_EQ(values, 0u) << "by its size alone";
+  EXPECT_EQ(std::get<WireError>(read_observation(arrays(20'000), &values)).code, "too_large");
+  EXPECT_EQ(values, max_observation_values);
 }
 
 TEST(Messages, depth_limit_is_32_exactly) {
@@ -170,7 +214,8 @@ TEST(ParseJson, a_hundred_thousand_brackets_neither_crash_nor_fill_memory) {
     ASSERT_TRUE(std::holds_alternative<WireError>(result));
     EXPECT_EQ(std::get<WireError>(result).code, "too_deep");
   }
-  const auto result = parse_json(std::string(100'000, '[') + std::string(100'000, ']'), 200);
+  const auto result =
+      parse_json(std::string(100'000, '[') + std::string(100'000, ']'), {.depth = 200});
   EXPECT_EQ(std::get<WireError>(result).code, "too_deep");
 }
 
@@ -191,7 +236,7 @@ TEST(ParseJson, builds_the_same_tree_as_the_library) {
 TEST(ParseJson, wide_is_not_deep) {
   std::string text = "[";
   for (int i = 0; i < 1000; i++) text += "[],{},";
-  EXPECT_EQ(std::get<json>(parse_json(text + "[]]", 2)).size(), 2001u);
+  EXPECT_EQ(std::get<json>(parse_json(text + "[]]", {.depth = 2})).size(), 2001u);
 }
 
 TEST(WriteObservation, is_compact_and_rounds_to_four_decimals) {

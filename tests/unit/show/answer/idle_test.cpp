@@ -87,7 +87,7 @@ TEST_F(Idle, AVisitGoesOnWhereItRested) {
   run(26);
   ASSERT_EQ(show->resting.size(), 1u);
   auto link = show->resting[0];
-  const json hello = json::parse(*link->first_text());
+  const json hello = json::parse(link->first_heard()->text);
   EXPECT_EQ(hello["type"], "hello");
   EXPECT_EQ(hello["width"], 48);
   show->resting.clear();

@@ -47,6 +47,8 @@ TEST(StillQuestion, NamesTheFieldThatIsWrong) {
                                                         {"fov", "3.2"},
                                                         {"fov", "nan"},
                                                         {"spp", "0"},
+                                                        {"seconds", "0"},
+                                                        {"seconds", "soon"},
                                                         {"width", "1e3"}}) {
     StillQuestion asked = read_still_question(exhibit, {{name, text}});
     EXPECT_EQ(asked.status, 400) << name << "=" << text;
@@ -55,23 +57,68 @@ TEST(StillQuestion, NamesTheFieldThatIsWrong) {
   EXPECT_EQ(read_still_question(exhibit, {{"viewpoint", "moon"}, {"spp", "0"}}).status, 404);
 }
 
+TEST(StillQuestion, NoNumberOfSamplesIsTooManyAndTimeIsASettingOfItsOwn) {
+  const Exhibit exhibit = make_tiny_exhibit();
+  const auto read = [&](const std::map<std::string, std::string>& query) {
+    StillQuestion asked = read_still_question(exhibit, query);
+    EXPECT_EQ(asked.status, 200) << asked.problem;
+    return asked.job;
+  };
+  read({{"width", "3840"}, {"height", "3840"}, {"spp", "1024"}});
+  EXPECT_EQ(read({}).seconds, 8);
+  EXPECT_EQ(read({}).spp, 0) << "as many as fit";
+  EXPECT_EQ(read({{"seconds", "2.5"}}).seconds, 2.5);
+}
+
+// On a clock that a sample a pixel takes a second of.
+TEST(StillRoom, HasAsManySamplesAsFitIntoItsTimeAndSaysSo) {
+  std::unique_ptr<Show> show = make_show(make_tiny_exhibit(), settings_for("direct", false));
+  double now = 0;
+  StillRoom room(*show, [&] { return now++; });
+  const auto samples = [&](double seconds, int spp, double denoise_seconds = 0) {
+    StillJob job{.width = 16, .height = 16, .seconds = seconds, .spp = spp, .denoise = false};
+    job.yaw = float(now);  // nothing that is remembered
+    StillCosts costs;
+    const StillPicture made = room.make(job, {}, 1, denoise_seconds, &costs);
+    EXPECT_EQ(costs.spp, made.spp);
+    const std::string comment =
+        std::to_string(made.spp) + " samples a pixel by direct, not denoised";
+    EXPECT_NE(made.jpeg.find(comment), std::string::npos);
+    return made.spp;
+  };
+  EXPECT_EQ(samples(5, 0), 5);
+  EXPECT_EQ(samples(5, 0, 2), 3) << "the network's time is kept";
+  EXPECT_EQ(samples(5, 2), 2) << "no more than are wished for";
+  EXPECT_EQ(samples(0.1, 16), 1) << "one comes, whatever it takes";
+}
+
+TEST(StillRoom, SaysWhereItIsNotDenoisedForWantOfWeights) {
+  ShowSettings settings = settings_for("direct", false);
+  settings.weights = "";
+  std::unique_ptr<Show> show = make_show(make_tiny_exhibit(), settings);
+  StillRoom room(*show);
+  const StillPicture made = room.make({.width = 16, .height = 16, .seconds = 60, .spp = 1});
+  EXPECT_EQ(made.denoised, StillPicture::Denoised::no_weights);
+  EXPECT_NE(made.jpeg.find("weights are missing"), std::string::npos);
+}
+
 // What is asked for is seen: the view of a viewpoint, told by numbers, is that picture.
 TEST(StillQuestion, AViewInNumbersIsThePictureFromThere) {
   Exhibit exhibit = make_tiny_exhibit();
   const Viewpoint first = exhibit.viewpoints[0].view;
   std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct", false));
   StillRoom room(*show);
-  StillJob job{.width = 64, .height = 48, .spp = 1, .denoise = false};
-  const std::string there = room.make(job);
+  StillJob job{.width = 64, .height = 48, .seconds = 60, .spp = 1, .denoise = false};
+  const std::string there = room.make(job).jpeg;
   job.position = first.position, job.yaw = first.yaw, job.pitch = first.pitch, job.fov = first.fov;
-  EXPECT_TRUE(room.make(job) == there);
+  EXPECT_TRUE(room.make(job).jpeg == there);
   for (int field = 0; field < 4; field++) {
     StillJob other = job;
     if (field == 0) *other.position += dvec3(0.3, 0, 0);
     if (field == 1) *other.yaw += 0.4f;
     if (field == 2) *other.pitch -= 0.4f;
     if (field == 3) *other.fov *= 0.5f;
-    EXPECT_FALSE(room.make(other) == there) << field;
+    EXPECT_FALSE(room.make(other).jpeg == there) << field;
   }
 }
 

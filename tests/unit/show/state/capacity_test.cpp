@@ -80,6 +80,64 @@ TEST(Capacity, WhoLeavesAndWhoseSizeChangesMakesRoom) {
   EXPECT_NEAR(capacity->standing().busy, 0, 1e-12);
 }
 
+TEST(Capacity, WhoWantsLargerPicturesAsksForASeatAsANewcomerDoes) {
+  auto capacity = measured(4, 20, {.cores = 2});  // for 18 of these, or 4.9 of four times the size
+  std::vector<std::unique_ptr<Seat>> seats;
+  for (int i = 0; i < 10; i++) seats.push_back(capacity->find_seat(16 * 16));
+  int grown = 0;
+  for (const auto& seat : seats) grown += seat->resize(4 * pixels);
+  EXPECT_GE(grown, 3);
+  EXPECT_LE(grown, 5);
+  const double busy = capacity->standing().busy;
+  EXPECT_LE(busy, capacity->standing().cores);
+  EXPECT_FALSE(seats.back()->resize(4 * pixels));
+  EXPECT_EQ(capacity->standing().busy, busy) << "what was refused changes nothing";
+  EXPECT_TRUE(seats.front()->resize(16 * 16)) << "smaller ones always fit";
+  EXPECT_TRUE(seats.back()->resize(4 * pixels));
+  auto kiosk = capacity->give_seat(pixels);
+  EXPECT_TRUE(kiosk->resize(4 * pixels)) << "a kiosk's is given";
+}
+
+TEST(Capacity, MemoryBoundsSeatsAsCoresDo) {
+  const double each = visitor_bytes(pixels);
+  auto capacity = measured(0.1, 0.1, {.cores = 64, .memory = 5.5 * each});
+  std::vector<std::unique_ptr<Seat>> seats;
+  while (auto seat = capacity->find_seat(pixels)) seats.push_back(std::move(seat));
+  EXPECT_EQ(seats.size(), 5u);
+  EXPECT_EQ(capacity->seats_for(pixels), 5);
+  EXPECT_NEAR(capacity->standing().bytes, 5 * each, 1);
+  EXPECT_FALSE(seats[0]->resize(2 * pixels));
+  seats.pop_back();
+  EXPECT_TRUE(seats[0]->resize(2 * pixels));
+}
+
+TEST(Capacity, WhoseAddressHasNoSeatComesInWhateverOthersHaveTaken) {
+  const double each = visitor_bytes(pixels);
+  for (const CapacitySettings& settings :
+       {CapacitySettings{.cores = 2, .memory = 1e12},  // 18 by cores
+        CapacitySettings{.most = 16, .cores = 64, .memory = 1e12},
+        CapacitySettings{.cores = 64, .memory = 16.5 * each}}) {
+    auto capacity = measured(4, 20, settings);
+    std::vector<std::unique_ptr<Seat>> seats;
+    while (auto seat = capacity->find_seat(pixels, "a")) seats.push_back(std::move(seat));
+    EXPECT_GE(seats.size(), 14u) << "others leave it nearly all";
+    auto other = capacity->find_seat(pixels, "b");
+    ASSERT_TRUE(other);
+    EXPECT_EQ(capacity->seats_of("b"), 1);
+    EXPECT_FALSE(other->resize(8 * pixels)) << "but what it has more is for newcomers alone";
+    while (auto seat = capacity->find_seat(pixels, "b")) seats.push_back(std::move(seat));
+    EXPECT_LE(capacity->seats_of("b"), 2);
+  }
+}
+
+TEST(Capacity, OneThatTakesMoreThanAllKeepsNobodyElseOut) {
+  auto capacity = measured(40, 200, {.cores = 2, .memory = 1e12});  // 0.9 cores each
+  auto first = capacity->find_seat(9 * pixels, "a");
+  EXPECT_GT(capacity->standing().busy, capacity->standing().cores);
+  EXPECT_FALSE(capacity->find_seat(pixels / 8, "a"));
+  EXPECT_TRUE(capacity->find_seat(pixels / 8, "b"));
+}
+
 TEST(Capacity, MeasurementsReplaceTheFirstGuessAndFollowTheMachine) {
   auto capacity = std::make_shared<Capacity>(CapacitySettings{.cores = 4});
   EXPECT_EQ(capacity->standing().cost, PictureCost{});

@@ -83,7 +83,7 @@ TEST(Storytellers, OneIsInFinishedPictures) {
     exhibit.viewpoints[0].view.position = {0, 1.6, 3.5};  // sees the world's origin, too
     exhibit.viewpoints[0].view.yaw = 0, exhibit.viewpoints[0].view.pitch = -0.3f;
     std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct", false));
-    return StillRoom(*show).make({.width = 64, .height = 48, .spp = 4});
+    return StillRoom(*show).make({.width = 64, .height = 48, .seconds = 600, .spp = 4}).jpeg;
   };
   const dvec3 in_view(0, 0, 1.5), behind_the_wall(-3, 0, -3);
   std::string nobody = picture({behind_the_wall});
