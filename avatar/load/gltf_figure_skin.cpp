@@ -6,6 +6,7 @@
 #include "avatar/load/gltf_figure.h"
 #include "gltf/attributes.h"
 #include "gltf/data.h"
+#include "gltf/instances.h"
 #include "gltf/primitive.h"
 
 namespace wellspring {
@@ -28,10 +29,10 @@ struct SkinReader {
 
   void read_appearances();
   void read_node(size_t node);
-  void read_primitive(size_t node, size_t mesh, size_t index);
+  void read_primitive(size_t node, size_t mesh, size_t index, const dmat4& copy);
   // Matrix of each vertex from its mesh to humanoid space at rest; appends the weights.
   std::vector<dmat4> read_weights(size_t node, const json& primitive, const std::string& where,
-                                  const Used& used);
+                                  const Used& used, const dmat4& copy);
   void read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive,
                     const Used& used, const std::vector<dmat4>& to_rest, uint32_t first,
                     const std::vector<double>& weights);
@@ -67,7 +68,8 @@ void SkinReader::read_appearances() {
 }
 
 std::vector<dmat4> SkinReader::read_weights(size_t node, const json& primitive,
-                                            const std::string& where, const Used& used) {
+                                            const std::string& where, const Used& used,
+                                            const dmat4& copy) {
   const json& attributes = primitive["attributes"];
   const json* skin = gltf::find(items(file.root, "nodes")[node], "skin");
   std::vector<dmat4> to_rest(used.size(), dmat4(0));
@@ -77,7 +79,7 @@ std::vector<dmat4> SkinReader::read_weights(size_t node, const json& primitive,
     if (joint < 0) gltf::warn(file, at("/nodes", node), "what hangs on no joint follows the root");
     joint = std::max(joint, 0);
     for (dmat4& m : to_rest) {
-      m = figure.to_humanoid * figure.rest[node];
+      m = figure.to_humanoid * figure.rest[node] * copy;
       character.weights.push_back({uint16_t(joint), 1});
       character.first_weight.push_back(uint32_t(character.weights.size()));
     }
@@ -183,7 +185,7 @@ void SkinReader::read_targets(size_t node, const json& mesh, size_t mesh_index,
   }
 }
 
-void SkinReader::read_primitive(size_t node, size_t mesh_index, size_t index) {
+void SkinReader::read_primitive(size_t node, size_t mesh_index, size_t index, const dmat4& copy) {
   const json& mesh = items(file.root, "meshes")[mesh_index];
   const json& primitive = mesh["primitives"][index];
   const json& attributes = primitive["attributes"];
@@ -217,8 +219,8 @@ void SkinReader::read_primitive(size_t node, size_t mesh_index, size_t index) {
                                                 "VRMC_materials_mtoon");
   std::vector<vec4> color;  // MToon ignores it
   if (!mtoon) color = gltf::read_vec4s(file, attributes, "COLOR_0", used);
-  std::vector<dmat4> to_rest = read_weights(node, primitive, where, used);
-  const bool mirrored = gltf::is_mirrored(figure.nodes[node].global);
+  std::vector<dmat4> to_rest = read_weights(node, primitive, where, used, copy);
+  const bool mirrored = gltf::is_mirrored(figure.nodes[node].global * copy);
   std::vector<char> bad(used.size(), 0);
   for (size_t v = 0; v < used.size(); v++) {
     vec3 p(to_rest[v] * dvec4(positions[v], 1));
@@ -279,7 +281,10 @@ void SkinReader::read_node(size_t node) {
   size_t index = mesh->get<size_t>();
   if (figure.vrm.hidden_nodes.count(node) || figure.vrm.hidden_meshes.count(index)) return;
   size_t count = items(file.root, "meshes")[index]["primitives"].size();
-  for (size_t p = 0; p < count; p++) read_primitive(node, index, p);
+  std::vector<dmat4> copies = gltf::read_instances(file, node);
+  if (gltf::find(items(file.root, "nodes")[node], "skin")) copies.assign(1, dmat4(1));
+  for (const dmat4& copy : copies)
+    for (size_t p = 0; p < count; p++) read_primitive(node, index, p, copy);
 }
 
 }  // namespace

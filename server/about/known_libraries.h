@@ -15,6 +15,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"ld-linux", "GNU C Library", "LGPL-2.1-or-later", "loads programs"},
     {"libc.", "GNU C Library", "LGPL-2.1-or-later", "C"},
     {"libcrypto.", "OpenSSL", "Apache-2.0", "TLS"},
+    {"libdraco.", "Draco", "Apache-2.0", "compressed meshes"},
     {"libdnnl.", "oneDNN", "Apache-2.0", "the network that cleans pictures at rest"},
     {"libembree", "Embree", "Apache-2.0", "ray tracing"},
     {"libespeak-ng.", "eSpeak NG", "GPL-3.0-or-later", "speech, in a program of its own"},
@@ -26,6 +27,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libIlmThread", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
     {"libImath", "Imath", "BSD-3-Clause", "OpenEXR pictures"},
     {"libm.", "GNU C Library", "LGPL-2.1-or-later", "mathematics"},
+    {"libmeshoptimizer.", "meshoptimizer", "MIT", "compressed meshes"},
     {"libmp3lame.", "LAME", "LGPL-2.0-or-later", "recordings, for libsndfile"},
     {"libmpg123.", "mpg123", "LGPL-2.1-only", "recordings, for libsndfile"},
     {"libogg.", "Ogg", "BSD-3-Clause", "recordings, for libsndfile"},
@@ -50,6 +52,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libutf8proc.", "utf8proc", "MIT AND Unicode-DFS-2016", "names compared by Unicode"},
     {"libvorbis", "Vorbis", "BSD-3-Clause", "recordings, for libsndfile"},
     {"libvpx.", "libvpx", "BSD-3-Clause", "video"},
+    {"libwebp.", "WebP", "BSD-3-Clause", "WebP pictures"},
     {"libz.", "zlib", "Zlib", "compression, for OpenEXR"},
     // Headers that are compiled in.
     {"Boost", "Boost (Asio, Beast)", "BSL-1.0", "HTTP and WebSocket"},

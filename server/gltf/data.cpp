@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gltf/unpack.h"
 #include "gltf/uri.h"
 
 namespace wellspring::gltf {
@@ -181,40 +182,13 @@ void check_view(File& file, size_t index) {
     refuse(file, where,
            "reaches beyond buffer " + std::to_string(buffer) + " of " + std::to_string(available) +
                " bytes");
+  if (meshopt_of(view)) check_meshopt(file, index);
   if (!find(view, "byteStride")) return;
   int64_t stride = integer(view, "byteStride", 0);
   if (stride > (int64_t(1) << 30)) refuse(file, where + "/byteStride", "is out of range");
   if (stride % 4 != 0 || stride > 252)
     warn(file, where + "/byteStride", "a stride that is not a multiple of 4 up to 252");
   if (stride > length) warn(file, where + "/byteStride", "a stride longer than its buffer view");
-}
-
-const Bytes& buffer_bytes(File& file, size_t index) {
-  if (!file.buffer_ready[index]) {
-    const std::string where = at("/buffers", index);
-    const json& buffer = items(file.root, "buffers")[index];
-    size_t length = size_t(integer(buffer, "byteLength", 0));
-    Bytes& bytes = file.buffers[index];
-    if (const json* uri = find(buffer, "uri")) {
-      std::optional<Bytes> found = read_uri(file, where + "/uri", uri->get<std::string>());
-      if (!found)
-        refuse(file, where + "/uri", no_such_file(file, where + "/uri", uri->get<std::string>()));
-      bytes = std::move(*found);
-      file.bytes_read += int64_t(bytes.size());
-      if (file.bytes_read > all_bytes_limit)
-        refuse_beyond(file, where, all_bytes_limit, "bytes of buffers in all", fewer_vertices);
-    } else if (index == 0 && file.has_binary) {
-      bytes = std::move(file.binary);
-    } else {
-      refuse(file, where, "has no data");
-    }
-    if (bytes.size() < length)
-      refuse(
-          file, where + "/byteLength",
-          "says " + std::to_string(length) + " bytes, there are " + std::to_string(bytes.size()));
-    file.buffer_ready[index] = 1;
-  }
-  return file.buffers[index];
 }
 
 // Where an accessor's or a sparse part's bytes start. The layout was checked against the view.
@@ -257,8 +231,43 @@ std::vector<uint32_t> sparse_indices(File& file, const json& sparse, int64_t cou
 
 }  // namespace
 
+const Bytes& buffer_bytes(File& file, size_t index) {
+  if (!file.buffer_ready[index]) {
+    const std::string where = at("/buffers", index);
+    const json& buffer = items(file.root, "buffers")[index];
+    size_t length = size_t(integer(buffer, "byteLength", 0));
+    Bytes& bytes = file.buffers[index];
+    if (const json* uri = find(buffer, "uri")) {
+      std::optional<Bytes> found = read_uri(file, where + "/uri", uri->get<std::string>());
+      if (!found)
+        refuse(file, where + "/uri", no_such_file(file, where + "/uri", uri->get<std::string>()));
+      bytes = std::move(*found);
+      file.bytes_read += int64_t(bytes.size());
+      if (file.bytes_read > all_bytes_limit)
+        refuse_beyond(file, where, all_bytes_limit, "bytes of buffers in all", fewer_vertices);
+    } else if (index == 0 && file.has_binary) {
+      bytes = std::move(file.binary);
+    } else {
+      refuse(file, where, "has no data");
+    }
+    if (bytes.size() < length)
+      refuse(
+          file, where + "/byteLength",
+          "says " + std::to_string(length) + " bytes, there are " + std::to_string(bytes.size()));
+    file.buffer_ready[index] = 1;
+  }
+  return file.buffers[index];
+}
+
+void charge_unpacked(File& file, const std::string& where, int64_t bytes) {
+  file.unpacked_bytes += bytes;
+  if (file.unpacked_bytes > unpacked_bytes_limit)
+    refuse_beyond(file, where, unpacked_bytes_limit, "bytes unpacked in all", fewer_vertices);
+}
+
 void check_layout(File& file) {
   for (size_t i = 0; i < items(file.root, "bufferViews").size(); i++) check_view(file, i);
+  unpack_draco(file);
   for (size_t i = 0; i < items(file.root, "accessors").size(); i++) check_accessor(file, i);
 }
 
@@ -279,6 +288,7 @@ std::string describe(const File& file, size_t accessor) {
 
 std::span<const uint8_t> view_bytes(File& file, size_t view) {
   const json& object = items(file.root, "bufferViews")[view];
+  if (meshopt_of(object)) return unpack_meshopt(file, view);
   const Bytes& buffer = buffer_bytes(file, size_t(integer(object, "buffer", 0)));
   return {buffer.data() + integer(object, "byteOffset", 0),
           size_t(integer(object, "byteLength", 0))};
@@ -287,8 +297,10 @@ std::span<const uint8_t> view_bytes(File& file, size_t view) {
 bool has_data(const File& file, size_t accessor) {
   const json* view = find(items(file.root, "accessors")[accessor], "bufferView");
   if (!view) return true;
-  size_t buffer =
-      size_t(integer(items(file.root, "bufferViews")[view->get<size_t>()], "buffer", 0));
+  const json& object = items(file.root, "bufferViews")[view->get<size_t>()];
+  const json* packed = meshopt_of(object);
+  const size_t buffer = size_t(integer(packed ? *packed : object, "buffer", 0));
+  if (file.buffer_ready[buffer]) return true;
   return find(items(file.root, "buffers")[buffer], "uri") || (buffer == 0 && file.has_binary);
 }
 

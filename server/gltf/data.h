@@ -37,7 +37,11 @@ bool has_data(const File& file, size_t accessor);
 std::shared_ptr<const std::vector<float>> read_floats(File& file, size_t accessor);
 // Elements of an unsigned integer accessor. Throws LoadError.
 std::vector<uint32_t> read_integers(File& file, size_t accessor);
-// The bytes of a buffer view.
+// A buffer's bytes, at least as many as it says.
+const Bytes& buffer_bytes(File& file, size_t buffer);
+// Counts what is unpacked towards the file's limit.
+void charge_unpacked(File& file, const std::string& where, int64_t bytes);
+// The bytes of a buffer view, unpacked.
 std::span<const uint8_t> view_bytes(File& file, size_t view);
 
 }  // namespace wellspring::gltf

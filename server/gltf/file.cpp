@@ -171,9 +171,9 @@ File load_gltf(const std::string& path, const std::string& package,
   check_schema(file);
   normalise_names(file);
   check_extensions(file, further);
-  check_layout(file);
   file.buffers.resize(items(file.root, "buffers").size());
   file.buffer_ready.assign(file.buffers.size(), 0);
+  check_layout(file);
   return file;
 }
 

@@ -46,8 +46,10 @@ struct File {
   std::vector<uint32_t> renamed;  // scratch of primitive.cpp: all unseen between primitives
   // Bounds of what a file may cost (gltf/limits.h).
   int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0, keys_made = 0;
-  int64_t bytes_read = 0;          // of buffers and pictures
-  bool pictures_may_fail = false;  // one that cannot be decoded is warned of, not refused
+  int64_t bytes_read = 0;  // of buffers
+  int64_t unpacked_bytes = 0, instances_made = 0;
+  std::map<size_t, Bytes> unpacked;  // buffer views that were compressed, once they are used
+  bool pictures_may_fail = false;    // one that cannot be decoded is warned of, not refused
   std::vector<std::string> warnings;
   std::set<std::string> said;
 };

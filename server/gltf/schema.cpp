@@ -97,6 +97,14 @@ const Rule rules[] = {
     {"bufferView", "byteLength", Kind::integer, "", must, 1},
     {"bufferView", "byteStride", Kind::integer, "", false, 1},
     {"bufferView", "target", Kind::integer, "", false, 0},
+    {"bufferView.EXT_meshopt_compression", "buffer", Kind::index, "buffers", must},
+    {"bufferView.EXT_meshopt_compression", "byteOffset", Kind::integer, "", false, 0},
+    {"bufferView.EXT_meshopt_compression", "byteLength", Kind::integer, "", must, 1},
+    {"bufferView.EXT_meshopt_compression", "byteStride", Kind::integer, "", must, 1},
+    {"bufferView.EXT_meshopt_compression", "count", Kind::integer, "", must, 1},
+    {"bufferView.EXT_meshopt_compression", "mode", Kind::text, "", must},
+    {"bufferView.EXT_meshopt_compression", "filter", Kind::text},
+    {"buffer.EXT_meshopt_compression", "fallback", Kind::boolean},
 
     {"camera", "orthographic", Kind::object, "orthographic"},
     {"camera", "perspective", Kind::object, "perspective"},
@@ -179,6 +187,10 @@ const Rule rules[] = {
     {"primitive", "mode", Kind::integer, "", false, 0},
     {"primitive", "targets", Kind::maps, "accessors"},
 
+    {"primitive.KHR_draco_mesh_compression", "bufferView", Kind::index, "bufferViews", must},
+    {"primitive.KHR_draco_mesh_compression", "attributes", Kind::object, "draco ids", must},
+    {"node.EXT_mesh_gpu_instancing", "attributes", Kind::map, "accessors", must},
+
     {"node", "camera", Kind::index, "cameras"},
     {"node", "children", Kind::indices, "nodes"},
     {"node", "skin", Kind::index, "skins"},
@@ -208,10 +220,16 @@ const Rule rules[] = {
     {"skin", "joints", Kind::indices, "nodes", must, -1e300, 1},
     {"texture", "sampler", Kind::index, "samplers"},
     {"texture", "source", Kind::index, "images"},
+    {"texture.EXT_texture_webp", "source", Kind::index, "images", must},
 };
 
 class Walker {
  public:
+  // One that has become another under its first name.
+  static std::string renamed(const std::string& extension) {
+    return extension == "KHR_meshopt_compression" ? "EXT_meshopt_compression" : extension;
+  }
+
   explicit Walker(File& file) : file_(file) {
     for (const Rule& rule : rules) rules_of_[rule.type].push_back(&rule);
   }
@@ -236,7 +254,8 @@ class Walker {
     if (const json* extensions = find(value, "extensions")) {
       if (!extensions->is_object()) refuse(file_, where + "/extensions", "must be an object");
       for (auto it = extensions->begin(); it != extensions->end(); ++it)
-        check_object(it.value(), type + "." + it.key(), at(where + "/extensions", it.key()));
+        check_object(it.value(), type + "." + renamed(it.key()),
+                     at(where + "/extensions", it.key()));
     }
   }
 
@@ -355,6 +374,14 @@ void check_schema(File& file) {
   check_version(file);
 }
 
+// What a curator can do about a file that needs it.
+static std::string remedy_for(const std::string& extension) {
+  if (extension == "KHR_texture_basisu")
+    return ": make PNG pictures of its KTX2 ones (gltf-transform ktxdecompress IN.glb OUT.glb; for "
+           "one picture: ktx extract --transcode rgba8 IN.ktx2 OUT.png)";
+  return "";
+}
+
 void check_extensions(File& file, const std::set<std::string>& further) {
   static const std::set<std::string> known = {
       "KHR_texture_transform",      "KHR_materials_emissive_strength",
@@ -363,7 +390,10 @@ void check_extensions(File& file, const std::set<std::string>& further) {
       "KHR_lights_punctual",        "KHR_materials_pbrSpecularGlossiness",
       "KHR_mesh_quantization",      "KHR_materials_specular",
       "KHR_materials_clearcoat",    "KHR_materials_sheen",
-      "KHR_materials_anisotropy",   "KHR_materials_dispersion"};
+      "KHR_materials_anisotropy",   "KHR_materials_dispersion",
+      "EXT_meshopt_compression",    "KHR_meshopt_compression",
+      "KHR_draco_mesh_compression", "EXT_texture_webp",
+      "EXT_mesh_gpu_instancing"};
   auto is_known = [&](const json& name) {
     return known.count(name.get<std::string>()) || further.count(name.get<std::string>());
   };
@@ -372,7 +402,7 @@ void check_extensions(File& file, const std::set<std::string>& further) {
     if (!is_known(required[i]))
       refuse(file, at("/extensionsRequired", i),
              "needs extension " + required[i].get<std::string>().substr(0, 60) +
-                 ", which is not supported");
+                 ", which is not supported" + remedy_for(required[i].get<std::string>()));
   const json& used = items(file.root, "extensionsUsed");
   for (size_t i = 0; i < used.size(); i++)
     if (!is_known(used[i]))

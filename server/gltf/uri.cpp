@@ -3,7 +3,7 @@
 
 #include <cctype>
 
-#include "base/find_file.h"
+#include "gltf/find_file.h"
 #include "base/load_error.h"
 #include "base/near_name.h"
 #include "gltf/limits.h"

@@ -9,7 +9,7 @@ namespace wellspring::gltf {
 
 bool is_data_uri(const std::string& uri);
 // The file that a URI means, canonical; nothing if the package has none. Names are compared by
-// Unicode (base/find_file.h). Throws LoadError for URIs that mean no file of the package.
+// Unicode (gltf/find_file.h). Throws LoadError for URIs that mean no file of the package.
 std::optional<std::filesystem::path> find_uri(const File& file, const std::string& where,
                                               const std::string& uri);
 // Bytes of a data URI or of that file. Throws LoadError for all that is wrong but a missing file.

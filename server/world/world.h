@@ -68,8 +68,8 @@ struct PlacedMesh {
   const Material* material = nullptr;
   uint32_t object = 0;
   bool moving = false;
-  bool in_place = false;   // its vertices are in world space as they are
-  bool mirrored = false;   // its winding is turned round (gltf::is_mirrored())
+  bool in_place = false;  // its vertices are in world space as they are
+  bool mirrored = false;  // its winding is turned round (gltf::is_mirrored())
   mat4 to_world{1};
   // Inverse transpose of the upper 3x3 up to a positive factor: normalise after using it.
   mat3 normal_to_world{1};

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/find_file.h"
+#include "gltf/find_file.h"
 #include "base/near_name.h"
 
 namespace wellspring {

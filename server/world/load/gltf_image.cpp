@@ -2,6 +2,7 @@
 #include "world/load/gltf_image.h"
 
 #include <turbojpeg.h>
+#include <webp/decode.h>
 
 #include <cmath>
 #include <cstring>
@@ -96,14 +97,35 @@ std::string decode_png_texels(std::span<const uint8_t> bytes, bool srgb, Image& 
   return "";
 }
 
+std::string decode_webp_texels(std::span<const uint8_t> bytes, Image& image, int64_t texels_left) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK)
+    return "picture cannot be decoded: its WebP header is broken";
+  if (features.has_animation) return "picture is a moving one (WebP)";
+  if (std::string problem = check_size(features.width, features.height, texels_left);
+      !problem.empty())
+    return problem;
+  image.width = features.width, image.height = features.height;
+  image.texels8.resize(size_t(image.width) * size_t(image.height) * 4);
+  if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.texels8.data(), image.texels8.size(),
+                          4 * image.width))
+    return "picture cannot be decoded: its WebP data is broken or cut off";
+  return "";
+}
+
 }  // namespace
 
 std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image,
                          int64_t& texels_left) {
   const bool png = starts_with(bytes, "\x89PNG\r\n\x1a\n", 8);
-  if (!png && !starts_with(bytes, "\xff\xd8\xff", 3)) return "picture is neither PNG nor JPEG";
-  std::string problem = png ? decode_png_texels(bytes, srgb, image, texels_left)
-                            : decode_jpeg_texels(bytes, image, texels_left);
+  const bool webp = starts_with(bytes, "RIFF", 4) && bytes.size() >= 12 &&
+                    std::memcmp(bytes.data() + 8, "WEBP", 4) == 0;
+  std::string problem;
+  if (png) problem = decode_png_texels(bytes, srgb, image, texels_left);
+  else if (webp) problem = decode_webp_texels(bytes, image, texels_left);
+  else if (starts_with(bytes, "\xff\xd8\xff", 3))
+    problem = decode_jpeg_texels(bytes, image, texels_left);
+  else problem = "picture is neither PNG, JPEG nor WebP";
   if (!problem.empty()) return problem;
   texels_left -= int64_t(image.width) * image.height;
   image.srgb = srgb && image.texels.empty();

@@ -219,7 +219,8 @@ class Materials {
     if (!fresh) return known->second;
     const std::string where = at("/textures", index);
     const json& object = items(file_.root, "textures")[index];
-    const json* source = find(object, "source");
+    const json* webp = extension(object, "EXT_texture_webp");
+    const json* source = webp ? find(*webp, "source") : find(object, "source");
     if (!source) {
       warn(file_, where, "has no picture this program can read (used by " + user + ")");
       return -1;

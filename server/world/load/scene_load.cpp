@@ -15,6 +15,7 @@
 #include "world/load/gltf_mesh.h"
 #include "world/load/load_motion.h"
 #include "world/mesh_finish.h"
+#include "gltf/instances.h"
 #include "gltf/pose.h"
 
 namespace wellspring {
@@ -102,6 +103,7 @@ class Builder {
     std::vector<dmat4> joints;
     if (const json* skin = find(object, "skin"))
       joints = joint_matrices(file_, skin->get<size_t>(), global_);
+    const std::vector<dmat4> copies = read_instances(file_, index);
     for (size_t p = 0; p < mesh["primitives"].size(); p++) {
       const json& primitive = mesh["primitives"][p];
       bool skinned = !joints.empty() && is_skinned(primitive);
@@ -124,6 +126,13 @@ class Builder {
       Placement placement;
       placement.mesh = made;
       placement.object = id;
+      const bool many = !skinned && extension(object, "EXT_mesh_gpu_instancing");
+      for (size_t i = 0; many && i < copies.size(); i++) {
+        placement.to_world =
+            glm::translate(nodes_[index].global * copies[i], centres_[size_t(made)]);
+        placements_.push_back(placement);
+      }
+      if (many) continue;  // animations do not move them
       placement.to_world =
           glm::translate(skinned ? dmat4(1) : nodes_[index].global, centres_[size_t(made)]);
       if (motion_) {

@@ -62,8 +62,8 @@ struct RasterSettings {
 };
 
 // Keeps its arrays from picture to picture. Surfaces with alpha are passed through where a ray
-// would (world/world.h), as back faces are where a ray of the eye does. Surfaces nearer to the eye than View::near or a millionth of the scene's
-// size are not seen.
+// would (world/world.h), as back faces are where a ray of the eye does. Surfaces nearer to the eye
+// than View::near or a millionth of the scene's size are not seen.
 class Raster {
  public:
   static constexpr int most_pixels = 8192;  // a side of the view

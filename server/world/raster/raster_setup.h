@@ -51,9 +51,9 @@ struct RasterTriangle {
   int16_t left, top, right, bottom;  // pixels it may cover, inclusive, from the picture's top left
   bool has_alpha;
   bool one_sided, mirrored;  // as in PlacedMesh
-  bool turned;    // its corners in the mesh are the first, the third and the second
-  bool clipped;   // its corners are others than in the mesh
-  uint8_t veils;  // RasterSettings::see_through of its material
+  bool turned;               // its corners in the mesh are the first, the third and the second
+  bool clipped;              // its corners are others than in the mesh
+  uint8_t veils;             // RasterSettings::see_through of its material
 };
 
 struct RasterView {

@@ -76,12 +76,16 @@ TEST(BackFaces, AFrontInTheSamePlaceIsSeen) {
     EXPECT_EQ(world.intersect(view_ray(view, float(i) + 0.4f, 11.7f)).instance, uint32_t(front));
 }
 
-TEST(BackFaces, AMirroredInstanceShowsTheOtherSide) {
+// In a mirror what turns its back still does, unless the mirror stands before or behind it.
+TEST(BackFaces, AMirroredInstanceTurnsAsItsMirrorImageDoes) {
   Scene scene = two_squares(diffuse(vec3(1)));
-  scene.instances[near_quad].to_world = glm::scale(mat4(1), vec3(-1, 1, 1));
-  EXPECT_EQ(seen(scene), near_quad);
-  scene.instances[near_quad].to_world = glm::scale(mat4(1), vec3(-1, -1, 1));  // half a turn
+  mat4& to_world = scene.instances[near_quad].to_world;
+  to_world = glm::scale(mat4(1), vec3(-1, 1, 1));
   EXPECT_EQ(seen(scene), far_quad);
+  to_world = glm::scale(at({0, 0, 2}), vec3(1, 1, -1));
+  EXPECT_EQ(seen(scene), near_quad);
+  to_world = glm::scale(at({0, 0, 2}), vec3(-1, 1, -1));  // half a turn
+  EXPECT_EQ(seen(scene), near_quad);
 }
 
 TEST(BackFaces, AMovingMeshShowsTheSideThatItsMirroringSays) {

@@ -29,6 +29,23 @@ TEST(ExhibitNames, ParentsWithoutAMeshAreNodes) {
   EXPECT_EQ(package.says("/objects/b/node", "did you mean 'Furniture'?"), 1) << package.told();
 }
 
+TEST(ExhibitNames, AccentsMayStandApart) {
+  Asset asset = room_asset();
+  asset.root["nodes"][1]["name"] = "Stu\u030al";
+  RoomPackage package(asset);
+  package.manifest["objects"] = {{"chair", {{"node", "St\u016fl"}}}};
+  EXPECT_EQ(package.read().points.at(0).objects.size(), 1u);
+  EXPECT_EQ(package.told(), "");
+}
+
+TEST(ExhibitNames, BackFacesAreDrawnWhereTheExhibitSaysSo) {
+  RoomPackage package;
+  EXPECT_TRUE(package.read().scene.cull_back_faces);
+  package.manifest["draw_back_faces"] = true;
+  EXPECT_FALSE(package.read().scene.cull_back_faces);
+  EXPECT_EQ(package.told(), "");
+}
+
 TEST(ExhibitNames, NothingIsMissedInASceneThatCannotBeRead) {
   RoomPackage package;
   package.write("scene.gltf", "{");

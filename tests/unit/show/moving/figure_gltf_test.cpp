@@ -326,7 +326,7 @@ TEST(FigureOfGltf, MissingAndBrokenPicturesAreTold) {
   Made missing = make(asset);
   EXPECT_EQ(worn(missing).base_color_texture.texture, -1);
   EXPECT_FLOAT_EQ(worn(missing).base_color.x, 0.5f);
-  EXPECT_TRUE(says(missing, "no such picture: face.png"));
+  EXPECT_TRUE(says(missing, "no such file: \"face.png\""));
   Made broken = make(asset, {{"face.png", "\x89PNG\r\n\x1a\nnothing"}});
   EXPECT_EQ(worn(broken).base_color_texture.texture, -1);
   EXPECT_TRUE(says(broken, "cannot be decoded"));

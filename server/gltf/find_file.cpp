@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/find_file.h"
+#include "gltf/find_file.h"
 
 #include <algorithm>
 
