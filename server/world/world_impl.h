@@ -59,7 +59,8 @@ struct World::Impl {
   std::vector<float> built_area;       // of a moving mesh's box when its tree was last built anew
   Bounds moving_bounds;                // of all that is visible
   bool any_moving = false;             // that is visible
-  bool moved = false;                  // since the last commit
+  bool any_apart = false;
+  bool moved = false;  // since the last commit
 
   ~Impl() {
     for (RTCGeometry geometry : moving_geometry) rtcReleaseGeometry(geometry);
@@ -74,6 +75,7 @@ struct World::Impl {
   bool is_occluded(const Ray& ray, PanesPassed* panes) const;
   RTCGeometry make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
                             RTCBuildQuality);
+  RTCGeometry make_apart(uint32_t instance, RTCBuildQuality quality);
   void build_still();
   void build_faces(PlacedMesh& placed, std::vector<Face>& faces);
   void build_moving();
