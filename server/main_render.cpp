@@ -362,7 +362,8 @@ void add_options(CLI::App& app, Options& o) {
                  "another: normals in world space; n / 2 + 1 / 2 in .png and .jpg");
   app.add_option("--exposure", o.exposure,
                  "factor before tone mapping; without it the exhibit's, or 1");
-  app.add_option("--max-depth", o.max_depth, "path edges counted from the eye")
+  app.add_option("--max-depth", o.max_depth,
+                 "path edges counted from the eye, but for what glass does")
       ->capture_default_str();
   app.add_option("--environment", o.environment, "none, or radiance r,g,b, or a picture FILE.hdr");
   app.add_option("--sky", o.sky,

@@ -138,7 +138,8 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   app.add_option("--log-level", options.log_level, "of the least urgent lines that are logged")
       ->envname("WELLSPRING_LOG")
       ->check(CLI::IsMember(log::levels()));
-  app.add_option("--max-depth", show.transport.max_depth, "of light's walks, in reflections")
+  app.add_option("--max-depth", show.transport.max_depth,
+                 "of light's walks, in reflections; what glass does is none")
       ->check(CLI::Range(1, 64));
 }
 

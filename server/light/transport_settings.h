@@ -53,7 +53,8 @@ struct SplatSettings {
 inline constexpr int most_virtual_lights = 1 << 16;
 
 struct TransportSettings {
-  int max_depth = 8;  // path edges counted from the eye; 1: emission only, 2: direct light
+  // Path edges counted from the eye, but for what glass does; 1: emission only, 2: direct light.
+  int max_depth = 8;
   float clamp =
       0;  // >0: bound of what one sample owes to chance (radiance; biased, for display); 0: none
   InstantRadiositySettings instant;

@@ -190,7 +190,8 @@ Face bare_face(const PlacedMesh& placed, uint32_t triangle) {
   vec3 corner[3];
   for (int i = 0; i < 3; i++) {
     corner[i] = mesh.positions[index[i]];
-    if (!placed.in_place) corner[i] = vec3(placed.to_world * vec4(corner[i], 1));
+    if (placed.apart) corner[i] = mat3(placed.to_world) * corner[i];
+    else if (!placed.in_place) corner[i] = vec3(placed.to_world * vec4(corner[i], 1));
   }
   Face face;
   face.corner = corner[0];
@@ -198,8 +199,20 @@ Face bare_face(const PlacedMesh& placed, uint32_t triangle) {
   face.edge2 = corner[2] - corner[0];
   face.normal = unit_or(cross(face.edge1, face.edge2), vec3(0));
   if (placed.mirrored) face.normal = -face.normal;
-  face.extent = max_component(
-      glm::max(glm::max(glm::abs(corner[0]), glm::abs(corner[1])), glm::abs(corner[2])));
+  if (placed.apart) {
+    vec3 place(placed.to_world[3]);
+    for (vec3& c : corner) c += place;
+    face.corner = corner[0];
+  }
+  const vec3 farthest =
+      glm::max(glm::max(glm::abs(corner[0]), glm::abs(corner[1])), glm::abs(corner[2]));
+  face.extent = max_component(farthest);
+  if (placed.steps > 0) {
+    // Each coordinate is rounded by its own size, and only what lies along the normal counts.
+    constexpr float least_step = 0x1p-16f;
+    if (face.normal != vec3(0)) face.extent = dot(glm::abs(face.normal), farthest);
+    face.extent = -std::max(placed.steps * 0x1p-23f * face.extent, least_step);
+  }
   face.flat = 0;  // as far as is known
   return face;
 }
@@ -315,11 +328,14 @@ vec3 eval_face(const World& world, uint32_t instance, uint32_t triangle, float* 
 }
 
 vec3 offset_origin(const SurfacePlace& place, vec3 direction) {
+  if (place.extent < 0) {
+    bool behind = dot(place.geometric_normal, direction) < 0;
+    return place.position + place.geometric_normal * (behind ? place.extent : -place.extent);
+  }
   // Their constants are for scenes of metres; in a scene of millimetres they would be a gap.
   float unit = place.extent > 0 ? std::min(place.extent, 1.0f) : 1.0f;
   float near_zero = unit / 32, float_scale = unit / 65536;
   constexpr float int_scale = 256;
-  constexpr float relative_error = 0x1p-20f;  // eight units in the last place of the corners
   vec3 normal = place.geometric_normal;
   if (dot(normal, direction) < 0) normal = -normal;
   vec3 p = place.position, moved;
@@ -330,7 +346,7 @@ vec3 offset_origin(const SurfacePlace& place, vec3 direction) {
     float stepped = std::bit_cast<float>(bits + (p[i] < 0 ? -steps : steps));
     moved[i] = std::abs(p[i]) < near_zero ? p[i] + near_step * normal[i] : stepped;
   }
-  float least = place.extent * relative_error;
+  float least = position_error(place);
   float have = dot(moved - p, normal);
   return have < least ? moved + normal * (least - have) : moved;
 }

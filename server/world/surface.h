@@ -9,8 +9,14 @@ namespace wellspring {
 struct SurfacePlace {
   vec3 position{0};
   vec3 geometric_normal{0, 1, 0};  // unit, on the side the ray came from
-  float extent = 0;  // largest coordinate of the triangle's corners: bounds the error of `position`
+  // Bounds the error of `position`: the largest coordinate of the triangle's corners, or below 0 in
+  // scenes with something small far away: metres that the next ray starts off the surface.
+  float extent = 0;
 };
+// How far off `position` may be, in metres.
+inline float position_error(const SurfacePlace& place) {
+  return place.extent < 0 ? -place.extent : place.extent * 0x1p-20f;  // eight units of the corners
+}
 
 struct Surface : SurfacePlace {
   vec3 normal{0, 1, 0};  // shading normal after normal map, same hemisphere as geometric_normal

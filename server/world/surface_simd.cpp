@@ -80,6 +80,10 @@ Lanes3 offset_origins(const LambertSurfaceLanes& s, const Lanes3& direction) {
     Lanes stepped = Lanes(LaneMask(p) + (p < zero ? -steps : steps));
     return lanes_abs(p) < near_zero ? p + near_step * normal : stepped;
   };
+  if (negative_lanes(s.extent < zero)) {  // of a scene: all or none
+    Lanes step = lanes_max(-s.extent, zero);
+    return s.position + n * step;
+  }
   Lanes3 moved{move(s.position.x, n.x), move(s.position.y, n.y), move(s.position.z, n.z)};
   Lanes least = s.extent * 0x1p-20f;
   Lanes short_of = least - dot(moved - s.position, n);

@@ -54,7 +54,7 @@ uint64_t rays_traced();
 // corner + edge1 * barycentric.x + edge2 * barycentric.y.
 struct alignas(64) Face {
   vec3 corner;
-  float extent;  // largest coordinate of the corners
+  float extent;  // SurfacePlace
   vec3 edge1;
   float flat;  // 1: the mesh's normals there are `normal`
   vec3 edge2;
@@ -76,6 +76,10 @@ struct PlacedMesh {
   const Face* faces = nullptr;  // of its triangles; null: it moves, or is one of very many copies
   uint32_t paints = 0;          // how often its material was repainted
   bool one_sided = false;       // the eye does not see its back faces (Scene::cull_back_faces)
+  // Its triangles are so small where it is that world coordinates are too coarse for them: the tree
+  // and faces have them relative to its place, to_world[3] (world/far_instances.h).
+  bool apart = false;
+  float steps = 0;  // not 0: SurfacePlace::extent counts so many steps of a coordinate
 };
 
 // A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest
@@ -98,6 +102,7 @@ class World {
   uint32_t object_of(uint32_t instance) const;
   const mat4& to_world(uint32_t instance) const;         // identity for moving ones
   const mat3& normal_to_world(uint32_t instance) const;  // as in PlacedMesh
+  bool any_apart() const;                                // PlacedMesh::apart
   bool is_moving(uint32_t instance) const;
   Bounds moving_bounds() const;  // of all moving meshes that are visible; empty: low above high
   bool is_visible(uint32_t instance) const;           // false: moving, and hidden by show()

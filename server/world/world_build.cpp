@@ -8,6 +8,7 @@
 #include "base/cancel.h"
 #include "base/log.h"
 #include "gltf/node.h"
+#include "world/far_instances.h"
 #include "world/mesh_finish.h"
 #include "world/surface.h"
 #include "world/world_alpha.h"
@@ -175,6 +176,28 @@ RTCGeometry World::Impl::make_geometry(const Mesh& mesh, const mat4* to_world, c
   return geometry;
 }
 
+// A tree of its own, relative to its place, so that a ray is told in those coordinates: subtracting
+// what is near loses nothing.
+RTCGeometry World::Impl::make_apart(uint32_t i, RTCBuildQuality quality) {
+  const Instance& instance = scene->instances[i];
+  mat4 turned = instance.to_world, moved(1);
+  std::swap(turned[3], moved[3]);
+  RTCScene own = rtcNewScene(shared_device());
+  mesh_scenes.push_back(own);
+  rtcSetSceneFlags(own, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(own, quality);
+  RTCGeometry geometry =
+      make_geometry(scene->meshes[size_t(instance.mesh)], &turned, {this, i, true}, quality);
+  rtcAttachGeometry(own, geometry);
+  rtcReleaseGeometry(geometry);
+  build_tree(own);
+  geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, own);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &moved[0][0]);
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
 void World::Impl::build_faces(PlacedMesh& instance, std::vector<Face>& list) {
   const Mesh& mesh = *instance.mesh;
   list.reserve(mesh.triangles.size());
@@ -219,7 +242,10 @@ void World::Impl::build_still() {
     check_cancelled();
     RTCGeometry geometry = nullptr;
     // Embree inverts an instance's transform; a flattened one has no inverse, so it is copied too.
-    if (flat[size_t(instance.mesh)] || is_singular(instance.to_world)) {
+    if (placed[i].apart) {
+      geometry = make_apart(i, quality);
+      build_faces(placed[i], faces[i]);
+    } else if (flat[size_t(instance.mesh)] || is_singular(instance.to_world)) {
       geometry = make_geometry(mesh, &instance.to_world, {this, i, false}, quality);
       build_faces(placed[i], faces[i]);
     } else {
@@ -319,6 +345,9 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
         scene.cull_back_faces && !material.double_sided && !encloses_medium(material);
     w.any_one_sided |= placed.one_sided;
   }
+  mark_far(scene, w.placed);
+  w.any_apart = std::any_of(w.placed.begin(), w.placed.end(),
+                            [](const PlacedMesh& placed) { return placed.apart; });
   w.tags.reserve(scene.instances.size() + scene.meshes.size() + w.moving.size());
   w.build_still();
   w.build_moving();

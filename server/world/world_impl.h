@@ -61,6 +61,7 @@ struct World::Impl {
   Bounds moving_bounds;                // of all that is visible
   bool any_moving = false;             // that is visible
   bool any_one_sided = false;
+  bool any_apart = false;
   bool moved = false;  // since the last commit
 
   ~Impl() {
@@ -87,6 +88,7 @@ struct World::Impl {
   bool is_occluded(const Ray& ray, PanesPassed* panes) const;
   RTCGeometry make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
                             RTCBuildQuality);
+  RTCGeometry make_apart(uint32_t instance, RTCBuildQuality quality);
   void build_still();
   void build_faces(PlacedMesh& placed, std::vector<Face>& faces);
   void build_moving();

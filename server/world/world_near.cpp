@@ -25,8 +25,14 @@ bool cross_triangle(const Search& s, uint32_t instance, uint32_t triangle, Hit& 
   glm::dvec3 c[3];
   for (int i = 0; i < 3; i++) {
     vec3 p = placed.mesh->positions[index[i]];
-    if (!placed.in_place) p = vec3(placed.to_world * vec4(p, 1));  // rounded as the tree has it
-    c[i] = glm::dvec3(p) - s.from;
+    glm::dvec3 from = s.from;
+    if (placed.apart) {
+      p = mat3(placed.to_world) * p;
+      from -= glm::dvec3(placed.to_world[3]);
+    } else if (!placed.in_place) {
+      p = vec3(placed.to_world * vec4(p, 1));  // rounded as the tree has it
+    }
+    c[i] = glm::dvec3(p) - from;
   }
   glm::dvec3 normal = cross(c[1] - c[0], c[2] - c[0]);
   double area = length(normal);

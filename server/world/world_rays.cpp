@@ -84,6 +84,7 @@ const mat4& World::to_world(uint32_t instance) const { return placed(instance).t
 const mat3& World::normal_to_world(uint32_t instance) const {
   return placed(instance).normal_to_world;
 }
+bool World::any_apart() const { return impl_->any_apart; }
 bool World::is_moving(uint32_t instance) const { return placed(instance).moving; }
 bool World::is_visible(uint32_t instance) const {
   return !is_moving(instance) || impl_->visible[instance - impl_->scene->instances.size()];

@@ -127,7 +127,7 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
       walk.from_normal = lit_side(surface, bsdf);
     }
     if (scattered.bounce == Bounce::refract) walk.density *= bsdf.eta * bsdf.eta;
-    if (walk.depth <= certain_depth) continue;
+    if (walk.edges() <= certain_depth) continue;
     float chance = std::min(0.95f, max_component(walk.throughput) * walk.density);
     sampler.seek(base + Dimensions::survival);
     if (!(sampler.next() < chance)) return;

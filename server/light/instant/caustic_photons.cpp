@@ -189,11 +189,11 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
                            -walk.ray.direction, arrival.surface.geometric_normal,
                            hue_of(walk.wavelengths)});
       if (!has_sharp(arrival.bsdf, sharp_alpha)) break;
-      int before = walk.depth;
+      int before = walk.edges();
       std::optional<WavelengthSpread> spread;
       part_arrival(transport, walk, sampler, arrival, spread);
       if (!scatter(walk, arrival, spread, Lobes::specular, sampler)) break;
-      sharp |= walk.depth > before;  // not straight through a pane
+      sharp |= walk.edges() > before;  // not straight through a pane
     }
   }
   return photons;

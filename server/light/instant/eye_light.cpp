@@ -62,7 +62,8 @@ vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, c
 
 // Lets a walk live with a chance of its throughput.
 bool survives(Walk& walk, float importance, Sampler& sampler) {
-  float chance = std::min(1.0f, max_component(walk.throughput) * importance);
+  const float most = walk.glass > sure_glass ? glass_survival : 1;
+  float chance = std::min(most, max_component(walk.throughput) * importance);
   if (!(sampler.next() < chance)) return false;
   walk.throughput /= chance;
   return true;
@@ -81,6 +82,11 @@ void meet(const Transport& transport, Hit& hit, Sampler& sampler, Walk& walk, Me
   walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
   met.bsdf = make_bsdf_in(transport, walk.media, met.surface, *met.material, walk.ray.direction);
   part_seen_colors(transport, walk, met.surface, sampler, met.bsdf, met.spread);
+}
+
+bool go_on(Walk& walk, const Met& met, const BsdfSample& scattered) {
+  if (scattered.bounce == Bounce::refract) walk.density *= met.bsdf.eta * met.bsdf.eta;
+  return advance(walk, met.surface, scattered);
 }
 
 // Of a sky without a picture's brightness to go by: what photons do not bring.
@@ -125,9 +131,9 @@ vec3 gather_along(const EyeLight& eye, Walk walk, Sampler& sampler) {
     BsdfSample scattered = sample_bsdf(met.bsdf, Lobes::specular, sampler);
     if (met.spread)
       carry_wavelengths(*met.spread, met.bsdf, Lobes::specular, scattered, walk.wavelengths);
-    if (!advance(walk, met.surface, scattered)) return radiance;
+    if (!go_on(walk, met, scattered)) return radiance;
     chained |= scattered.bounce != Bounce::pass;
-    if (!survives(walk, 1, sampler)) return radiance;
+    if (!survives(walk, walk.density, sampler)) return radiance;
   }
   return radiance;
 }
@@ -155,14 +161,14 @@ void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, P
 vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
   const Transport& transport = eye.transport;
   vec3 radiance(0);
-  for (int i = 0; i < most_panes; i++) {
+  for (int i = 0; i < most_panes + most_glass; i++) {
     Hit hit = transport.world.intersect(walk.ray);
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
     Met met;
     meet(transport, hit, sampler, walk, met);
     radiance += walk.throughput * walk_met_emission(transport, walk, met.surface, *met.material);
     if (met.material->unlit) return radiance;
-    bool last = walk.depth >= eye.max_depth;
+    bool last = walk.depth >= eye.max_depth && !is_clear_solid(met.bsdf);
     if (!last) {
       int asked = mirror_lights(walk);
       radiance += walk.throughput * eval_rough(eye, walk, met.surface, met.bsdf, mirror_alpha,
@@ -184,10 +190,10 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
       if (met.spread)
         carry_wavelengths(*met.spread, met.bsdf, Lobes::specular, scattered, walk.wavelengths);
     }
-    if (!advance(walk, met.surface, scattered)) return radiance;
+    if (!go_on(walk, met, scattered) || walk.depth > eye.max_depth) return radiance;
     if (scattered.bounce != Bounce::pass)
       walk.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
-    if (walk.depth > mirror_depth && !survives(walk, 1, sampler)) return radiance;
+    if (walk.edges() > mirror_depth && !survives(walk, walk.density, sampler)) return radiance;
   }
   return radiance;
 }

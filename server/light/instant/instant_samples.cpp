@@ -56,6 +56,7 @@ void follow_first(const EyeLight& light, Eye& eye) {
       carry_wavelengths(**eye.spread, bsdf, Lobes::specular, scattered, next.wavelengths);
     scattered.weight /= chance;
     next.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
+    if (scattered.bounce == Bounce::refract) next.density *= bsdf.eta * bsdf.eta;
     if (advance(next, first.surface, scattered)) rest += follow_mirrors(light, next, eye.sampler);
   }
   eye.sample.rest += first.tint * rest;

@@ -30,7 +30,7 @@ bool is_even(const std::vector<double>& effect) {
 
 // Follows mirrors until something rough; false: nothing is there.
 bool look_behind_mirrors(const Transport& transport, FirstSurface& first, Sampler& sampler) {
-  for (int i = 0; i < most_mirrors && first.scatters; i++) {
+  while (first.scatters && first.walk.depth <= most_mirrors) {
     if (has_rough(first.bsdf, mirror_alpha)) return true;
     if (!advance(first.walk, first.surface, sample_bsdf(first.bsdf, Lobes::specular, sampler)))
       return false;

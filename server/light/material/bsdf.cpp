@@ -84,6 +84,10 @@ bool is_smooth(const Bsdf& b) {
          (b.beneath == 1 || (!has_sheen(b) && b.clearcoat.alpha == 0));
 }
 
+bool is_clear_solid(const Bsdf& b) {
+  return !b.thin && max_component(b.transmit) > 0 && is_smooth(b);
+}
+
 namespace {
 
 // As if no colours were parted here.
@@ -171,8 +175,10 @@ BsdfSample sample_bsdf(const Bsdf& b, Lobes lobes, Sampler& sampler) {
              (lobes != Lobes::diffuse ? value.specular : vec3(0));
   if (!(s.pdf > 0)) return {};
   s.weight = sum / s.pdf;
-  if (dot(s.direction, b.geometric_normal) < 0)
+  if (dot(s.direction, b.geometric_normal) < 0) {
     s.bounce = b.thin ? Bounce::reflect : Bounce::refract;
+    s.glass = !b.thin;
+  }
   return s;
 }
 

@@ -32,7 +32,8 @@ float refractive_index(const Material& material);
 
 bool has_diffuse(const Bsdf& bsdf);
 bool has_specular(const Bsdf& bsdf);
-bool is_smooth(const Bsdf& bsdf);  // nothing but perfect lobes: light sampling is useless here
+bool is_smooth(const Bsdf& bsdf);       // nothing but perfect lobes: light sampling is useless here
+bool is_clear_solid(const Bsdf& bsdf);  // the smooth boundary of something that light goes through
 
 BsdfValue eval_bsdf(const Bsdf& bsdf, vec3 l);
 // Density of sample_bsdf(bsdf, lobes, ...) for a value of eval_bsdf.

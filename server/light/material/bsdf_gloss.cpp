@@ -252,6 +252,7 @@ vec3 sample_gloss(const Bsdf& b, Sampler& sampler) {
 
 BsdfSample sample_smooth_gloss(const Bsdf& b, float u) {
   BsdfSample s;
+  s.glass = !b.thin && max_component(b.transmit) > 0;
   FacetColor color = facet_color(b, b.view.z);
   if (u < color.reflect_share) {
     s.direction = to_world(b, {-b.view.x, -b.view.y, b.view.z});

@@ -81,6 +81,8 @@ struct BsdfSample {
   vec3 weight{0};  // value * |cosine| / density; zero: the path ends
   float pdf = 0;   // 0: a perfect lobe
   Bounce bounce = Bounce::reflect;
+  // A solid that light goes through did it, smooth or by refraction: walks count that apart.
+  bool glass = false;
 };
 
 }  // namespace wellspring

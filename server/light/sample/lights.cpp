@@ -77,6 +77,10 @@ void gather_instance(const World& world, uint32_t instance, LightTables& tables,
     e.normal = eval_face(world, instance, t, &e.area);
     e.extent = max_component(glm::max(
         glm::abs(e.corner), glm::max(glm::abs(e.corner + e.edge1), glm::abs(e.corner + e.edge2))));
+    if (world.any_apart()) {
+      Face face = make_face(world.placed(instance), t);
+      e.edge1 = face.edge1, e.edge2 = face.edge2, e.extent = face.extent;
+    }
     e.uniform = uniform;
     e.double_sided = material.double_sided || material.unlit;
     vec3 mean{0};

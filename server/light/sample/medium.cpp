@@ -62,7 +62,7 @@ bool find_coincident(const World& world, const Surface& surface, bool pass_opaqu
                      Crossings& all) {
   vec3 way = -surface.geometric_normal;
   float step = dot(offset_origin(surface, way) - surface.position, way);
-  float before = std::min(step, surface.extent * 0x1p-20f);
+  float before = std::min(step, position_error(surface));
   std::array<Hit, 2 * Crossings::most> near;
   int count = world.find_near(surface.position, way, before, step, near.data(), int(near.size()));
   // Their order is the tree's: results may not hang on it.

@@ -51,8 +51,9 @@ void dim_hidden_lights(const Transport& transport, std::span<const LitProbe> pro
                        VirtualLights& lights) {
   if (probes.empty() || rays < 1) return;
   std::vector<ShadowOrigin> origins;
+  const bool apart = transport.world.any_apart();
   for (const LitProbe& probe : probes)
-    origins.push_back(shadow_origin(probe.position, probe.normal, probe.depth));
+    origins.push_back(shadow_origin(probe.position, probe.normal, probe.depth, apart));
   std::vector<vec3> shares(static_cast<size_t>(lights.count));
   parallel_ranges(lights.count, 16, [&](int begin, int end) {
     std::vector<float> effect(probes.size());

@@ -9,14 +9,16 @@
 namespace wellspring {
 
 namespace {
-constexpr float lift = 3e-4f;  // off the surface, as a share of its depth
-}
+constexpr float lift = 3e-4f;                 // off the surface, as a share of its depth
+constexpr float apart_share = -4 * 0x1p-23f;  // so many steps of a coordinate, in metres
+}  // namespace
 
-ShadowOrigin shadow_origin(vec3 place, vec3 normal, float depth) {
+ShadowOrigin shadow_origin(vec3 place, vec3 normal, float depth, bool apart) {
   SurfacePlace surface;
   surface.position = place + normal * (lift * depth);
   surface.geometric_normal = normal;
   surface.extent = max_component(glm::abs(place));
+  if (apart) surface.extent *= apart_share;
   return {offset_origin(surface, normal), normal};
 }
 

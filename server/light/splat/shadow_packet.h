@@ -12,7 +12,8 @@ namespace wellspring {
 struct ShadowOrigin {
   vec3 position{0}, normal{0, 1, 0};
 };
-ShadowOrigin shadow_origin(vec3 place, vec3 normal, float depth);
+// `apart`: World::any_apart().
+ShadowOrigin shadow_origin(vec3 place, vec3 normal, float depth, bool apart = false);
 
 // What arrives along one ray goes to the item that it was added for.
 class ShadowPacket {

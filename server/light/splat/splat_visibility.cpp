@@ -86,7 +86,8 @@ void cast_probes(const Transport& transport, const SplatPixels& pixels, const Vi
       std::fill_n(weight, probes, 0.0f);
       LitPixel lit;
       if (!look_at(pixels, grid, subsplats.list[room.current[size_t(k)]], lit)) continue;
-      ShadowOrigin from = shadow_origin(lit.place, lit.normal, lit.depth);
+      ShadowOrigin from =
+          shadow_origin(lit.place, lit.normal, lit.depth, transport.world.any_apart());
       for (int p = 0; p < probes; p++) {
         size_t light = size_t((2 * p + 1) * int64_t(lights.count) / (2 * probes));
         weight[p] = luminance(eval_virtual_light(lights, light, lit.place, lit.normal));
@@ -283,7 +284,8 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
       if (!(sum > 0) || !std::isfinite(sum)) continue;
       const int rays = rays_of(one, settings);
       const double step = sum / rays;
-      ShadowOrigin from = shadow_origin(lit.place, lit.normal, lit.depth);
+      ShadowOrigin from =
+          shadow_origin(lit.place, lit.normal, lit.depth, transport.world.any_apart());
       choose_asked(lights, each.data(), step, rays, start_of(one, seed),
                    [&](size_t chosen) { shadowed.ask(from, chosen, uint32_t(i), step); });
     }

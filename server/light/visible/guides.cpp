@@ -13,7 +13,7 @@
 namespace wellspring {
 namespace {
 
-constexpr int most_specular = 8;     // surfaces on the way: mirrors may face mirrors
+constexpr int most_specular = 8;     // mirrors on the way: they may face each other
 constexpr float least_tint = 0.02f;  // of what is followed further
 constexpr int grain = 256;           // rays
 
@@ -41,6 +41,7 @@ BsdfSample turn(const Surface& surface, const Bsdf& bsdf, const Material& materi
                                                : bsdf.transmit;
     return turned;
   }
+  turned.glass = true;
   vec3 through = glm::refract(direction, n, 1 / bsdf.eta);
   if (through == vec3(0)) return turned;  // total reflection
   float here = -dot(direction, n), beyond = -dot(through, n);
@@ -67,7 +68,7 @@ Guide eval_guide(const Transport& transport, const Ray& ray) {
   if (transport.tables.any_solid) walk.media.here = find_media(transport, ray.origin);
   vec3 tint(1), albedo(0);
   Guide guide;
-  for (int met = 0; met <= most_specular; met++) {
+  for (;;) {
     Hit hit = transport.world.intersect(walk.ray);
     if (!hit.valid()) {
       albedo += tint * share(eval_environment(transport.tables.environment, walk.ray.direction));
@@ -77,7 +78,7 @@ Guide eval_guide(const Transport& transport, const Ray& ray) {
     const Material& material = transport.world.material_of(hit.instance);
     tint *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
-    bool last = material.unlit || met == most_specular || !is_polished(bsdf);
+    bool last = material.unlit || walk.depth > most_specular || !is_polished(bsdf);
     bool clear = max_component(bsdf.transmit) > 0 && !last;
     albedo += tint * share(surface_emission(surface, material) + (material.unlit ? vec3(0)
                                                                   : last         ? reflectance(bsdf)

@@ -131,7 +131,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
     describe_place(world, hit, surface, surface.normal, distance, sample);
     add_emission(first.tint, surface_emission(surface, material), sample);
     first.hit = hit;
-    first.scatters = !material.unlit && max_depth > 1;
+    first.scatters = !material.unlit && (max_depth > 1 || is_clear_solid(bsdf));
     first.metal = traits_of(transport, hit).metal;
     break;
   }

@@ -48,7 +48,7 @@ bool arrive(const Transport& transport, LightWalk& walk, Arrival& arrival) {
   const World& world = transport.world;
   Hit hit = world.intersect(walk.ray);
   if (!hit.valid()) return false;
-  if (transport.tables.any_solid && walk.depth == 1 && walk.panes == 0)
+  if (transport.tables.any_solid && walk.edges() == 1 && walk.panes == 0)
     walk.media.here = find_media(transport, walk.ray.origin);
   arrival.surface = meet_surface(transport, walk.ray, hit, walk.media);
   const Surface& surface = arrival.surface;
@@ -74,6 +74,8 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattere
     if (scattered.bounce == Bounce::refract) flux *= b.eta * b.eta;
   }
   float chance = std::min(1.0f, max_component(flux) / max_component(had));
+  if (scattered.glass && ++walk.glass > sure_glass) chance *= glass_survival;
+  if (walk.glass > most_glass) return false;
   if (!(sampler.next() < chance)) return false;
   walk.flux = flux / chance;
   walk.ray.origin = offset_origin(arrival.surface, scattered.direction);
@@ -83,7 +85,7 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattere
   walk.panes = 0;
   walk.run = 0;
   walk.range = std::numeric_limits<float>::infinity();
-  walk.depth++;
+  if (!scattered.glass) walk.depth++;
   return true;
 }
 

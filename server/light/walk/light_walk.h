@@ -26,12 +26,14 @@ bool has_rough(const Bsdf& bsdf, float alpha);
 struct LightWalk {
   Ray ray;
   vec3 flux{0};
-  int depth = 1;  // this ray's number, counted from the source
+  int depth = 1;  // this ray's number, counted from the source, without what solid glass did
+  int glass = 0;  // what that did
   Media media;    // that it runs in, found where it starts, and beyond the surface it met last
   int panes = 0;
   float run = 0;  // since the source or the last scattering, panes looked through
   float range = std::numeric_limits<float>::infinity();  // of the source, for the first ray
   Wavelengths wavelengths;  // once it has met something dispersive; `flux` has their colour
+  int edges() const { return depth + glass; }
 };
 
 struct Arrival {

@@ -18,8 +18,11 @@ constexpr int mirrored_depth = 12;  // chains of perfect mirrors and glass that 
 // Russian roulette: survivors carry the share of those that stop. False: this one stops.
 bool survives(Walk& walk, Sampler& sampler) {
   if (!(max_component(walk.throughput) > 0)) return false;
-  if (walk.depth <= (walk.pdf > 0 ? roulette_depth : mirrored_depth)) return true;
-  float chance = std::min(0.95f, max_component(walk.throughput) * walk.density);
+  if (walk.edges() <= (walk.pdf > 0 ? roulette_depth : mirrored_depth)) return true;
+  // Light in clear glass is taken as far as it is bright.
+  const bool clear = walk.pdf <= 0 && walk.glass > 0 && walk.glass <= sure_glass;
+  float chance =
+      std::min(clear ? 1.0f : glass_survival, max_component(walk.throughput) * walk.density);
   if (sampler.next() >= chance) return false;
   walk.throughput /= chance;
   return true;
@@ -70,7 +73,8 @@ bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered)
   if (scattered.bounce == Bounce::pass) return ++walk.panes <= most_panes;
   walk.ray.from_eye = false;
   walk.panes = 0;
-  walk.depth++;
+  if (!scattered.glass) walk.depth++;
+  else if (++walk.glass > most_glass) return false;
   walk.pdf = scattered.pdf;
   walk.from = place.position;
   walk.from_normal = place.geometric_normal;
@@ -240,8 +244,9 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     radiance += walk.throughput * walk_met_emission(transport, walk, surface, material);
     if (material.unlit) return radiance;
 
-    bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
-    if (last) {  // only straight on, where a shadow ray would have gone too
+    const bool ends = walk.scattered >= rules.scatterings, last = walk.depth >= rules.max_depth;
+    const bool solid = material.thickness > 0 && surface.transmission > 0;
+    if (ends || (last && !solid)) {  // only straight on, where a shadow ray would have gone too
       if (!is_pane(surface, material)) return radiance;
       BsdfSample straight;
       straight.direction = walk.ray.direction;
@@ -252,6 +257,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     }
     if (rules.blunt > 0) make_blunt(rules, walk, surface);
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
+    if (last && !is_clear_solid(bsdf)) return radiance;
     std::optional<WavelengthSpread> spread;
     part_colors(transport, walk, surface, base, sampler, bsdf, spread);
     bool smooth = is_smooth(bsdf);
@@ -262,7 +268,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     sampler.seek(base + Dimensions::scatter);
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
     if (spread) carry_wavelengths(*spread, bsdf, Lobes::all, scattered, walk.wavelengths);
-    if (!advance(walk, surface, scattered)) return radiance;
+    if (!advance(walk, surface, scattered) || walk.depth > rules.max_depth) return radiance;
     if (scattered.bounce != Bounce::pass) {
       walk.area_share = scattered.pdf > 0 ? transport.tables.area_share : 0;
       walk.from_normal = lit_side(surface, bsdf);

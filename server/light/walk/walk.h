@@ -13,7 +13,7 @@
 namespace wellspring {
 
 struct WalkRules {
-  int max_depth = 8;          // edges, panes passed straight not counted
+  int max_depth = 8;          // edges, panes passed straight and what glass does not counted
   int scatterings = 1 << 30;  // surfaces that may scatter other than perfectly; then one edge more
   // >0: what a ray met by chance reflects no sharper than the ray stands for, alpha at least
   // `blunt` over the root of its density. A highlight of a small lamp that a wide ray comes upon is
@@ -28,7 +28,8 @@ struct WalkRules {
 struct Walk {
   Ray ray;
   vec3 throughput{1};
-  int depth = 1;  // this ray's number, counted from the eye
+  int depth = 1;  // this ray's number, counted from the eye, without what solid glass did
+  int glass = 0;  // what that did (sample_light.h)
   float pdf = 0;  // density of its direction where it last scattered; 0: perfect, or the eye
   vec3 from_normal{0, 1, 0};  // the side from which light was sampled there
   vec3 from{0};               // there
@@ -38,6 +39,7 @@ struct Walk {
   int scattered = 0;
   int panes = 0;            // passed in a row
   Wavelengths wavelengths;  // once it has met something dispersive
+  int edges() const { return depth + glass; }
 };
 
 inline constexpr int roulette_depth = 2;  // edges that Russian roulette never cuts short

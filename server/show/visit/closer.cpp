@@ -9,7 +9,7 @@ namespace wellspring {
 
 namespace {
 
-constexpr int most_panes = 16;             // passed before a ray counts as lost
+constexpr int most_panes = 64;             // passed before a ray counts as lost
 constexpr float finger = 0.02f;            // of the picture's height
 constexpr float steepest_ground = 0.7f;    // cosine: what is steeper is no ground
 constexpr float storey = 20;               // metres in which ground is looked for below a place

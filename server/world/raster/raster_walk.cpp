@@ -126,8 +126,12 @@ EdgeLine SurfaceWalk::end_of(const RasterTriangle& t, const TriangleExit& exit, 
   };
   bool seen = true;
   auto project = [&](vec3 p) {
-    if (!placed.moving && !placed.in_place) p = vec3(placed.to_world * vec4(p, 1));
-    p -= view.position;
+    if (placed.apart) {
+      p = mat3(placed.to_world) * p + (vec3(placed.to_world[3]) - view.position);
+    } else {
+      if (!placed.moving && !placed.in_place) p = vec3(placed.to_world * vec4(p, 1));
+      p -= view.position;
+    }
     float w = dot(p, view.forward), scale = focal / w;
     seen &= w >= raster.near;
     return on_the_way({dot(p, right_of_middle(view)) * scale + raster.centre_x - float(x),

@@ -126,3 +126,30 @@ TEST(Guides, AreFiniteOnBadTriangles) {
     ASSERT_LE(max_component(guides.albedo[i]), 1.0f);
   }
 }
+
+// As a camera sees what stands behind show-cases in a row: no number of panes hides its colour.
+TEST(Guides, SeeThroughAnyNumberOfPanes) {
+  for (float thickness : {0.0f, 0.01f}) {
+    Scene scene = with_wall(diffuse(red));
+    int clear = add_material(scene, glass(1.5f, 0, thickness));
+    for (int i = 0; i < 12; i++) {
+      vec3 middle(0, 0, -0.2f - 0.2f * float(i));
+      if (thickness > 0) add_mesh(scene, box_mesh(clear, {4, 4, thickness}), "pane", at(middle));
+      else add_quad(scene, clear, middle - vec3(2, 2, 0), {4, 0, 0}, {0, 4, 0}, "pane");
+    }
+    Guide guide = guide_of(scene, {0, 0, 0}, {0.02f, 0.01f, -1});
+    EXPECT_NEAR(guide.albedo.y / guide.albedo.x, red.y / red.x, 0.01f) << thickness;
+    EXPECT_GT(guide.albedo.x, 0.3f * red.x) << thickness;
+    expect_near(guide.normal, {0, 0, 1}, 1e-3f);
+  }
+}
+
+// What total reflection keeps in a block of glass for ever has an end.
+TEST(Guides, EndWhereGlassKeepsARay) {
+  Scene scene = empty_scene();
+  add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 1)), vec3(1)), "block");
+  scene.environment.radiance = vec3(1);
+  Guide guide = guide_of(scene, {0.1f, -0.07f, 0.03f}, {0.6f, 0.55f, -0.58f});
+  EXPECT_EQ(guide.albedo, vec3(0));
+  EXPECT_NEAR(glm::length(guide.normal), 1, 1e-4f);
+}
