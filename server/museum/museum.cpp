@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/near_name.h"
-#include "base/return_memory.h"
+#include "base/memory_limit.h"
 #include "ledger/ledger.h"
 #include "museum/heartbeat.h"
 #include "museum/reception.h"

@@ -101,7 +101,8 @@ net::awaitable<void> Session::serve_websocket() {
             link_->pictures_sent.load(), link_->bytes_sent.load());
 }
 
-// A text came, and is read here. With its first one the peer joins: who says nothing takes no place among visitors.
+// A text came, and is read here. With its first one the peer joins: who says nothing takes no place
+// among visitors.
 void Session::hear(std::string text) {
   const size_t values = link_->push_text_in(std::move(text));
   if (!count_input({0, value_bytes * double(values)}) || joined_) return;

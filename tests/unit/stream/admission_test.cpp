@@ -174,7 +174,8 @@ TEST(Admission, many_addresses_together_are_bounded_too) {
   EXPECT_EQ(admission.take_request(modest, 0.2), Taken::yes);
   EXPECT_EQ(admission.take_input(loud, {200, 0}, false, 0), Taken::yes);
   EXPECT_EQ(admission.take_input(loud, {1, 0}, false, 0), Taken::too_many_in_all);
-  EXPECT_EQ(admission.take_input(modest, {1, 0}, true, 0), Taken::yes) << "says no more than a page";
+  EXPECT_EQ(admission.take_input(modest, {1, 0}, true, 0), Taken::yes)
+      << "says no more than a page";
   EXPECT_EQ(admission.open_websocket(modest, 0), Taken::too_many_in_all);
   EXPECT_EQ(admission.open_websocket(modest, 0.5), Taken::yes);
   EXPECT_EQ(admission.take_input(loud, {40, 0}, false, 0.5), Taken::yes);
