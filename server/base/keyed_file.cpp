@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 
 #include "base/load_error.h"
+#include "base/log.h"
 #include "base/rng.h"
 #include "base/write_file.h"
 
@@ -26,6 +28,18 @@ struct Head {
   uint64_t format = 0, key = 0, checksum = 0;
 };
 
+std::mutex damaged_mutex;
+std::vector<std::string> damaged;
+
+KeyedFile note_damage(const std::string& file) {
+  std::lock_guard lock(damaged_mutex);
+  if (std::ranges::find(damaged, file) == damaged.end()) {
+    log::warn("{}: is damaged; what it kept is computed anew", file);
+    damaged.push_back(file);
+  }
+  return KeyedFile::damaged;
+}
+
 }  // namespace
 
 KeyedFile read_keyed(const std::string& file, uint64_t format, uint64_t key, std::string& bytes) {
@@ -34,15 +48,23 @@ KeyedFile read_keyed(const std::string& file, uint64_t format, uint64_t key, std
   if (none) return KeyedFile::missing;
   std::ifstream in(file, std::ios::binary);
   Head head;
-  if (!in || size < sizeof head || size > (uint64_t(1) << 34)) return KeyedFile::damaged;
+  if (!in || size < sizeof head || size > (uint64_t(1) << 34)) return note_damage(file);
   in.read(reinterpret_cast<char*>(&head), sizeof head);
-  if (head.format != format) return KeyedFile::damaged;
+  if (head.format != format) {  // of another version, or of nobody
+    log::info("{}: is of another format; what it kept is computed anew", file);
+    return KeyedFile::damaged;
+  }
   if (key != any_key && head.key != key) return KeyedFile::another_key;
   std::string read(size_t(size) - sizeof head, '\0');
   if (!in.read(read.data(), std::streamsize(read.size())) || checksum(read) != head.checksum)
-    return KeyedFile::damaged;
+    return note_damage(file);
   bytes = std::move(read);
   return KeyedFile::read;
+}
+
+std::vector<std::string> damaged_files() {
+  std::lock_guard lock(damaged_mutex);
+  return damaged;
 }
 
 bool write_keyed(const std::string& file, uint64_t format, uint64_t key, const std::string& bytes) {

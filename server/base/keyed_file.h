@@ -57,8 +57,9 @@ struct TakeBytes {
 // What became of reading a file.
 enum class KeyedFile : uint8_t { read, missing, damaged, another_key };
 inline constexpr uint64_t any_key = 0;
-// Never throws. `bytes` is set where it was read.
+// Never throws. `bytes` is set where it was read. A damaged file is named in the log.
 KeyedFile read_keyed(const std::string& file, uint64_t format, uint64_t key, std::string& bytes);
+std::vector<std::string> damaged_files();  // that this process has met since it began
 // Replaces the file as a whole, and makes its folder. False: it cannot be written.
 bool write_keyed(const std::string& file, uint64_t format, uint64_t key, const std::string& bytes);
 

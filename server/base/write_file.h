@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that others may read at any time.
 #pragma once
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -8,5 +9,13 @@ namespace wellspring {
 
 // The whole file or none of it: written beside its place, then renamed over it. Throws LoadError.
 void write_file(const std::string& path, std::span<const char> bytes);
+
+// What programs that were killed while they wrote have left in a folder and those below it: taken
+// away, unless somebody writes it, or has begun it within a minute. How much that was.
+struct Unfinished {
+  size_t files = 0;
+  uint64_t bytes = 0;
+};
+Unfinished remove_unfinished(const std::string& folder);
 
 }  // namespace wellspring

@@ -5,17 +5,20 @@
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "base/log.h"
 #include "ledger/sums_file.h"
 
 namespace wellspring {
 
+static constexpr int64_t first_day = 18262;  // 2020-01-01
+
 struct Ledger::Impl {
   const LedgerSettings settings;
   mutable std::mutex mutex;  // of what follows
   std::condition_variable changed;
-  Sums waiting;
+  Sums waiting, undated;
   std::string problem;
   int64_t last_day = 0;
   bool hurry = false, end = false;
@@ -33,6 +36,7 @@ struct Ledger::Impl {
     changed.notify_all();
     thread.join();
     if (!write()) log::error("the last sums are lost");
+    if (!undated.empty()) log::error("sums are lost, as the clock was never set");
   }
 
   void live() {
@@ -78,8 +82,12 @@ void Ledger::add(const Sums& sums) {
   if (sums.empty()) return;
   {
     std::lock_guard lock(impl_->mutex);
-    wellspring::add(impl_->waiting, sums);
     const int64_t day = sums.rbegin()->first.day;
+    for (const auto& [key, value] : sums)
+      (key.day < first_day ? impl_->undated : impl_->waiting)[key] += value;
+    if (day < first_day) return;
+    for (const auto& [key, value] : std::exchange(impl_->undated, {}))
+      impl_->waiting[{day, key.what, key.key}] += value;
     impl_->hurry |= impl_->last_day != 0 && day > impl_->last_day;
     impl_->last_day = std::max(impl_->last_day, day);
     if (!impl_->hurry) return;

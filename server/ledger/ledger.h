@@ -21,7 +21,8 @@ class Ledger {
   explicit Ledger(LedgerSettings settings);
   ~Ledger();  // writes what is left
 
-  // Never waits for the disk. Sums of a later day than those before are written at once.
+  // Never waits for the disk. Sums of a later day than those before are written at once. Those of a
+  // clock that was never set, before 2020, wait for the first later day, and are its.
   void add(const Sums& sums);
   // Writes now what waits; false: could not, see problem(). It waits on.
   bool write();

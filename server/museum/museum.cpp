@@ -10,10 +10,14 @@
 #include <thread>
 
 #include "base/clock.h"
+#include "base/keyed_file.h"
 #include "base/log.h"
-#include "base/near_name.h"
 #include "base/memory_limit.h"
+#include "base/near_name.h"
+#include "base/write_file.h"
 #include "ledger/ledger.h"
+#include "museum/calendar.h"
+#include "museum/disks.h"
 #include "museum/heartbeat.h"
 #include "museum/reception.h"
 #include "show/answer/come_back.h"
@@ -74,6 +78,7 @@ struct Room {
   Arrivals arrivals;
   std::atomic<bool> draws = false;  // its visitors need the cores
   Heartbeat heartbeat;
+  Calendar calendar;
   std::unique_ptr<Rehearsal> rehearsal;
   std::unique_ptr<Show> next;  // what has come of it, to be taken over
   std::thread thread;          // of its ticks
@@ -90,6 +95,7 @@ struct SharedParts {
   Ledger* ledger = nullptr;  // where there is one, it gets what is counted
   std::function<DoorCounts()> doors;
   const StillDesk* stills = nullptr;
+  Disks disks;
 };
 
 // What others may know of it. `reception`: of the first room, for what is told once of all; else
@@ -106,6 +112,10 @@ void publish(Room& room, const SharedParts& shared, const Reception* reception =
     report.sums_problem = shared.ledger->problem();
   }
   if (shared.doors) report.doors = shared.doors();
+  if (reception) {
+    report.damaged_files = damaged_files();
+    report.full_disks = shared.disks.full();
+  }
   room.status.see(report);
   room.board.publish(std::move(report));
 }
@@ -135,9 +145,15 @@ void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& s
                   std::atomic<bool>& changed) {
   const Reception* told = &room == &rooms.front() ? &reception : nullptr;
   double reported = -1;
+  bool doubted = false;
   while (!stopping) {
     const double began = seconds_now();
-    room.show->local_time = local_time(std::time(nullptr));
+    room.show->local_time = local_time(room.calendar.see(std::time(nullptr), began));
+    if (room.calendar.doubts() && !doubted)
+      log::warn(
+          "the clock has leapt: days go on as they were for {:.0f} minutes, unless it stays so",
+          Calendar::patience / 60);
+    doubted = room.calendar.doubts();
     share_cores(room, rooms, *shared.stills);
     tick(*room.show, room.arrivals, began);
     const Worker& worker = room.show->renderer.worker;
@@ -185,7 +201,9 @@ struct Museum::Impl {
         capacity(std::make_shared<Capacity>(settings.capacity)),
         stills(settings.stills, [this] { return somebody_draws(); }) {}
 
-  SharedParts shared() const { return {ledger.get(), sources.door_counts, &stills}; }
+  SharedParts shared() const {
+    return {ledger.get(), sources.door_counts, &stills, {settings.recordings.cache, settings.sums}};
+  }
 
   bool somebody_draws() const {
     return std::ranges::any_of(rooms, [](const Room& room) { return room.draws.load(); });
@@ -260,7 +278,8 @@ struct Museum::Impl {
     reception = std::make_unique<Reception>(
         std::move(doors), capacity,
         ReceptionSettings{.most_waiting = settings.most_waiting,
-                          .most_pixels = double(settings.show.max_pixels)});
+                          .most_pixels = double(settings.show.max_pixels),
+                          .kiosk_tokens = settings.show.kiosk_tokens});
   }
 
   void note_failure(const std::string& id, const std::vector<Problem>& problems) {
@@ -298,6 +317,10 @@ struct Museum::Impl {
 Museum::Museum(const MuseumSettings& settings) : impl_(std::make_unique<Impl>(settings)) {
   Impl& impl = *impl_;
   impl.house_time = impl.time_of_house();
+  if (const std::string& cache = settings.recordings.cache; !cache.empty())
+    if (const Unfinished left = remove_unfinished(cache); left.files > 0)
+      log::info("{}: {} unfinished files of {:.1f} MB are taken away", cache, left.files,
+                1e-6 * double(left.bytes));
   if (!settings.sums.empty()) impl.ledger = std::make_unique<Ledger>(LedgerSettings{settings.sums});
   impl.open_all();
   impl.sources.stills = &impl.stills;
@@ -340,6 +363,9 @@ std::string Museum::metrics() const {
   add_metric(text, "capacity_cores", "Cores that visitors' pictures may take", cores.cores);
   add_metric(text, "capacity_cores_taken",
              "Cores that they take at the least rate while all visitors walk", cores.busy);
+  add_metric(text, "capacity_memory_bytes", "Memory that visitors' pictures may take",
+             cores.memory);
+  add_metric(text, "capacity_memory_taken_bytes", "Memory that they take, about", cores.bytes);
   add_metric(text, "picture_shown_seconds_a_megapixel", "Processor time of warping and encoding",
              1e6 * cores.cost.shown);
   add_metric(text, "picture_drawn_seconds_a_megapixel", "Processor time of a whole keyframe",

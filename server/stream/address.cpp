@@ -82,6 +82,13 @@ Address limited_part(const Address& address) {
   return part;
 }
 
+std::string shortened(const Address& address) {
+  const bool v4 = address.is_v4();
+  Address part = address;
+  std::fill(part.bytes.begin() + (v4 ? 15 : 6), part.bytes.end(), uint8_t(0));
+  return to_string(part) + (v4 ? "/24" : "/48");
+}
+
 std::optional<Address> find_client(const Address& peer, std::string_view forwarded,
                                    std::span<const Network> proxies) {
   Address client = peer;

@@ -37,6 +37,9 @@ bool any_holds(std::span<const Network> networks, const Address& one);
 // house has all the rest.
 Address limited_part(const Address& address);
 
+// For the log: "192.0.2.0/24", "2001:db8:1::/48", which is nobody's own.
+std::string shortened(const Address& address);
+
 // The address that asks, when `peer` is one of `proxies`: each proxy appends whom it serves to
 // X-Forwarded-For, so the last entry that is no proxy is believed and nothing before it.
 // `forwarded`: all such headers in order, joined by commas. Nothing for an entry that is no

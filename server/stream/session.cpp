@@ -69,6 +69,8 @@ Session::Session(std::shared_ptr<Core> core, tcp::socket socket, uint64_t id,
       id_(id),
       peer_(remote.address().to_string() + ":" + std::to_string(remote.port())),
       address_(read_address(remote.address().to_string()).value_or(Address{})),
+      name_(standing() == Standing::stranger ? shortened(address_) + " #" + std::to_string(id_)
+                                             : peer_),
       ws_(std::move(socket)),
       buffer_(max_header_bytes + max_body_bytes),
       answered_(ws_.get_executor()),
@@ -92,7 +94,7 @@ void Session::spawn(Work work) {
                   try {
                     if (error) std::rethrow_exception(error);
                   } catch (const std::exception& e) {
-                    log::error("session {}: {}", self->peer_, e.what());
+                    log::error("session {}: {}", self->name_, e.what());
                   }
                   self->stream().close();
                   if (self->link_) self->link_->mark_closed();
@@ -148,7 +150,7 @@ net::awaitable<bool> Session::start_tls() {
   if (!ec && *static_cast<const uint8_t*>(buffer_.data().data()) == handshake_record)
     ec = co_await stream().shake_hands(core_->certificate->context(), buffer_);
   reading_ = false;
-  if (ec) log::debug("session {}: TLS: {}", peer_, ec.message());  // scanners abound
+  if (ec) log::debug("session {}: TLS: {}", name_, ec.message());  // scanners abound
   co_return !ec;
 }
 
@@ -170,7 +172,7 @@ void Session::drop() {
 
 // What the kernel still holds for this peer is thrown away.
 void Session::cut(const char* why) {
-  log::debug("session {}: cut, {}", peer_, why);
+  log::debug("session {}: cut, {}", name_, why);
   stream().cut();
 }
 

@@ -130,6 +130,7 @@ class Session : public std::enable_shared_from_this<Session> {
   const uint64_t id_;
   const std::string peer_;
   const Address address_;
+  const std::string name_;  // for the log, which does not keep strangers' addresses
   bool reserved_ = false, refused_ = false;
   Caller caller_;  // of the request that is being answered, or of the WebSocket
   websocket::stream<Transport, false> ws_;  // false: no permessage-deflate, JPEG is packed

@@ -67,6 +67,8 @@ net::awaitable<int> Session::read_request(Request& request) {
       request.target(parser.get().target());
       co_return 405;
     }
+    const auto coding = parser.get()[http::field::transfer_encoding];
+    if (!coding.empty() && !beast::iequals(coding, "chunked")) co_return 501;
     const auto length = parser.content_length();
     if (posts && length && *length > max_posted_bytes) co_return 413;
   }
@@ -104,6 +106,7 @@ net::awaitable<void> Session::serve_http() {
       }
       const char* what = status == 413   ? "request body too large"
                          : status == 431 ? "request header too large"
+                         : status == 501 ? "the only Transfer-Encoding is chunked"
                                          : "not an HTTP request";
       co_await write_refusal(std::move(question), status, what);
       co_return;
@@ -171,8 +174,9 @@ std::optional<Caller> Session::find_caller(const Request& request) const {
     forwarded += (forwarded.empty() ? "" : ",") + std::string(view(it->value()));
   const auto client = find_client(address_, forwarded, core_->proxies);
   if (!client) return std::nullopt;
-  Caller caller{*client, any_holds(core_->trusted, *client), peer_};
-  if (*client != address_) caller.name = to_string(*client) + " by " + peer_;
+  Caller caller{*client, any_holds(core_->trusted, *client), name_};
+  if (*client != address_)
+    caller.name = (caller.trusted ? to_string(*client) : shortened(*client)) + " by " + name_;
   // A proxy that nobody named, or that does not say for whom, must not lend its visitors what this
   // machine may.
   if (caller.trusted && *client == address_ && is_proxied(request)) {
@@ -271,7 +275,7 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
   if (buffer_.size() != 0) return make_refusal(400, "WebSocket data before the handshake");
 
   if (!is_from_here(request)) {
-    log::debug("session {}: WebSocket from foreign origin refused", peer_);
+    log::debug("session {}: WebSocket from foreign origin refused", name_);
     return make_refusal(403, "this origin may not open WebSockets here");
   }
   const auto offers = request.equal_range(http::field::sec_websocket_protocol);

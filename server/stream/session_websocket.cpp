@@ -63,6 +63,7 @@ net::awaitable<void> Session::serve_websocket() {
   upgrade_.reset();
   link_ = std::make_shared<Link>(core_->next_link++, eye ? LinkKind::eye : LinkKind::visit,
                                  caller_.name);
+  if (!caller_.trusted) link_->address = to_string(limited_part(caller_.address));
   link_->local = local;
   link_->kiosk = admitted_.kiosk;
   link_->set_wake([weak = weak_from_this()] {
@@ -73,7 +74,7 @@ net::awaitable<void> Session::serve_websocket() {
       ws_.get_executor(), [self = shared_from_this()] { return self->write_messages(); },
       [self = shared_from_this()](std::exception_ptr error) {
         if (error) {
-          log::error("session {}: writer failed", self->peer_);
+          log::error("session {}: writer failed", self->name_);
           self->cut("writer failed");
         }
         self->writer_ended_.raise();
@@ -200,7 +201,7 @@ void Session::start_deadline() {
   deadline_.async_wait([self = shared_from_this(), number = ++deadline_number_](error_code ec) {
     if (ec || number != self->deadline_number_) return;
     self->core_->slow_closed++;
-    log::warn("session {}: reads too slowly, closed", self->peer_);
+    log::warn("session {}: reads too slowly, closed", self->name_);
     self->cut("a write was pending too long");
   });
 }

@@ -9,9 +9,10 @@
 // - TLS where there is a certificate; plain requests are then sent to https:// (308), but for those
 //   of trusted addresses.
 // - HTTP/1.1 with keep-alive, GET and HEAD only (405); header 16 KiB (431), body 64 KiB and ignored
-//   (413); targets as in target.h. /api/v1/admin/announce takes a POST and nothing else: a body of
-//   at most 16 KiB (413) of application/json (415), Origin as in origin.h (403). Every reply
-//   carries the headers of reply.h; ETag and If-None-Match make a 304.
+//   (413), no Transfer-Encoding but chunked (501); targets as in target.h. /api/v1/admin/announce
+//   takes a POST and nothing else: a body of at most 16 KiB (413) of application/json (415), Origin
+//   as in origin.h (403). Every reply carries the headers of reply.h; ETag and If-None-Match make a
+//   304.
 // - WebSocket at /api/v1/visit and /api/v1/eye; a plain GET there is told 426. Origin as in
 // origin.h (403).
 //   Subprotocol wellspring.v1 is echoed when offered; offering none is fine, offering only others

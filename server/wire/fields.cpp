@@ -201,8 +201,8 @@ WireError too_large(size_t most_bytes) {
   return {"too_large", "message of more than " + std::to_string(most_bytes) + " bytes"};
 }
 
-std::variant<Envelope, WireError> open_envelope(std::string_view text,
-                                                const EnvelopeLimits& limits, size_t* values) {
+std::variant<Envelope, WireError> open_envelope(std::string_view text, const EnvelopeLimits& limits,
+                                                size_t* values) {
   if (text.size() > limits.bytes) return too_large(limits.bytes);
   auto parsed = parse_json(text, {.values = limits.values}, values);
   if (auto* error = std::get_if<WireError>(&parsed)) return std::move(*error);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -49,14 +50,16 @@ bool read_key(const std::string& file, std::array<uint8_t, 32>& key) {
   return whole;
 }
 
-// Under a name of its own, then by its name: nobody sees it half written, and none is replaced.
-// False: errno says why.
-bool write_key(const std::string& file, const std::array<uint8_t, 32>& key) {
+// Under a name of its own, then by its name: nobody sees it half written, and none is replaced but
+// one that is cut off. False: errno says why.
+bool write_key(const std::string& file, const std::array<uint8_t, 32>& key, bool replaces) {
   std::string fresh = file + ".XXXXXX";
   const int out = mkostemp(fresh.data(), O_CLOEXEC);
   if (out < 0) return false;
   bool written = write(out, key.data(), key.size()) == ssize_t(key.size()) && fsync(out) == 0;
-  written = close(out) == 0 && written && link(fresh.c_str(), file.c_str()) == 0;
+  written =
+      close(out) == 0 && written &&
+      (replaces ? rename(fresh.c_str(), file.c_str()) : link(fresh.c_str(), file.c_str())) == 0;
   const int problem = errno;
   unlink(fresh.c_str());
   errno = problem;
@@ -65,13 +68,19 @@ bool write_key(const std::string& file, const std::array<uint8_t, 32>& key) {
 
 }  // namespace
 
-Seal::Seal(const std::string& file) {
+Seal::Seal(const std::string& file, bool is_own) {
   if (sodium_init() < 0) throw std::runtime_error("libsodium does not start");
   if (!file.empty() && read_key(file, key_)) return;
   crypto_auth_keygen(key_.data());
   std::error_code ec;
   std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ec);
-  if (file.empty() || write_key(file, key_)) return;
+  const auto size = std::filesystem::file_size(file, ec);
+  const bool cut_off = is_own && !file.empty() && !ec && size < key_.size();
+  if (file.empty() || write_key(file, key_, cut_off)) {
+    if (cut_off)
+      log::warn("{}: was cut off, and is made anew: visits of before begin from the start", file);
+    return;
+  }
   if (errno == EEXIST && read_key(file, key_)) return;  // another process was faster
   log::warn("{}: holds no key and cannot be made ({}): visits end with this process", file,
             std::strerror(errno));

@@ -14,7 +14,8 @@ class Seal {
   // The key of that file, which is made, for its owner alone, where there is none: of those who
   // make it at the same time, on other machines, too, all have the key of the first. An empty name,
   // or a file that cannot be used (which is logged): a key that ends with the process.
-  explicit Seal(const std::string& file = "");
+  // `is_own`: nobody else put the file there, so one that is cut off is made anew.
+  explicit Seal(const std::string& file = "", bool is_own = false);
   std::string close(const std::string& text) const;
   // The text; empty where the seal is not by this key, or broken.
   std::optional<std::string> open(const std::string& sealed) const;

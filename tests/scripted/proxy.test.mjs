@@ -125,7 +125,7 @@ for (const [name, configure] of Object.entries(proxies)) {
       visitor.send({ type: 'input', seq: 1, move: [0, 0, 0], look: [0.3, 0] });
       await next;
       await visitor.close();
-      assert.match(server.log(), /joined from 127\.0\.0\.9 by 127\.0\.0\.1:/);
+      assert.match(server.log(), /joined from 127\.0\.0\.0\/24 by 127\.0\.0\.1:/);
       assert.doesNotMatch(server.log(), /joined from 127\.0\.0\.1:/);
       const evil = { ...options, origin: 'https://evil.example' };
       const foreign = new Visitor(place, { options: evil });

@@ -107,7 +107,7 @@ std::string describe_api() {
     "problems": {"list": "[{file, where, what}]: what is wrong with the files of a watched exhibit, which goes on as it was; empty: nothing any more"},
     "announce": {"id": "number, grows", "text": "{language tag: text}; empty: the last is taken back",
                  "seconds": "that it stays", "urgent": "boolean: over everything"},
-    "error": {"code": "word, full (so many wait already) and storyteller_busy among them: the one storyteller of all visitors is taken; no_way, nothing_there, unknown_object: to go; not_trusted: a kiosk's token is needed",
+    "error": {"code": "word, full (so many wait already) and storyteller_busy among them: the one storyteller of all visitors is taken; no_way, nothing_there, unknown_object: to go; not_trusted: a kiosk's token is needed; no_room: for larger pictures, which stay as they are",
               "message": "sentence"}},
   "binary": {
     "picture": {"magic": "WSF1", "fields": [

@@ -85,6 +85,8 @@ struct ShowReport {
   uint64_t turned_away = 0;  // since so many waited already
   std::string sums_problem;  // why the ledger cannot be written; whoever has one sets it
   DoorCounts doors;          // likewise
+  std::vector<std::string> damaged_files;  // of the cache (base/keyed_file.h); likewise
+  std::vector<std::string> full_disks;     // what cannot be written; likewise
 };
 
 // One writer, many readers; the lock is held for a copy.

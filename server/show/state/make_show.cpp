@@ -92,7 +92,8 @@ void begin_maps(Show& show) {
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   auto show = std::make_unique<Show>();
   show->settings = settings;
-  show->seal = std::make_shared<Seal>(settings.cache.empty() ? "" : settings.cache + "/visits.key");
+  show->seal =
+      std::make_shared<Seal>(settings.cache.empty() ? "" : settings.cache + "/visits.key", true);
   show->technique = find_technique(settings.technique);
   show->still_technique = find_technique(settings.still_technique);
   for (const auto& [technique, name] : {std::pair(show->technique, settings.technique),

@@ -23,6 +23,12 @@ struct Patience {
   double before = 0, after = 0;  // seconds until it is told, and that it is told longer
 };
 
+std::string list_words(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
 class Judge {
  public:
   Judge(const ShowReport& report, JudgeMemory& memory) : now_(report.time), memory_(memory) {
@@ -316,6 +322,22 @@ std::vector<Finding> judge(const ShowReport& report, JudgeMemory& memory) {
                 .why = report.sums_problem,
                 .remedy = "Is the disk full, and may the server write there? Nothing is lost while "
                           "it runs."},
+               {});
+  if (!report.full_disks.empty())
+    judge.tell(
+        {.about = "disk",
+         .grave = true,
+         .what = "The disk is full",
+         .why = "nothing more can be written to " + list_words(report.full_disks),
+         .remedy = "Make room. Visits go on; sums wait while the server runs, and light that "
+                   "is baked is not kept."},
+        {});
+  if (!report.damaged_files.empty())
+    judge.tell({.about = "cache",
+                .what = "Files of the cache were damaged",
+                .why = list_words(report.damaged_files),
+                .remedy = "What they kept is computed anew. If it happens again, have the disk "
+                          "looked at. The next start forgets this."},
                {});
   if (report.exhibit_problems > 0)
     judge.tell(

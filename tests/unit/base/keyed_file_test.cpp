@@ -113,5 +113,20 @@ TEST(KeyedFileFields, ALengthThatIsALieIsNotBelieved) {
   }
 }
 
+TEST(KeyedFile, ADamagedOneIsNamedOnceAndOneOfAnotherFormatIsNot) {
+  const test::Folder folder;
+  const std::string file = folder.file("light.grid"), other = folder.file("other.grid");
+  ASSERT_TRUE(write_keyed(file, 1, 2, "some light"));
+  ASSERT_TRUE(write_keyed(other, 7, 2, "some light"));
+  std::string bytes = folder.read("light.grid");
+  bytes.back() ^= 1;
+  folder.write("light.grid", bytes);
+  const size_t before = damaged_files().size();
+  for (int i = 0; i < 2; i++) EXPECT_EQ(read_keyed(file, 1, 2, bytes), KeyedFile::damaged);
+  EXPECT_EQ(read_keyed(other, 1, 2, bytes), KeyedFile::damaged);
+  ASSERT_EQ(damaged_files().size(), before + 1);
+  EXPECT_EQ(damaged_files().back(), file);
+}
+
 }  // namespace
 }  // namespace wellspring

@@ -77,6 +77,16 @@ TEST_F(LedgerTest, MidnightIsWrittenAtOnceAndPartsDays) {
   EXPECT_EQ(kept(), (Sums{{{20000, "visits", "castle"}, 2}, {{20001, "visits", "castle"}, 3}}));
 }
 
+TEST_F(LedgerTest, SumsOfAClockThatWasNeverSetAreOfTheFirstDayThatIs) {
+  Ledger ledger(settings());
+  ledger.add(visits(2, 0));
+  EXPECT_EQ(ledger.read(0, 100000), Sums{});
+  ledger.add(visits(3, 20000));
+  EXPECT_EQ(ledger.read(0, 100000), visits(5, 20000));
+  EXPECT_TRUE(ledger.write());
+  EXPECT_EQ(kept(), visits(5, 20000));
+}
+
 TEST_F(LedgerTest, AKilledProgramLosesOnlyWhatWasNotWritten) {
   const pid_t child = fork();
   if (child == 0) {

@@ -23,6 +23,11 @@ TEST(Address, is_read_with_and_without_a_port) {
     EXPECT_FALSE(read_address(bad)) << bad;
 }
 
+TEST(Address, is_nobodys_own_in_the_log) {
+  EXPECT_EQ(shortened(at("192.0.2.77")), "192.0.2.0/24");
+  EXPECT_EQ(shortened(at("2001:db8:1:2::7")), "2001:db8:1::/48");
+}
+
 TEST(Address, networks_hold_what_their_prefix_says) {
   EXPECT_TRUE(read_network("10.0.0.0/8").holds(at("10.255.0.1")));
   EXPECT_FALSE(read_network("10.0.0.0/8").holds(at("11.0.0.1")));

@@ -200,6 +200,17 @@ TEST(Http, too_large_headers_targets_and_bodies) {
   EXPECT_EQ(fine.ask("/b").body, "/b");
 }
 
+TEST(Http, a_transfer_encoding_that_is_unknown_is_told_so_and_ends_the_connection) {
+  House house;
+  for (const char* coding : {"gzip", "gzip, chunked", "identity"}) {
+    RawClient client(house.port());
+    client.send(std::string("GET /a HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: ") + coding +
+                "\r\n\r\nGET /b HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(client.reply().status, 501) << coding;
+    EXPECT_TRUE(client.ends()) << coding;
+  }
+}
+
 TEST(Http, slow_headers_are_cut_while_others_are_served) {
   auto settings = quick_settings();
   settings.header_timeout = 0.3;

@@ -217,7 +217,7 @@ TEST(Limits, count_for_whom_a_proxy_asks) {
       odd(house.port());
   EXPECT_EQ(visit(first, "203.0.113.1"), 101);
   ASSERT_TRUE(house.link(0));
-  EXPECT_TRUE(house.link(0)->peer.starts_with("203.0.113.1 "));
+  EXPECT_TRUE(house.link(0)->peer.starts_with("203.0.113.0/24 "));
   EXPECT_EQ(visit(second, "203.0.113.1"), 429);
   EXPECT_EQ(visit(third, "203.0.113.2"), 101);
   EXPECT_EQ(visit(liar, "127.0.0.1, 203.0.113.1"), 429);

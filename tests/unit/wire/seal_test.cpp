@@ -73,5 +73,13 @@ TEST(Seal, WithoutAFileThatHoldsAKeyItStillSeals) {
   EXPECT_EQ(nowhere.open(nowhere.close("x")), "x");
 }
 
+TEST(Seal, AnOwnKeyThatWasCutOffIsMadeAnew) {
+  test::Folder folder;
+  const std::string file = folder.write("visits.key", "half a key");
+  const std::string sealed = Seal(file, true).close("here");
+  EXPECT_EQ(folder.read("visits.key").size(), 32u);
+  EXPECT_EQ(Seal(file).open(sealed), "here") << "the next start has the same";
+}
+
 }  // namespace
 }  // namespace wellspring

@@ -279,6 +279,20 @@ TEST_F(Judged, WhatIsMissingOrCannotBeWritten) {
   EXPECT_EQ(all(), "");
 }
 
+TEST_F(Judged, AFullDiskAndDamagedFilesAreToldAtOnce) {
+  report.full_disks = {"/var/cache", "/var/sums"};
+  report.damaged_files = {"/var/cache/castle.grid"};
+  wait(0.25);
+  EXPECT_EQ(all(), "The disk is full\nFiles of the cache were damaged\n");
+  EXPECT_TRUE(findings[0].grave);
+  EXPECT_NE(findings[0].why.find("/var/cache, /var/sums"), std::string::npos);
+  EXPECT_EQ(findings[1].why, "/var/cache/castle.grid");
+  report.full_disks.clear();
+  report.damaged_files.clear();
+  wait(1);
+  EXPECT_EQ(all(), "");
+}
+
 TEST_F(Judged, WaitingVisitorsAreToldAfterAWhile) {
   report.waiting = 2;
   wait(4);
