@@ -57,8 +57,8 @@ inline constexpr int most_panes = 64;  // straight through so many in a row, the
 
 // What solid glass does with a walk (BsdfSample::glass) is no edge of it, so that a room behind ten
 // panes is followed as far as one before them. Beyond `sure_glass` of these Russian roulette takes
-// some of all walks, as total reflection may hold one for ever; beyond `most_glass` the light is
-// lost, which is what is left of one in forty thousand.
+// some of all walks, as total reflection may hold one for ever; what stays for more than
+// `most_glass` is lost.
 inline constexpr int sure_glass = 48, most_glass = 256;
 inline constexpr float glass_survival = 0.95f;
 

@@ -142,6 +142,7 @@ TEST(FarFinds, NoPlaceShadowsItself) {
   for (int i = 0; i < 20000; i++) {
     float u = 2 * (float(i) + 0.5f) / 20000 - 1, turn = float(i) * 2.39996f;
     vec3 n(std::sqrt(1 - u * u) * std::cos(turn), u, std::sqrt(1 - u * u) * std::sin(turn));
+    if (n.y < 0) continue;  // the ground is below
     Ray ray;
     ray.origin = middle + n * 0.05f;
     ray.direction = -n;
