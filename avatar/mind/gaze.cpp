@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "avatar/body/body.h"
+
 namespace wellspring {
 namespace {
 
