@@ -2,8 +2,6 @@
 // What a file hides is not shown, colours of vertices are, and what is dropped is said once.
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "unit/avatar/figures.h"
 
 namespace wellspring {
@@ -71,15 +69,6 @@ TEST(Hidden, TheHumanoidThatASwitchShowsIsRead) {
   Character hidden = test::load_text(test::x3d("<Switch>" + two));
   EXPECT_EQ(hidden.name, "first");
   EXPECT_TRUE(test::says(hidden, "the first that it hides is used"));
-}
-
-// Linear colours by the place of their vertex.
-std::map<std::pair<float, float>, vec4> colors_at(const Character& character) {
-  std::map<std::pair<float, float>, vec4> found;
-  EXPECT_EQ(character.colors.size(), character.positions.size());
-  for (size_t v = 0; v < character.colors.size(); v++)
-    found[{character.positions[v].x, character.positions[v].y}] = character.colors[v];
-  return found;
 }
 
 TEST(VertexColors, TakeThePlaceOfTheMaterials) {
