@@ -83,6 +83,7 @@ TEST(Facing, NoStoryOfTheContentTurnsItsBackToWhoListens) {
   float worst = 0;
   for (const char* name : {"castle", "first-room"}) {
     const Exhibit& exhibit = content_package(name);
+    if (exhibit.storytellers.empty()) continue;  // its stories are told without a figure
     for (const StoryText& story : exhibit.stories)
       for (const auto& [lang, lines] : story.text)
         for (bool kiosk : {true, false}) {
