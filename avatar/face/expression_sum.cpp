@@ -168,17 +168,6 @@ void add(ExpressionSum& sum, const ExpressionSum& other, float weight) {
     sum.rotators[i] += weight * other.rotators[i];
 }
 
-void override_with(ExpressionSum& sum, const ExpressionSum& other, float amount) {
-  amount = between_0_and_1(amount);
-  if (amount == 1) {
-    sum = other;
-    return;
-  }
-  for (float& v : sum.controls) v *= 1 - amount;
-  for (float& v : sum.rotators) v *= 1 - amount;
-  add(sum, other, amount);
-}
-
 ExpressionSum mean(const ExpressionRig& rig, const std::vector<ExpressionSum>& sums,
                    const std::vector<float>& weights) {
   ExpressionSum result;

@@ -49,9 +49,6 @@ void clear(ExpressionSum& sum, const ExpressionRig& rig);
 void add(ExpressionSum& sum, const ExpressionRig& rig, int expression, float weight);
 // sum += weight * other.
 void add(ExpressionSum& sum, const ExpressionSum& other, float weight);
-// sum = (1 - amount) sum + amount other; amount is clamped to 0..1, and 1 leaves nothing of what
-// was.
-void override_with(ExpressionSum& sum, const ExpressionSum& other, float amount);
 // The weighted mean; weights that sum to nothing give the empty sum.
 ExpressionSum mean(const ExpressionRig& rig, const std::vector<ExpressionSum>& sums,
                    const std::vector<float>& weights);

@@ -119,33 +119,6 @@ double viterbi(const Hmm& m, std::span<const Code> codes, std::vector<int>* path
   return delta[size_t(last)];
 }
 
-double forward_probability(const Hmm& model, std::span<const Code> codes) {
-  Lattice lattice;
-  return run_forward(model, codes, lattice) ? lattice.log_probability : never;
-}
-
-double backward_probability(const Hmm& m, std::span<const Code> codes) {
-  // The scales need not be those of the forward procedure: here each row's largest value is 1.
-  const size_t n = size_t(m.states);
-  std::vector<double> beta(n), next(n);
-  double log_scale = 0, sum = 0;
-  for (size_t i = 0; i < n; i++) beta[i] = may_end(m, int(i)) ? 1 : 0;
-  for (size_t t = codes.size() - 1; t > 0; t--) {
-    double largest = 0;
-    for (size_t i = 0; i < n; i++) {
-      next[i] = 0;
-      for (size_t j = 0; j < n; j++)
-        next[i] += m.transition[i * n + j] * m.output[j][codes[t]] * beta[j];
-      largest = std::max(largest, next[i]);
-    }
-    if (!(largest > 0)) return never;
-    for (size_t i = 0; i < n; i++) beta[i] = next[i] / largest;
-    log_scale += std::log(largest);
-  }
-  for (size_t i = 0; i < n; i++) sum += m.initial[i] * m.output[i][codes[0]] * beta[i];
-  return log_scale + std::log(sum);
-}
-
 double improve(Hmm& m, std::span<const std::vector<Code>> sequences) {
   const size_t n = size_t(m.states);
   std::vector<double> starts(n), moves(n * n), left(n);

@@ -33,10 +33,6 @@ Hmm make_banded(int states, std::span<const std::vector<Code>> sequences);
 // `path` with its states unless that is null. `codes` must not be empty.
 double viterbi(const Hmm& model, std::span<const Code> codes, std::vector<int>* path = nullptr);
 
-// ln P(codes) by the forward and by the backward procedure; both are the same number.
-double forward_probability(const Hmm& model, std::span<const Code> codes);
-double backward_probability(const Hmm& model, std::span<const Code> codes);
-
 // One step of Baum-Welch: re-estimates the model in place and returns ln P of all sequences under
 // the model as it was. Sequences that the model cannot produce are left out.
 double improve(Hmm& model, std::span<const std::vector<Code>> sequences);

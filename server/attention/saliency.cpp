@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attention/opponents.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/simd.h"
@@ -15,18 +16,6 @@ namespace {
 
 // Hue is seen where intensity exceeds this share of the picture's largest (Itti et al., section 2).
 constexpr float dark_share = 0.1f;
-
-// For numbers and for eight of them. Y = (r + g) / 2 - |r - g| / 2 - b = min(r, g) - b.
-template <class T, class Least, class Positive, class Choose>
-void eval_channels(T r, T g, T b, T dark, const Least& least, const Positive& positive,
-                   const Choose& choose, T (&out)[channel_count]) {
-  T sum = r + g + b;
-  T red = positive(r - 0.5f * (g + b)), green = positive(g - 0.5f * (r + b)),
-    blue = positive(b - 0.5f * (r + g)), yellow = positive(least(r, g) - b);
-  out[0] = sum * (1 / 765.0f);
-  out[1] = choose(sum > dark, (red - green) / sum);
-  out[2] = choose(sum > dark, (blue - yellow) / sum);
-}
 
 struct Codes {
   Lanes r, g, b;
@@ -202,15 +191,6 @@ void eval_feature(const std::array<Plane, scale_count>& pyramid, int centre, int
 
 }  // namespace
 
-Opponents eval_opponents(float r, float g, float b, float dark) {
-  float out[channel_count];
-  eval_channels(
-      r, g, b, dark, [](float x, float y) { return std::min(x, y); },
-      [](float x) { return std::max(x, 0.0f); }, [](bool is, float x) { return is ? x : 0.0f; },
-      out);
-  return {out[0], out[1], out[2]};
-}
-
 void promote_peaks(Plane& map) {
   if (map.value.empty()) return;
   float least = *std::min_element(map.value.begin(), map.value.end());
@@ -252,20 +232,6 @@ void eval_saliency(const Image8& picture, SaliencyWork& work, SaliencyMap& salie
     width = half_size(width);
     height = half_size(height);
   }
-}
-
-float eval_saliency_at(const SaliencyMap& saliency, vec2 place) {
-  const Plane& map = saliency.map;
-  if (map.value.empty()) return 0;
-  auto clamp = [](float x, int size) { return std::clamp(x, 0.0f, float(size - 1)); };
-  vec2 at = saliency.offset + place / float(1 << saliency_scale);
-  float x = clamp(at.x, map.width), y = clamp(at.y, map.height);
-  int left = int(x), top = int(y);
-  int right = std::min(left + 1, map.width - 1), bottom = std::min(top + 1, map.height - 1);
-  const float *above = map.row(top), *below = map.row(bottom);
-  vec2 share = vec2(x - float(left), y - float(top));
-  return glm::mix(glm::mix(above[left], above[right], share.x),
-                  glm::mix(below[left], below[right], share.x), share.y);
 }
 
 size_t memory_bytes(const SaliencyWork& work) {

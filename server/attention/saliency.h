@@ -33,10 +33,6 @@ struct SaliencyMap {
   // Pixel (x, y) of the picture, counted by its middle, lies at `offset` + (x, y) / 16 in the map.
   vec2 offset{0};
 };
-// Saliency at a place of the picture in pixels, whole numbers being the middles of pixels:
-// interpolated linearly; beyond the border as at the border. 0 of an empty map.
-float eval_saliency_at(const SaliencyMap& saliency, vec2 place);
-
 // What the computation keeps from picture to picture: pictures of one size allocate once.
 struct SaliencyWork {
   struct Feature {
@@ -55,14 +51,6 @@ size_t memory_bytes(const SaliencyWork& work);
 void eval_saliency(const Image8& picture, SaliencyWork& work, SaliencyMap& saliency);
 
 // --- Parts of it, for tests ------------------------------------------------------------------
-
-// Of colours as 8-bit codes: intensity (r + g + b) / 3, 0 to 1, and the differences of the broadly
-// tuned colours R, G, B and Y, each colour over r + g + b, so that hue counts and brightness does
-// not. Hue cannot be seen in the dark: both differences are 0 where r + g + b <= `dark`.
-struct Opponents {
-  float intensity, red_green, blue_yellow;
-};
-Opponents eval_opponents(float r, float g, float b, float dark);
 
 // The operator N: the map's values become 0 to 1, then are multiplied by (M - m)^2, where M is the
 // largest and m the mean of the other local maxima. It promotes maps with few strong peaks and

@@ -20,8 +20,6 @@ fs::path prefix() {
 
 }  // namespace
 
-std::string installed_prefix() { return prefix().string(); }
-
 std::string installed_share(const std::string& name) {
   const fs::path root = prefix();
   std::error_code ec;

@@ -6,9 +6,6 @@
 
 namespace wellspring {
 
-// PREFIX, or "" where this program runs from its build folder.
-std::string installed_prefix();
-
 // PREFIX/share/wellspring/NAME, or "" where that is not there.
 std::string installed_share(const std::string& name);
 

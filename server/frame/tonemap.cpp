@@ -11,16 +11,6 @@
 namespace wellspring {
 namespace {
 
-inline float larger(float a, float b) { return a > b ? a : b; }
-inline float usable(float x) {
-  x = x > 0 ? x : 0.0f;  // false for NaN
-  return x < brightest_shown ? x : brightest_shown;
-}
-
-inline float encode_exact(float x) {
-  return x < 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-}
-
 // Eight colours, a channel after the other in memory.
 Lanes3 load_colors(const float* from) {
   Lanes a = load_lanes(from), b = load_lanes(from + lane_count),
@@ -60,15 +50,6 @@ void tonemap(const Frame& frame, const Tonemap& settings, Image8& out) {
     size_t first = size_t(begin) * size_t(frame.width), last = size_t(end) * size_t(frame.width);
     tonemap_row(&frame.color[first], int(last - first), settings.exposure, &out.rgb[first * 3]);
   });
-}
-
-vec3 tonemap_color(vec3 radiance, const Tonemap& settings) {
-  vec3 c(usable(radiance.x * settings.exposure), usable(radiance.y * settings.exposure),
-         usable(radiance.z * settings.exposure));
-  float scale, offset;
-  eval_shoulder(larger(max_component(c), shoulder_start), scale, offset);
-  return {encode_exact(c.x * scale + offset), encode_exact(c.y * scale + offset),
-          encode_exact(c.z * scale + offset)};
 }
 
 }  // namespace wellspring

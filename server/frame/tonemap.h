@@ -12,7 +12,5 @@ struct Tonemap {
 
 // Overwrites `out` (resized to the frame). Deterministic; dithering is not applied.
 void tonemap(const Frame& frame, const Tonemap& settings, Image8& out);
-// One colour through the same curve, result in [0, 1] sRGB-encoded: what tests compare against.
-vec3 tonemap_color(vec3 radiance, const Tonemap& settings);
 
 }  // namespace wellspring

@@ -232,17 +232,6 @@ TransportPlan make_transport_plan(const Scene& scene, std::span<const Mesh* cons
   return plan;
 }
 
-TransportPlan make_full_plan(const Scene& scene) {
-  TransportPlan plan;
-  for (TransportDecision& decision : plan.decisions) decision = {true, "asked for"};
-  for (const Material& m : scene.materials) {
-    bool through = m.transmission > 0, solid = m.thickness > 0;
-    plan.materials.push_back({true, true, true, true, true, through && !solid, through && solid,
-                              true, true, true, true});
-  }
-  return plan;
-}
-
 namespace {
 
 // Where techniques differ in what they make of a part.
@@ -281,7 +270,7 @@ std::string explain(const TransportPlan& plan) {
     for (size_t i = 0; i < transport_parts; i++) {
       if (plan.decisions[i].used != used) continue;
       any = true;
-      std::string name = names[i];
+      std::string name = transport_part_name(TransportPart(i));
       text +=
           "  " + name + std::string(widest + 2 - name.size(), ' ') + plan.decisions[i].why + "\n";
       if (!used) continue;

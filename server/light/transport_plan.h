@@ -50,10 +50,6 @@ struct TransportPlan {
 
 // `moving`: the meshes that move in the scene (World's); their materials are the scene's.
 TransportPlan make_transport_plan(const Scene& scene, std::span<const Mesh* const> moving = {});
-// Everything on, as far as the scene's materials can be asked for it: for tests that prove that
-// what a plan left out does not matter.
-TransportPlan make_full_plan(const Scene& scene);
-
 // The plan as two aligned lists for people, parts used and parts left out, each with its reason,
 // and below a part what techniques make of it where they differ.
 std::string explain(const TransportPlan& plan);

@@ -245,6 +245,7 @@ StreamCounters Server::counters() const {
   counters.limited_in_all = core.limited_in_all;
   counters.dropped = core.dropped;
   counters.silent_closed = core.silent_closed;
+  counters.addresses = core.admission.addresses();
   std::lock_guard lock(core.mutex);
   counters.open = core.sessions.size();
   return counters;
@@ -271,6 +272,7 @@ std::string to_metrics(const StreamCounters& counters) {
   add_metric(text, "floods_closed_total", "Closed since they said too much", counters.flood_closed);
   add_metric(text, "silent_closed_total", "WebSockets closed that said nothing",
              counters.silent_closed);
+  add_metric(text, "addresses", "Addresses that are remembered", counters.addresses);
   return text;
 }
 

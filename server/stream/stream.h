@@ -79,13 +79,14 @@ struct StreamSettings {
   double certificate_interval = 2;   // seconds between looks whether they have changed
 };
 
-struct StreamCounters {  // since the start, but for open and websockets: now
+struct StreamCounters {  // since the start, but for open, websockets and addresses: now
   uint64_t accepted = 0, refused = 0, open = 0, http_requests = 0, websockets = 0, slow_closed = 0;
   uint64_t flood_closed = 0, accept_errors = 0;
   uint64_t limited = 0;         // requests and WebSockets refused by their address's limits
   uint64_t limited_in_all = 0;  // likewise, by those of all addresses together
   uint64_t dropped = 0;         // connections that waited and made place for others
   uint64_t silent_closed = 0;   // WebSockets that said nothing
+  uint64_t addresses = 0;       // that are remembered, with what they have and asked for
 };
 // As Prometheus reads it.
 std::string to_metrics(const StreamCounters& counters);

@@ -22,13 +22,4 @@ inline constexpr size_t sound_header_bytes = 56;
 
 Packet make_sound_packet(const SoundHeader& header, std::span<const int16_t> samples);
 
-struct SoundView {
-  SoundHeader header;
-  std::vector<int16_t> samples;  // of all channels, interleaved
-};
-// Empty when the bytes are no sound message: short, other magic, header length < 56 or past the
-// end, no channels or no rate, half a sample, more samples than the utterance has, a mouth that is
-// nowhere.
-std::optional<SoundView> read_sound_packet(std::span<const uint8_t> bytes);
-
 }  // namespace wellspring

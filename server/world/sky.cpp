@@ -200,10 +200,6 @@ const char* sky_problem(const SkySettings& s) {
   return nullptr;
 }
 
-vec3 eval_sun_irradiance(const SkySettings& settings) {
-  return vec3(sun_irradiance(settings, SunTable(settings.turbidity)));
-}
-
 std::vector<Daylight> eval_daylight(const SkySettings& settings,
                                     std::span<const double> elevations) {
   constexpr int rows = 12, columns = 16;

@@ -34,9 +34,6 @@ void add_sky(const SkySettings& settings, Scene& scene);
 // Gives a scene without light of any kind a radiance of 1 from everywhere; true where it did.
 bool add_missing_light(Scene& scene);
 
-// Irradiance of the sun on a surface that faces it, from its elevation in degrees.
-vec3 eval_sun_irradiance(const SkySettings& settings);
-
 // Irradiances: of the sun on a surface that faces it, of the sky on the ground.
 struct Daylight {
   vec3 sun{0}, sky{0};

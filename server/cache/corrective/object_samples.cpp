@@ -228,31 +228,6 @@ void set_delta(SampleStore& store, uint32_t object, float delta) {
   if (object != 0 && std::isfinite(delta)) enter_object(store, object).delta = delta;
 }
 
-bool transform_samples(SampleStore& store, uint32_t object, const mat4& motion) {
-  for (int c = 0; c < 4; c++)
-    if (!is_finite(vec3(motion[c]))) return false;
-  ObjectSamples* samples = find_object(store, object);
-  if (!samples) return true;
-  const mat3 turn(motion);
-  const vec3 shift(motion[3]);
-  auto turned = [&](Lanes3 v) {
-    return all_lanes(turn[0]) * v.x + all_lanes(turn[1]) * v.y + all_lanes(turn[2]) * v.z;
-  };
-  for (LevelSamples& list : samples->levels)
-    for (int i = 0; i < list.count(); i += lane_count) {
-      int here = std::min(lane_count, list.count() - i);
-      Lanes3 place = turned(load_places(list, i, here)) + all_lanes(shift);
-      Lanes3 normal =
-          turned(unpack_fine_normal(load_some<LaneBits>(&list.normal[size_t(i)], here)));
-      for (int k = 0; k < here; k++) {
-        size_t at = size_t(i + k);
-        list.x[at] = place.x[k], list.y[at] = place.y[k], list.z[at] = place.z[k];
-        list.normal[at] = pack_fine_normal(normal.at(k));
-      }
-    }
-  return true;
-}
-
 void forget_samples(SampleStore& store, uint32_t object) {
   if (ObjectSamples* samples = find_object(store, object))
     for (LevelSamples& list : samples->levels) list = {};

@@ -69,9 +69,6 @@ float delta_of(float roughness);
 // Also of an object that has no samples yet.
 void set_delta(SampleStore& store, uint32_t object, float delta);
 
-// The samples of a moving object follow it. `motion` is rigid; one that is not finite is refused.
-// Each call rounds positions to floats.
-bool transform_samples(SampleStore& store, uint32_t object, const mat4& motion);
 // The light on an object has changed: its samples go, its delta stays.
 void forget_samples(SampleStore& store, uint32_t object);
 

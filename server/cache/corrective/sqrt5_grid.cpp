@@ -121,10 +121,6 @@ bool Sqrt5Places::next(ivec2& place) {
   return false;
 }
 
-int64_t count_places(const Sqrt5Grid& grid, int level, const PixelBox& box) {
-  return Sqrt5Places(grid, level, box).count();
-}
-
 void list_places(const Sqrt5Grid& grid, int level, const PixelBox& box, int64_t position,
                  int64_t count, std::vector<ivec2>& places) {
   Sqrt5Places walk(grid, level, box, position);

@@ -43,10 +43,6 @@ inline int footprint_side(const Sqrt5Grid& grid, int level) {
   ivec2 u = glm::abs(grid.step[size_t(level - 1)]);
   return glm::max(u.x, u.y);
 }
-// Pixels of a footprint of this side around `center`: those before it are as many as those behind
-// it, or one fewer.
-inline int footprint_begin(int center, int side) { return center - (side - 1) / 2; }
-
 // The one level that this pixel is a place of.
 int level_of_pixel(const Sqrt5Grid& grid, ivec2 pixel);
 
@@ -79,7 +75,6 @@ class Sqrt5Places {
   int64_t position_ = 0;
 };
 
-int64_t count_places(const Sqrt5Grid& grid, int level, const PixelBox& box);
 // Appends at most `count` places from `position` on.
 void list_places(const Sqrt5Grid& grid, int level, const PixelBox& box, int64_t position,
                  int64_t count, std::vector<ivec2>& places);

@@ -286,9 +286,4 @@ void filter_windows(const View& view, std::span<const DiscontinuitySettings> win
   });
 }
 
-void filter_smooth(const View& view, const DiscontinuitySettings& settings,
-                   std::span<Sample> samples, std::vector<uint8_t>* edges) {
-  filter_windows(view, std::span(&settings, 1), samples, edges);
-}
-
 }  // namespace wellspring

@@ -16,7 +16,7 @@
 namespace wellspring {
 
 // samples[y * width + x], filtered, become means over `rays` more samples a pixel at `edges`,
-// filter_smooth's. `lights.pass` is the pass they were traced in.
+// filter_windows()'s. `lights.pass` is the pass they were traced in.
 void refine_edges(const World& world, const Lights& lights, const TransportSettings& settings,
                   const View& view, const DiscontinuitySettings& continuity, int rays,
                   uint64_t seed, uint32_t index, std::span<const uint8_t> edges,

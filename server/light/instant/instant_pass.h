@@ -67,13 +67,7 @@ struct InstantPass {
   int lists() const { return sets() * RegionLights::finer * RegionLights::finer; }
 };
 
-// The set of a pixel's place in the pattern.
-inline int set_of_pixel(const InstantPass& pass, uint32_t pixel) {
-  int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
-  return y % pass.rows * pass.columns + x % pass.columns;
-}
-
-// Its list among those of its region.
+// The list of a pixel among those of its region.
 inline int list_of_pixel(const InstantPass& pass, uint32_t pixel) {
   int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
   int columns = pass.columns * RegionLights::finer, rows = pass.rows * RegionLights::finer;

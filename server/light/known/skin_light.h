@@ -120,9 +120,6 @@ void relight_skin(const World& world, const SkinChange& change, SkinLight& skin)
 struct SkinTriangle {
   vec3 corner, edge1, edge2;
 };
-inline vec3 eval_skin(const SkinTriangle& light, vec2 barycentric) {
-  return light.corner + light.edge1 * barycentric.x + light.edge2 * barycentric.y;
-}
 // Of the World's moving instances, which are visible.
 std::vector<uint8_t> find_visible(const World& world, const SkinLight& skin);
 

@@ -68,9 +68,6 @@ struct LightTables {
   SolidBounds solids;
 };
 
-// Memory of what was built for sampling lights: what a scene's lights cost beside the scene itself.
-size_t light_table_bytes(const LightTables& tables);
-
 // Radiance a hit surface shows towards the ray: its emission, or its base colour where it is unlit.
 vec3 surface_emission(const struct Surface& surface, const Material& material);
 

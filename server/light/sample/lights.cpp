@@ -118,15 +118,6 @@ float share_of(double first, double second) {
 
 }  // namespace
 
-size_t light_table_bytes(const LightTables& t) {
-  size_t bytes = bytes_of(t.emitters, t.emitter_power, t.environment.cells.cells, t.punctual,
-                          t.cones, t.punctual_index);
-  for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
-    bytes += bytes_of(tree->nodes, tree->leaf_of, tree->strengths.cells, tree->emitting);
-  for (const EmissionPicture& picture : t.pictures) bytes += bytes_of(picture.cells.cells);
-  return bytes;
-}
-
 vec3 surface_emission(const Surface& surface, const Material& material) {
   return material.unlit ? surface.base_color : surface.emission;
 }

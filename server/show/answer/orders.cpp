@@ -97,8 +97,8 @@ size_t put(BrowserMessage newer, std::vector<WaitingOrder>& waiting) {
 const OrderBound* bound_of(const BrowserMessage& order) {
   const char* type = std::visit([](const auto& one) { return one.type; }, order);
   auto found = std::ranges::find_if(
-      bounds, [&](const OrderBound& bound) { return std::strcmp(bound.type, type) == 0; });
-  return found == std::end(bounds) ? nullptr : &*found;
+      order_bounds(), [&](const OrderBound& bound) { return std::strcmp(bound.type, type) == 0; });
+  return found == order_bounds().end() ? nullptr : &*found;
 }
 
 bool is_due(const Show& show, VisitorOrders& orders, const BrowserMessage& order) {

@@ -27,12 +27,6 @@ const std::string& text_in(const LocalText& text, const std::string& lang,
   return found ? found->second : none;
 }
 
-std::string tag_in(const LocalText& text, const std::string& lang,
-                   const std::vector<std::string>& languages) {
-  const auto* found = entry_in(text, lang, languages);
-  return found ? found->first : "";
-}
-
 const LocalLine::value_type* line_in(const LocalLine& line, const std::string& lang,
                                      const std::vector<std::string>& languages) {
   return entry_in(line, lang, languages);

@@ -27,9 +27,6 @@ using LocalScript = std::map<std::string, std::vector<StoryLine>>;  // language 
 // `languages` that has one, else any; "" when there is none at all.
 const std::string& text_in(const LocalText& text, const std::string& lang,
                            const std::vector<std::string>& languages);
-// The language tag of the text that text_in gives; "" when there is none.
-std::string tag_in(const LocalText& text, const std::string& lang,
-                   const std::vector<std::string>& languages);
 // The same of a line; null when there is none.
 const LocalLine::value_type* line_in(const LocalLine& line, const std::string& lang,
                                      const std::vector<std::string>& languages);

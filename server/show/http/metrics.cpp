@@ -232,6 +232,10 @@ std::string write_metrics(const ShowReport& report) {
   per_visitor(out, report, "memory_bytes",
               "Memory of all that is kept for the visitor's pictures, the cache included",
               [](auto& v) { return v.memory_bytes; });
+  per_visitor(out, report, "sounds_dropped_total", "Pieces of sound that were never sent",
+              [](auto& v) { return v.sounds_dropped; });
+  per_visitor(out, report, "messages_dropped_total", "Messages that came faster than they are read",
+              [](auto& v) { return v.texts_dropped; });
   per_visitor(out, report, "pictures_dropped_total", "Pictures replaced before they were sent",
               [](auto& v) { return v.dropped; });
   return out;

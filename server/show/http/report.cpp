@@ -99,6 +99,8 @@ ShowReport make_report(const Show& show) {
     one.cache_bytes = visitor.picture.cache_bytes;
     one.memory_bytes = visitor.picture.memory_bytes;
     one.dropped = visitor.link->pictures_dropped();
+    one.sounds_dropped = visitor.link->sounds_dropped();
+    one.texts_dropped = visitor.link->texts_dropped();
     one.walks = show.time - visitor.place.moved_at < 1;
     one.interval_ms = visitor.times.interval;
     one.kiosk = visitor.kiosk;

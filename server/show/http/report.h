@@ -26,7 +26,8 @@ struct VisitorReport {
   float line_ms = 0, line_rate = 0;  // there and back; bytes a second; 0: not known
   float drawn_fps = 0, warp_ms = 0, moving_ms = 0, whole_ms = 0;
   float fresh = 0, empty = 0, converged = 0, mean_age = 0;
-  uint64_t cache_bytes = 0, memory_bytes = 0, dropped = 0;
+  uint64_t cache_bytes = 0, memory_bytes = 0;
+  uint64_t dropped = 0, sounds_dropped = 0, texts_dropped = 0;
   bool walks = false;     // or is taken along, at the moment
   float interval_ms = 0;  // from one picture drawn to the next, while it does
   bool kiosk = false;

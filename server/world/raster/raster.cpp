@@ -71,7 +71,6 @@ struct Raster::Impl {
   float near = 0;
   std::vector<RasterPiece> pieces;
   std::vector<Bounds> moving;  // of every instance that moves
-  size_t hidden = 0;
   std::vector<Block> blocks;
   std::vector<TilePixels> tiles;
   std::vector<std::vector<EdgeShare>> edges, border_edges;  // of each tile
@@ -131,8 +130,6 @@ Raster::Raster(const World& world) : impl_(std::make_unique<Impl>(world)) {
   if (!(r.near > 0)) r.near = 1e-6f;
 }
 Raster::~Raster() = default;
-size_t Raster::drawn_clusters() const { return impl_->pieces.size(); }
-size_t Raster::hidden_clusters() const { return impl_->hidden; }
 
 void Raster::Impl::find_pieces(const View& view, const RasterSettings& settings) {
   auto veils = [&](const PlacedMesh& placed) {
@@ -358,7 +355,6 @@ void Raster::draw(const View& view, const RasterSettings& settings,
                   const std::function<void(const RasterRun&)>& take) {
   Impl& r = *impl_;
   r.pieces.clear();
-  r.hidden = 0;
   if (view.width > most_pixels || view.height > most_pixels) return;
   auto steps = [](float x) { return int32_t(std::lrint(x * raster_steps)); };
   RasterView raster{std::max(r.near, view.near), view.width, view.height};
@@ -404,9 +400,7 @@ void Raster::draw(const View& view, const RasterSettings& settings,
     draw_tile(i, 0);
     r.tiles[size_t(i)].find_all_least();
   });
-  r.hidden = r.pieces.size();
   r.drop_hidden(view, raster, drawn);
-  r.hidden -= r.pieces.size();
   size_t second = fill(r.pieces.size());
   auto triangle_of = [&r](uint32_t number) { return &r.triangle_of(number); };
   SurfaceWalk walk{r.world, r.neighbours, r.mesh_of,

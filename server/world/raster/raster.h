@@ -78,10 +78,6 @@ class Raster {
   // Of the last picture, if asked for: pixels that edges of objects and creases cut. Each pixel is
   // named in one of the lists only, there maybe more than once.
   std::span<const std::vector<EdgeShare>> edges() const;
-  // Of the last picture: clusters that were drawn, and those left out because nearer ones hide
-  // them.
-  size_t drawn_clusters() const;
-  size_t hidden_clusters() const;
 
  private:
   struct Impl;

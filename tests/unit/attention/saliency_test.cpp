@@ -9,7 +9,9 @@
 #include <cmath>
 
 #include "base/rng.h"
+#include "attention/opponents.h"
 #include "unit/attention/bars.h"
+#include "unit/attention/saliency_at.h"
 
 using namespace wellspring;
 
@@ -98,14 +100,14 @@ TEST(Saliency, PicturesOfAnySizeHaveFiniteMaps) {
     }
   }
   EXPECT_TRUE(saliency_of(Image8{}).map.value.empty());
-  EXPECT_EQ(eval_saliency_at(SaliencyMap{}, vec2(3)), 0);
+  EXPECT_EQ(test::eval_saliency_at(SaliencyMap{}, vec2(3)), 0);
 }
 
 TEST(Saliency, TheMostSalientPlaceIsOne) {
   Bars bars{grey, green, red, 6, {2, 3}};
   const SaliencyMap saliency = saliency_of(make_bars(bars, 512, 512));
   EXPECT_FLOAT_EQ(*std::max_element(saliency.map.value.begin(), saliency.map.value.end()), 1);
-  EXPECT_FLOAT_EQ(eval_saliency_at(saliency, most_salient_place(saliency)), 1);
+  EXPECT_FLOAT_EQ(test::eval_saliency_at(saliency, most_salient_place(saliency)), 1);
 }
 
 TEST(Saliency, AMirroredPictureHasTheMirroredMap) {
@@ -148,6 +150,19 @@ TEST(Saliency, PicturesOfOneSizeAllocateOnce) {
   EXPECT_EQ(memory_bytes(work), bytes);
   EXPECT_EQ(saliency.map.value.data(), map);
   EXPECT_EQ(saliency.map.value, first);  // nothing of an earlier picture is left
+}
+
+struct Opponents {
+  float intensity, red_green, blue_yellow;
+};
+
+Opponents eval_opponents(float r, float g, float b, float dark) {
+  float out[channel_count];
+  eval_channels(
+      r, g, b, dark, [](float x, float y) { return std::min(x, y); },
+      [](float x) { return std::max(x, 0.0f); }, [](bool is, float x) { return is ? x : 0.0f; },
+      out);
+  return {out[0], out[1], out[2]};
 }
 
 // By hand, after Itti, Koch, Niebur 1998.

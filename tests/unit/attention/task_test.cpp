@@ -10,6 +10,7 @@
 
 #include "attention/attended.h"
 #include "base/rng.h"
+#include "unit/attention/saliency_at.h"
 
 using namespace wellspring;
 
@@ -144,7 +145,7 @@ TEST(Task, AnObjectIsAsSalientAsItsPixelsOnAverage) {
   EXPECT_EQ(seen[1].saliency, 1);
   EXPECT_NEAR(seen[2].saliency, 0.5f, 1e-4f);
   float sum = 0;
-  for (int x = 0; x < 20; x++) sum += eval_saliency_at(view.saliency, vec2(float(x + 12), 3));
+  for (int x = 0; x < 20; x++) sum += test::eval_saliency_at(view.saliency, vec2(float(x + 12), 3));
   view.object.assign(view.object.size(), 0);
   view.put(4, {12, 3}, {20, 1});
   EXPECT_NEAR(view.seen()[0].saliency, sum / 20, 1e-4f);

@@ -13,6 +13,7 @@
 
 #include "base/load_error.h"
 #include "frame/jpeg.h"
+#include "unit/frame/tonemap_color.h"
 
 using namespace wellspring;
 namespace fs = std::filesystem;
@@ -86,7 +87,7 @@ TEST_F(PictureFile, EightBitFormatsAreToneMapped) {
   EXPECT_EQ(bytes_of(path("a.png")).substr(1, 3), "PNG");
   std::string jpeg = bytes_of(path("a.jpg"));
   Image8 image = decode_jpeg({reinterpret_cast<const uint8_t*>(jpeg.data()), jpeg.size()}, "a.jpg");
-  vec3 expected = tonemap_color(frame.color[0], {2.0f}) * 255.0f;
+  vec3 expected = test::tonemap_color(frame.color[0], {2.0f}) * 255.0f;
   for (int c = 0; c < 3; c++) EXPECT_NEAR(image.rgb[size_t(c)], expected[c], 4);
 }
 

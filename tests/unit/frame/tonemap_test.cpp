@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "unit/frame/tonemap_color.h"
+
 using namespace wellspring;
 
 namespace {
@@ -53,7 +55,7 @@ TEST(Tonemap, FastCurveAgreesWithTheExactOneOverTheWholeRange) {
   Tonemap settings{0.7f};
   tonemap(row_of(colors), settings, image);
   for (size_t i = 0; i < colors.size(); i++) {
-    vec3 exact = tonemap_color(colors[i], settings) * 255.0f;
+    vec3 exact = test::tonemap_color(colors[i], settings) * 255.0f;
     for (int c = 0; c < 3; c++) ASSERT_NEAR(image.rgb[3 * i + size_t(c)], exact[c], 1) << i;
   }
 }
@@ -61,7 +63,7 @@ TEST(Tonemap, FastCurveAgreesWithTheExactOneOverTheWholeRange) {
 TEST(Tonemap, BrightColorsKeepTheirOrderAndNeverGrowDarker) {
   float last = 0;
   for (float x = 0; x < 100; x = x * 1.01f + 0.001f) {
-    vec3 c = tonemap_color(vec3(x, x * 0.5f, x * 0.25f), {});
+    vec3 c = test::tonemap_color(vec3(x, x * 0.5f, x * 0.25f), {});
     ASSERT_GE(c.x, last);
     ASSERT_GE(c.x, c.y);
     ASSERT_GE(c.y, c.z);
@@ -72,7 +74,7 @@ TEST(Tonemap, BrightColorsKeepTheirOrderAndNeverGrowDarker) {
 
 TEST(Tonemap, HueOfABrightObjectStays) {
   // A gilded frame lit to twice the white point: channel order and ratio survive the shoulder.
-  vec3 bright = tonemap_color(vec3(2.0f, 1.4f, 0.5f), {});
+  vec3 bright = test::tonemap_color(vec3(2.0f, 1.4f, 0.5f), {});
   EXPECT_GT(bright.x - bright.z, 0.15f);
   EXPECT_GT(bright.x - bright.y, 0.05f);
   EXPECT_GT(bright.y - bright.z, 0.1f);
@@ -111,7 +113,7 @@ TEST(Tonemap, EveryPixelOfAnOddSizeIsWritten) {
   EXPECT_EQ(image.width, 131);
   EXPECT_EQ(image.height, 37);
   for (size_t i = 0; i < frame.color.size(); i++)
-    ASSERT_NEAR(image.rgb[3 * i + 2], tonemap_color(frame.color[i], {}).z * 255, 1) << i;
+    ASSERT_NEAR(image.rgb[3 * i + 2], test::tonemap_color(frame.color[i], {}).z * 255, 1) << i;
   frame.color.pop_back();
   EXPECT_THROW(tonemap(frame, {}, image), std::invalid_argument);
 }

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "scenes/scenes.h"
+#include "unit/light/full_plan.h"
 
 using namespace wellspring;
 using namespace wellspring::scenes;
@@ -46,8 +47,9 @@ Material with(Material material, const std::function<void(Material&)>& change) {
 }  // namespace
 
 TEST(TransportPlan, EveryPartHasANameAndEveryDecisionAReason) {
-  for (const TransportPlan& plan : {make_transport_plan(empty_scene()),
-                                    plan_with(glass(1.5f, 0, 1)), make_full_plan(empty_scene())})
+  for (const TransportPlan& plan :
+       {make_transport_plan(empty_scene()), plan_with(glass(1.5f, 0, 1)),
+        test::make_full_plan(empty_scene())})
     for (size_t i = 0; i < transport_parts; i++) {
       EXPECT_GT(std::string(transport_part_name(TransportPart(i))).size(), 3u);
       EXPECT_GT(plan.decisions[i].why.size(), 3u) << transport_part_name(TransportPart(i));

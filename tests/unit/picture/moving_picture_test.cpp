@@ -9,6 +9,7 @@
 #include "frame/tone_curve.h"
 #include "frame/tonemap.h"
 #include "light/known/skin_light.h"
+#include "unit/frame/tonemap_color.h"
 #include "unit/picture/drawn_visit.h"
 
 namespace wellspring {
@@ -333,7 +334,7 @@ TEST(MovingPicture, GuessesPeaksFromColours) {
   guess_peaks(image, {0, 0, 256, 1}, peaks);
   for (int i = 232; i < 256; i++) {
     float above = peak_of(peaks[size_t(i)]), beyond = peak_of(peaks[size_t(i)] + 1);
-    auto shown = [](float peak) { return tonemap_color(vec3(peak), {}).x * 255; };
+    auto shown = [](float peak) { return test::tonemap_color(vec3(peak), {}).x * 255; };
     EXPECT_LE(shown(above), float(i) + 0.6f) << i;
     EXPECT_GE(shown(beyond), std::min(float(i), 254.5f) - 0.6f) << i;
   }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "unit/wire/golden.h"
+#include "unit/wire/sound_view.h"
 #include "wire/sound_packet.h"
 
 using namespace wellspring;
@@ -21,7 +22,7 @@ TEST(SoundPacket, is_written_as_the_golden_bytes) {
 }
 
 TEST(SoundPacket, is_read_from_the_golden_bytes) {
-  const auto view = read_sound_packet(golden_sound());
+  const auto view = test::read_sound_packet(golden_sound());
   ASSERT_TRUE(view);
   EXPECT_EQ(view->header.utterance, golden_header.utterance);
   EXPECT_EQ(view->header.start, 2u);
@@ -37,19 +38,20 @@ TEST(SoundPacket, longer_headers_of_the_future_are_skipped) {
   Packet packet = golden_sound();
   packet.insert(packet.begin() + sound_header_bytes, {1, 2, 3, 4});
   packet[26] = 60;
-  ASSERT_TRUE(read_sound_packet(packet));
-  EXPECT_EQ(read_sound_packet(packet)->samples, golden_samples);
+  ASSERT_TRUE(test::read_sound_packet(packet));
+  EXPECT_EQ(test::read_sound_packet(packet)->samples, golden_samples);
 }
 
 TEST(SoundPacket, what_is_no_sound_is_refused) {
   const Packet good = golden_sound();
   for (size_t size = 0; size < sound_header_bytes; size++)
-    EXPECT_FALSE(read_sound_packet(std::span(good).first(size))) << size;
-  EXPECT_FALSE(read_sound_packet(std::span(good).first(sound_header_bytes + 1))) << "half a sample";
+    EXPECT_FALSE(test::read_sound_packet(std::span(good).first(size))) << size;
+  EXPECT_FALSE(test::read_sound_packet(std::span(good).first(sound_header_bytes + 1)))
+      << "half a sample";
   const auto with = [&](size_t at, std::vector<uint8_t> bytes) {
     Packet bad = good;
     std::copy(bytes.begin(), bytes.end(), bad.begin() + long(at));
-    return read_sound_packet(bad).has_value();
+    return test::read_sound_packet(bad).has_value();
   };
   for (size_t i = 0; i < 4; i++) EXPECT_FALSE(with(i, {uint8_t(good[i] ^ 1)})) << i;
   EXPECT_FALSE(with(26, {55, 0})) << "header too short";

@@ -9,6 +9,10 @@ using namespace wellspring;
 
 namespace {
 
+vec3 eval_sun_irradiance(const SkySettings& settings) {
+  return eval_daylight(settings, std::array{settings.elevation})[0].sun;
+}
+
 struct Sky {
   Scene scene;
   explicit Sky(const SkySettings& settings) { add_sky(settings, scene); }

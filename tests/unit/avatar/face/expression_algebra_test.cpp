@@ -82,8 +82,6 @@ TEST_F(Algebra, TheEmptySumIsTheIdentity) {
     EXPECT_EQ(a.rotators, b.rotators);
     add(b, random_sum(), 0);  // a weight of nothing
     EXPECT_EQ(a.controls, b.controls);
-    override_with(b, random_sum(), 0);
-    EXPECT_EQ(a.controls, b.controls);
   }
   Pose rest = make_rest_pose(character);
   EXPECT_TRUE(same_bits(posed(empty), rest));
@@ -120,21 +118,6 @@ TEST_F(Algebra, ScalingIsLinearAndOppositeWeightsLeaveNothing) {
     EXPECT_LE(distance(twice, empty), 24 * 0x1p-24f);
     add(back, random_sum(), 0);
     EXPECT_EQ(distance(back, a), 0);
-  }
-}
-
-TEST_F(Algebra, OverrideIsAbsoluteAtOneAndBetweenBelow) {
-  for (int i = 0; i < 500; i++) {
-    ExpressionSum a = random_sum(), b = random_sum(), full = a, half = a;
-    override_with(full, b, any(1, 3));
-    EXPECT_EQ(full.controls, b.controls) << "nothing of what was is left";
-    EXPECT_EQ(full.rotators, b.rotators);
-    float t = rng.uniform();
-    override_with(half, b, t);
-    for (size_t c = 0; c < a.controls.size(); c++) {
-      EXPECT_GE(half.controls[c], std::min(a.controls[c], b.controls[c]) - 1e-5f);
-      EXPECT_LE(half.controls[c], std::max(a.controls[c], b.controls[c]) + 1e-5f);
-    }
   }
 }
 
@@ -177,7 +160,6 @@ TEST_F(Algebra, NothingThatIsNoNumberGetsIn) {
     add(b, random_sum(), bad);
     add(b, rig, -1, 1);
     add(b, rig, 1 << 30, 1);
-    override_with(b, random_sum(), NAN);
     EXPECT_EQ(a.controls, b.controls);
     EXPECT_LT(distance(mean(rig, {a, a}, {1, bad}), a), 1e-6f);
     Protected words;

@@ -227,29 +227,5 @@ TEST(ObjectSamples, WithoutObjectsNothingIsDone) {
   EXPECT_EQ(memory_bytes(store), 0u);
 }
 
-TEST(ObjectSamples, AMotionOfObjectAndEyeChangesNoCosine) {
-  Stage stage = two_balls();
-  SampleStore store;
-  View view = view_of_balls(60, 60);
-  std::vector<CorrectiveSample> samples = stage.trace_all(view, store.grid);
-  add_samples(store, view, 0, samples);
-  mat4 step = glm::rotate(glm::translate(mat4(1), vec3(0.3f, -0.2f, 0.1f)), 0.7f,
-                          normalize(vec3(1, 2, -1)));
-  vec3 eye = view.position;
-  AgeingSettings settings;
-  for (int i = 0; i < 50; i++) {
-    for (uint32_t object : {1u, 2u}) EXPECT_TRUE(transform_samples(store, object, step));
-    eye = vec3(step * glm::vec4(eye, 1));
-  }
-  for (uint32_t object : {1u, 2u}) set_delta(store, object, 0.002f);
-  EXPECT_EQ(age_samples(store, eye, 1).invalid, 0);
-  EXPECT_EQ(store.count(), int(samples.size()));
-  mat4 bad(1);
-  bad[3].x = NAN;
-  EXPECT_FALSE(transform_samples(store, 1, bad));
-  EXPECT_TRUE(transform_samples(store, 99, step));
-  EXPECT_EQ(age_samples(store, eye, 1).invalid, 0);
-}
-
 }  // namespace
 }  // namespace wellspring

@@ -9,6 +9,8 @@
 #include <map>
 #include <set>
 
+#include "unit/cache/corrective/stage.h"
+
 namespace wellspring {
 namespace {
 
@@ -100,7 +102,7 @@ TEST(Sqrt5Grid, AnyPositionOfALevelCanBeContinuedAt) {
   for (const PixelBox& box : {boxes[2], boxes[3], boxes[1]})
     for (int level = 1; level <= 4; level++) {
       std::vector<ivec2> all = all_places(grid, level, box);
-      EXPECT_EQ(count_places(grid, level, box), int64_t(all.size()));
+      EXPECT_EQ(Sqrt5Places(grid, level, box).count(), int64_t(all.size()));
       for (size_t from = 0; from <= all.size() + 1; from++) {
         std::vector<ivec2> some;
         list_places(grid, level, box, int64_t(from), 7, some);
@@ -120,7 +122,7 @@ TEST(Sqrt5Grid, EmptyBoxesAndUnknownLevelsHaveNoPlaces) {
   EXPECT_FALSE(Sqrt5Places(grid, 0, {0, 0, 9, 9}).next(place));
   EXPECT_FALSE(Sqrt5Places(grid, 4, {0, 0, 9, 9}).next(place));
   EXPECT_FALSE(Sqrt5Places().next(place));
-  EXPECT_EQ(count_places(grid, 9, {0, 0, 9, 9}), 0);
+  EXPECT_EQ(Sqrt5Places(grid, 9, {0, 0, 9, 9}).count(), 0);
 }
 
 // Paints footprints of all places around a box, coarse to fine.
@@ -133,8 +135,8 @@ TEST(Sqrt5Grid, FinerFootprintsCoverNoPlaceOfACoarserLevel) {
       int side = footprint_side(grid, level), overlaps = 0;
       std::fill(times.begin(), times.end(), 0);
       for (ivec2 p : all_places(grid, level, {-margin, -margin, size + margin, size + margin}))
-        for (int y = footprint_begin(p.y, side), yn = y + side; y < yn; y++)
-          for (int x = footprint_begin(p.x, side), xn = x + side; x < xn; x++) {
+        for (int y = test::footprint_begin(p.y, side), yn = y + side; y < yn; y++)
+          for (int x = test::footprint_begin(p.x, side), xn = x + side; x < xn; x++) {
             if (x < 0 || y < 0 || x >= size || y >= size) continue;
             bool own = x == p.x && y == p.y;
             // What is painted with its own number is a place of this or a coarser level.

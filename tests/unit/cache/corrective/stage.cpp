@@ -41,7 +41,7 @@ std::vector<CorrectiveSample> Stage::trace_level(const View& view, const Sqrt5Gr
                                                  int level) const {
   std::vector<ivec2> places;
   PixelBox all{0, 0, view.width, view.height};
-  list_places(grid, level, all, 0, count_places(grid, level, all), places);
+  list_places(grid, level, all, 0, Sqrt5Places(grid, level, all).count(), places);
   std::vector<CorrectiveSample> samples;
   for (ivec2 place : places) {
     CorrectiveSample sample = trace(view, place);

@@ -10,6 +10,10 @@
 
 namespace wellspring::test {
 
+// Pixels of a footprint of this side around `center`: those before it are as many as those behind
+// it, or one fewer.
+inline int footprint_begin(int center, int side) { return center - (side - 1) / 2; }
+
 struct Ball {
   uint32_t object = 1;
   vec3 center{0};

@@ -61,7 +61,12 @@ Enumerated enumerate(const Hmm& m, const std::vector<Code>& codes) {
   return out;
 }
 
-TEST(Hmm, viterbi_and_both_procedures_agree_with_all_paths_one_by_one) {
+// ln P(codes), as training has it.
+double forward_probability(Hmm model, const std::vector<Code>& codes) {
+  return improve(model, std::vector<std::vector<Code>>{codes});
+}
+
+TEST(Hmm, viterbi_and_the_forward_procedure_agree_with_all_paths_one_by_one) {
   Rng rng(3);
   for (int trial = 0; trial < 20; trial++) {
     Hmm m = random_model(2 + trial % 3, 100 + uint64_t(trial));
@@ -72,7 +77,6 @@ TEST(Hmm, viterbi_and_both_procedures_agree_with_all_paths_one_by_one) {
     EXPECT_NEAR(viterbi(m, codes, &path), std::log(truth.best), 1e-9);
     EXPECT_EQ(path, truth.path);
     EXPECT_NEAR(forward_probability(m, codes), std::log(truth.sum), 1e-9);
-    EXPECT_NEAR(backward_probability(m, codes), std::log(truth.sum), 1e-9);
   }
 }
 
@@ -82,7 +86,6 @@ TEST(Hmm, long_sequences_do_not_underflow) {
   const std::vector<Code> codes = random_codes(rng, 5000);
   const double forward = forward_probability(m, codes);
   EXPECT_TRUE(std::isfinite(forward));
-  EXPECT_NEAR(forward, backward_probability(m, codes), 1e-6 * std::abs(forward));
   EXPECT_LT(viterbi(m, codes), forward);
 }
 

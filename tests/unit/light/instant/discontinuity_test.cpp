@@ -9,6 +9,11 @@ using namespace wellspring;
 
 namespace {
 
+void filter_smooth(const View& view, const DiscontinuitySettings& settings,
+                   std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr) {
+  filter_windows(view, std::span(&settings, 1), samples, edges);
+}
+
 constexpr int width = 24, height = 18;
 
 View flat_view() {

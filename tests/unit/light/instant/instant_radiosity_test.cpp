@@ -15,6 +15,12 @@ using namespace wellspring::test;
 
 namespace {
 
+// The set of a pixel's place in the pattern.
+int set_of_pixel(const InstantPass& pass, uint32_t pixel) {
+  int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
+  return y % pass.rows * pass.columns + x % pass.columns;
+}
+
 const Technique& instant() { return *find_technique("instant_radiosity"); }
 
 InstantPass draw(const World& world, const Lights& lights, const TransportSettings& settings,

@@ -14,6 +14,10 @@
 namespace wellspring {
 namespace {
 
+vec3 eval_skin(const SkinTriangle& light, vec2 barycentric) {
+  return light.corner + light.edge1 * barycentric.x + light.edge2 * barycentric.y;
+}
+
 constexpr int sphere_rings = 24;
 
 // Meshes that move, in a scene of nothing else but what is put there before.

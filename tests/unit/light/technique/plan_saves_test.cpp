@@ -6,6 +6,7 @@
 
 #include <cstring>
 
+#include "unit/light/full_plan.h"
 #include "unit/light/judge.h"
 #include "light/instant/instant_radiosity.h"
 #include "light/sample/light_tables.h"
@@ -19,6 +20,16 @@ using enum wellspring::TransportPart;
 
 namespace {
 
+// Memory of what was built for sampling lights.
+size_t light_table_bytes(const LightTables& t) {
+  size_t bytes = bytes_of(t.emitters, t.emitter_power, t.environment.cells.cells, t.punctual,
+                          t.cones, t.punctual_index);
+  for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
+    bytes += bytes_of(tree->nodes, tree->leaf_of, tree->strengths.cells, tree->emitting);
+  for (const EmissionPicture& picture : t.pictures) bytes += bytes_of(picture.cells.cells);
+  return bytes;
+}
+
 // A world under its own plan, which leaves `part` out, and under one that has it.
 struct BothWays {
   Scene scene;
@@ -26,7 +37,7 @@ struct BothWays {
   Lights planned, forced;
   BothWays(Scene scene_, TransportPart part)
       : scene(std::move(scene_)), world(scene), planned(make_lights(world)) {
-    TransportPlan plan = make_full_plan(scene);
+    TransportPlan plan = test::make_full_plan(scene);
     for (size_t i = 0; i < transport_parts; i++)
       if (TransportPart(i) != part) plan.decisions[i] = planned.tables->plan.decisions[i];
     EXPECT_FALSE(planned.tables->plan.uses(part)) << transport_part_name(part);
@@ -250,7 +261,7 @@ TEST(PlanSaves, TablesOfMaterialsThatNothingShows) {
 TEST(PlanSaves, TheWholeFullPlan) {
   Scene scene = scene_with(plastic({0.6f, 0.5f, 0.4f}, 0.5f));
   World world(scene);
-  Lights planned = make_lights(world), full = make_lights(world, make_full_plan(scene));
+  Lights planned = make_lights(world), full = make_lights(world, test::make_full_plan(scene));
   View view = make_view_towards(scene, {0.1, 0.5, 0.9}, {0, 0.25, 0}, {0, 1, 0}, 1.0f, 12, 8);
   Family family;
   for (const char* name : {"path", "direct"})

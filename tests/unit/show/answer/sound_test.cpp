@@ -8,6 +8,7 @@
 
 #include "show/answer/events.h"
 #include "unit/show/show_stage.h"
+#include "unit/wire/sound_view.h"
 #include "wire/sound_packet.h"
 
 namespace wellspring {
@@ -110,10 +111,10 @@ struct SoundTest : testing::Test, ShowStage {
   size_t join(const std::string& lang) { return ShowStage::join(32, 32, lang); }
   std::vector<nlohmann::json> speech(size_t visitor) { return told("speech", visitor); }
   std::vector<nlohmann::json> subtitles(size_t visitor) { return told("subtitle", visitor); }
-  std::vector<SoundView> sounds(size_t visitor) {
-    std::vector<SoundView> read;
+  std::vector<test::SoundView> sounds(size_t visitor) {
+    std::vector<test::SoundView> read;
     for (const Packet& packet : browsers[visitor].sounds)
-      if (auto sound = read_sound_packet(packet)) read.push_back(std::move(*sound));
+      if (auto sound = test::read_sound_packet(packet)) read.push_back(std::move(*sound));
     return read;
   }
 };
@@ -127,10 +128,10 @@ TEST_F(SoundTest, AWholeLineArrivesInOrderAndAheadOfItsTime) {
   EXPECT_EQ(speech(a)[0]["action"], "start");
   EXPECT_EQ(speech(a)[0]["text"], "One.");
   EXPECT_EQ(speech(a)[0]["seconds"], 2.0);
-  const std::vector<SoundView> pieces = sounds(a);
+  const std::vector<test::SoundView> pieces = sounds(a);
   ASSERT_EQ(pieces.size(), 8u);
   std::vector<int16_t> all;
-  for (const SoundView& sound : pieces) {
+  for (const test::SoundView& sound : pieces) {
     EXPECT_EQ(sound.header.start, all.size());
     EXPECT_EQ(sound.header.total, 16000u);
     EXPECT_EQ(sound.header.utterance, speech(a)[0]["utterance"]);
@@ -218,7 +219,7 @@ TEST_F(SoundTest, AListenerWhoDoesNotReadLosesTheWholeUtterance) {
   EXPECT_GE(sounds(b).size(), 20u);
   Link::Out out;
   while (browsers[a].link->take_out(out))
-    EXPECT_FALSE(out.binary && read_sound_packet(*out.packet));
+    EXPECT_FALSE(out.binary && test::read_sound_packet(*out.packet));
 }
 
 // ---- what a story's marks do ----
@@ -413,7 +414,7 @@ TEST_F(SoundTest, WhoHasTheirOwnStorytellerHearsHerAlone) {
   EXPECT_EQ(speech(a)[0]["lang"], "en");
   EXPECT_EQ(speech(b)[0]["lang"], "de");
   EXPECT_NE(speech(a)[0]["utterance"], speech(b)[0]["utterance"]);
-  for (const SoundView& sound : sounds(b))
+  for (const test::SoundView& sound : sounds(b))
     EXPECT_EQ(sound.header.utterance, speech(b)[0]["utterance"]);
   say(R"({"type":"storyteller","action":"stop"})", a);
   run(0.4);
