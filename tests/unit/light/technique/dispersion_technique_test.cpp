@@ -183,7 +183,7 @@ TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
   std::vector<Photon> photons = shoot_caustic_photons(
       {world, *lights.tables}, lights.tables->casters, 8, 1, 0, 40000, 1.0f / 40000);
   std::erase_if(photons, [](const Photon& p) {
-    return p.depth != 3 || !(p.direction.y > 0.05f) || !(p.direction.x < 0);
+    return p.depth != 1 || !(p.direction.y > 0.05f) || !(p.direction.x < 0);
   });
   ASSERT_GT(photons.size(), 5000u);
   glm::dvec3 flux(0), sine(0), square(0);
