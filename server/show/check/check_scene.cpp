@@ -2,6 +2,7 @@
 #include "show/check/check_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -46,6 +47,24 @@ bool is_back(const World& world, const Hit& hit, vec3 way) {
                 cross(mesh.positions[corner.y] - mesh.positions[corner.x],
                       mesh.positions[corner.z] - mesh.positions[corner.x]);
   return dot(normal, way) > 0;
+}
+
+// Finds what shows its back first from there. Where faces of two things lie in one plane, as a
+// table's underside on a floor, which of them a ray meets is chance, so both count.
+Hit first_back(const World& world, vec3 from, vec3 way) {
+  const Hit hit = first_solid(world, from, way);
+  if (!hit.valid() || is_back(world, hit, way)) return hit;
+  const float gap = 1e-4f * hit.t;
+  std::array<Hit, 8> near;
+  const int count =
+      world.find_near(from + hit.t * way, way, gap, gap, near.data(), int(near.size()));
+  for (int i = 0; i < count; i++)
+    if (near[i].instance != hit.instance && !world.is_moving(near[i].instance) &&
+        world.material_of(near[i].instance).transmission == 0 && is_back(world, near[i], way)) {
+      near[i].t = hit.t;
+      return near[i];
+    }
+  return {};
 }
 
 float eye_height_of(const Exhibit& exhibit) {
@@ -134,8 +153,8 @@ bool is_in_solid(const World& world, vec3 place, std::string& inside) {
   Hit nearest;
   for (int i = 0; i < directions; i++) {
     vec3 way = direction_of(i, directions);
-    Hit hit = first_solid(world, place, way);
-    if (!hit.valid() || !is_back(world, hit, way)) continue;
+    Hit hit = first_back(world, place, way);
+    if (!hit.valid()) continue;
     backs++;
     if (hit.t < nearest.t) nearest = hit;
   }

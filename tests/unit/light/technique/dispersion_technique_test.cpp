@@ -3,6 +3,7 @@
 // whose walks carry wavelengths from the lamp, and its rays from the eye bring what `path` does,
 // channel by channel, wherever the hues fall.
 #include <array>
+#include <optional>
 
 #include "unit/light/judge.h"
 #include "light/instant/caustic_photons.h"
@@ -130,6 +131,29 @@ TEST(Dispersion, EveryTechniqueBringsTheSameColors) {
   }
 }
 
+// Parallel light of a hue through the left and the right face of the prism, by Snell's law and
+// Fresnel's formula; nothing where the right face reflects all of it.
+struct Passed {
+  dvec3 inside, behind;  // its directions
+  double share = 1;      // that both faces let through
+};
+std::optional<Passed> pass_prism(const Material& glass_of_prism, float hue, dvec3 direction) {
+  const double index = double(index_at(glass_of_prism, wavelength_at(hue)));
+  Passed passed;
+  auto refract = [&](dvec3 d, dvec3 n, double eta) -> std::optional<dvec3> {
+    double c = -dot(n, d), k = 1 - eta * eta * (1 - c * c);
+    if (k <= 0) return {};
+    passed.share *= 1 - double(fresnel_dielectric(float(c), float(1 / eta)));
+    return eta * d + (eta * c - std::sqrt(k)) * n;
+  };
+  const auto inside = refract(direction, normalize(dvec3(-0.35, 0.2, 0)), 1 / index);
+  if (!inside) return {};
+  const auto behind = refract(*inside, normalize(dvec3(-0.35, -0.2, 0)), index);
+  if (!behind) return {};
+  passed.inside = *inside, passed.behind = *behind;
+  return passed;
+}
+
 // Parallel white light that goes through two faces of a prism near the least deviation comes out
 // sorted: the shorter the wavelength, the farther it is bent towards the base. The mean direction
 // of each channel is what Snell's law makes of the channel's response.
@@ -142,18 +166,9 @@ glm::dvec3 expected_sines(const Material& glass_of_prism, vec3 sun_direction) {
   constexpr int wavelengths = 1024, places = 64;
   for (int i = 0; i < wavelengths; i++) {
     float hue = (float(i) + 0.5f) / wavelengths;
-    double index = double(index_at(glass_of_prism, wavelength_at(hue))), passes = 1;
-    dvec3 d(sun_direction);
-    auto refract = [&](dvec3 n, double eta) {
-      double c = -dot(n, d), k = 1 - eta * eta * (1 - c * c);
-      if (k <= 0) return false;
-      passes *= 1 - double(fresnel_dielectric(float(c), float(1 / eta)));
-      d = eta * d + (eta * c - std::sqrt(k)) * n;
-      return true;
-    };
-    if (!refract(normalize(dvec3(-0.35, 0.2, 0)), 1 / index)) continue;
-    dvec3 inside = d;
-    if (!refract(normalize(dvec3(-0.35, -0.2, 0)), index)) continue;
+    const auto passed = pass_prism(glass_of_prism, hue, dvec3(sun_direction));
+    if (!passed) continue;
+    const dvec3& inside = passed->inside;
     int reach = 0;
     for (int k = 0; k < places; k++) {
       dvec3 from = glm::mix(left, apex, (k + 0.5) / places), along = apex - right;
@@ -162,8 +177,8 @@ glm::dvec3 expected_sines(const Material& glass_of_prism, vec3 sun_direction) {
                  (inside.x * along.y - inside.y * along.x);
       reach += from.y + t * inside.y > 0;
     }
-    glm::dvec3 share = glm::dvec3(response_at(hue)) * (passes * reach);
-    expected += share * -d.y;
+    glm::dvec3 share = glm::dvec3(response_at(hue)) * (passed->share * reach);
+    expected += share * -passed->behind.y;
     weight += share;
   }
   return expected / weight;
@@ -182,8 +197,10 @@ TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
   Lights lights = make_lights(world);
   std::vector<Photon> photons = shoot_caustic_photons(
       {world, *lights.tables}, lights.tables->casters, 8, 1, 0, 40000, 1.0f / 40000);
-  std::erase_if(photons, [](const Photon& p) {
-    return p.depth != 1 || !(p.direction.y > 0.05f) || !(p.direction.x < 0);
+  // Without those that a face reflected: they leave elsewhere.
+  std::erase_if(photons, [&](const Photon& p) {
+    const auto passed = pass_prism(glass_of_prism, p.hue, dvec3(sun.direction));
+    return !passed || glm::length(dvec3(p.direction) + passed->behind) > 1e-3;
   });
   ASSERT_GT(photons.size(), 5000u);
   glm::dvec3 flux(0), sine(0), square(0);
