@@ -15,7 +15,7 @@ namespace wellspring {
 
 struct Photon {
   vec3 position{0};
-  uint32_t depth = 1;  // edges from the source
+  uint32_t depth = 1;  // edges from the source, without what solid glass did
   vec3 flux{0};
   vec3 direction{0};     // to where it came from
   vec3 normal{0, 1, 0};  // geometric, of the surface it hit

@@ -69,9 +69,12 @@ TEST_P(See, AgreesWithTheSamplesOfTechniques) {
     bool hit = lit.flags & sample_hit;
     ASSERT_EQ(seen[i].object, hit ? lit.object : 0) << i;
     nothing += !hit;
-    glowing += hit && dark.rest != vec3(0);
+    // What solid glass does is no edge, so what lies behind it is there, too; it shines by nothing.
+    const bool glass = hit && scene.objects[seen[i].object] == "glass";
+    const vec3 own = glass ? vec3(0) : dark.rest;
+    glowing += hit && own != vec3(0);
     for (int c = 0; c < 3; c++) {
-      EXPECT_NEAR(seen[i].glow[c], dark.rest[c], 1e-4f) << i;
+      EXPECT_NEAR(seen[i].glow[c], own[c], 1e-4f) << i;
       EXPECT_NEAR(seen[i].albedo[c], lit.albedo[c], 1e-4f) << i;
     }
     if (!hit) {
