@@ -16,6 +16,8 @@ struct Conversion {
   int black = 0;  // material of the back of a one-sided sheet
 };
 
+constexpr int unbounded = 1000;  // edges
+
 [[noreturn]] void refuse(const std::string& where, const std::string& what) {
   throw LoadError{"scene", where, "cannot be expressed: " + what};
 }
@@ -280,6 +282,17 @@ void set_view(ReferenceScene& out, pugi::xml_node sensor) {
   out.gaussian_filter = filter == "gaussian";
 }
 
+// Mitsuba counts what glass does as edges, our walks do not. Where it shows two edges, glass is
+// its reflection alone.
+void bound_glass(ReferenceScene& reference) {
+  for (Material& material : reference.scene.materials) {
+    if (material.transmission == 0 || reference.max_depth >= unbounded) continue;
+    if (reference.max_depth != 2) refuse("glass", "in a picture of more than two edges");
+    material.transmission = material.thickness = 0;
+    material.base_color = vec4(0, 0, 0, 1);
+  }
+}
+
 }  // namespace
 
 ReferenceScene load_reference_scene(const std::filesystem::path& file) {
@@ -296,9 +309,10 @@ ReferenceScene load_reference_scene(const std::filesystem::path& file) {
     if (kind == "integrator") {
       pugi::xml_node inner = node.child("integrator") ? node.child("integrator") : node;
       out.max_depth = type_of(inner) == "direct" ? 2 : int(number(inner, "max_depth", -1));
-      if (out.max_depth < 0) out.max_depth = 1000;
+      if (out.max_depth < 0) out.max_depth = unbounded;
     }
   }
+  bound_glass(out);
   return out;
 }
 
