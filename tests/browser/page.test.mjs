@@ -5,7 +5,7 @@ import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, load_module, sleep, start_server } from '../server.mjs';
+import { Visitor, load_module, sleep, start_server, until } from '../server.mjs';
 
 const { chromium } = load_module('playwright-core');
 const executable = [
@@ -100,8 +100,7 @@ test('places, menu, language and story', { skip }, async () => {
   await places.nth(2).click();
   await page.waitForFunction(() =>
       document.querySelectorAll('#places button')[2].getAttribute('aria-current') === 'true');
-  await sleep(1500);
-  assert.ok(difference(start, await look(page)) > 8);
+  await until(async () => difference(start, await look(page)) > 8, 'another place is shown');
   await shot(page, 'place');
   await page.locator('#menu-button').click();
   await page.locator('#languages button', { hasText: 'Deutsch' }).click();
@@ -312,9 +311,12 @@ test('phone and kiosk sizes hold everything inside the window', { skip }, async 
 
 test('the page comes back after a server restart, where the visitor stood', { skip }, async () => {
   const { page } = await open();
+  await sleep(1000);
+  const start = await look(page);
   await page.locator('#places button').nth(1).click();
   await page.waitForFunction(() =>
       document.querySelectorAll('#places button')[1].getAttribute('aria-current') === 'true');
+  await until(async () => difference(start, await look(page)) > 8, 'another place is shown');
   await sleep(1500);
   const before_restart = await look(page);
   const { port } = server;
@@ -326,8 +328,8 @@ test('the page comes back after a server restart, where the visitor stood', { sk
       { timeout: 30000 });
   await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3,
       null, { timeout: 20000 });
-  await sleep(2000);
-  assert.ok(difference(before_restart, await look(page)) < 12);
+  await until(async () => difference(before_restart, await look(page)) < 12,
+      'the same place is shown');
   await page.close();
 });
 

@@ -251,7 +251,7 @@ TEST(DrawnHardCases, AnEyeWithinGlass) {
   }
   EXPECT_NEAR(inside, 25, 3);
   ASSERT_FALSE(stage.visibility->rasterises(view(20)));
-  Frame truth = stage.truth(view(20), 64);
+  Frame truth = stage.truth(view(20), 256);
   for (int i = 0; i < 120; i++) visitor.step(stage, view(20), pixels / 2, true);
   EXPECT_LE(count_wrong(stage, view(20), visitor.frame), pixels / 100);
   EXPECT_LT(shown_error(visitor.frame, truth), 0.033);
