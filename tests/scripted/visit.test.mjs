@@ -116,7 +116,8 @@ test('wrong messages are answered and forgiven', async () => {
     [`{"type":"hello","exhibit":"${'x'.repeat(300)}"}`, 'bad_field'],
     ['{"type":"hello","exhibit":"atlantis","width":100,"height":100,"lang":"en","role":"visitor"}',
         'unknown_exhibit'],
-    ['['.repeat(30000) + ']'.repeat(30000), 'too_deep'],
+    ['['.repeat(500) + ']'.repeat(500), 'too_deep'],
+    ['['.repeat(30000) + ']'.repeat(30000), 'too_large'],
     ['{"type":"storyteller","story":"none"}', 'unknown_story'],
   ];
   for (const [text, code] of wrong) {
