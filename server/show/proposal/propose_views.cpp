@@ -132,6 +132,17 @@ std::vector<Viewpoint> propose_inside(const World& world, const Bounds& box, flo
   return views;
 }
 
+// Eyes look through the backs of single-sided faces, so from some sides nothing may be there.
+bool sees_something(const World& world, const Viewpoint& at) {
+  constexpr int width = 8 * columns, height = 8 * rows;  // wires are seen, too
+  View view = make_view(world.scene(), at, width, height);
+  for (int i = 0; i < width * height; i++) {
+    Ray ray = view_ray(view, float(i % width) + 0.5f, float(i / width) + 0.5f);
+    if (world.intersect(ray).valid()) return true;
+  }
+  return false;
+}
+
 std::vector<Viewpoint> propose_outside(const World& world, const Bounds& box) {
   struct Side {
     const char* name;
@@ -148,20 +159,25 @@ std::vector<Viewpoint> propose_outside(const World& world, const Bounds& box) {
   const float thin = 0.08f * max_component(size);
   const bool is_flat = std::min(size.x, size.z) < thin && size.y >= thin;
   const bool is_lying = size.y < thin && !is_flat;
-  const float front = is_flat && size.x < size.z ? 90.0f : 0.0f;
+  float front = is_flat && size.x < size.z ? 90.0f : 0.0f;
   std::span<const Side> sides = is_flat    ? std::span<const Side>(flat)
                                 : is_lying ? std::span<const Side>(lying)
                                            : std::span<const Side>(solid);
   const float tan_y = std::tan(0.5f * object_fov);
-  std::vector<Viewpoint> views;
-  for (const Side& side : sides) {
+  auto view_from = [&](const Side& side) {
     float yaw = (side.yaw + front) * degree, pitch = side.height * degree;
     vec3 back(std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch));
     float distance = 1.08f * distance_to_fit(half, back, tan_y * 4 / 3, tan_y);
-    views.push_back(make_viewpoint(world, side.name, box.low + half + back * distance, yaw, -pitch,
-                                   object_fov));
+    return make_viewpoint(world, side.name, box.low + half + back * distance, yaw, -pitch,
+                          object_fov);
+  };
+  if (is_flat && !sees_something(world, view_from(sides[0]))) front += 180;  // its front is there
+  std::vector<Viewpoint> views, all;
+  for (const Side& side : sides) {
+    all.push_back(view_from(side));
+    if (sees_something(world, all.back())) views.push_back(all.back());
   }
-  return views;
+  return views.empty() ? all : views;
 }
 
 }  // namespace
