@@ -74,6 +74,22 @@ TEST(NewExhibit, AnObjectIsSeenFromOutsideUnderASky) {
   }
 }
 
+// A picture that hangs with its one side towards -z, and the lid of a box that shows its top alone.
+TEST(NewExhibit, SidesFromWhichNothingIsSeenAreNoViews) {
+  for (bool lying : {false, true}) {
+    Asset asset;
+    const int at = lying ? asset.add_floats("VEC3", 3, {0, 0, 0, 0, 0, 1, 1, 0, 0})
+                         : asset.add_floats("VEC3", 3, {0, 0, 0, 0, 1, 0, 1, 0, 0});
+    const int mesh = asset.add_mesh({{"attributes", {{"POSITION", at}}}});
+    asset.add_node({{"name", "Sheet"}, {"mesh", mesh}});
+    Made made(asset);
+    EXPECT_EQ(made.told(), "");
+    EXPECT_EQ(made.exhibit.viewpoints.size(), 3u);
+    for (const ExhibitViewpoint& one : made.exhibit.viewpoints)
+      EXPECT_TRUE(lying ? one.view.position.y > 0 : one.view.position.z < 0) << one.view.name;
+  }
+}
+
 TEST(NewExhibit, MillimetresBecomeMetres) {
   Asset asset;
   add_box(asset, "Room", vec3(-4000, 0, -3000), vec3(4000, 3000, 3000), true);
