@@ -119,7 +119,7 @@ TEST(CausticPhotons, ArriveFromSharpThingsOnRoughOnes) {
   ASSERT_GT(photons.size(), 500u);
   for (const Photon& p : photons) {
     ASSERT_NEAR(p.position.y, 0, 1e-4);  // on the floor: the lamp is black, the ball is not rough
-    ASSERT_EQ(p.depth, 1u);  // what solid glass does is no edge of its path
+    ASSERT_EQ(p.depth, 1u);              // what solid glass does is no edge of its path
     Ray back;
     back.origin = p.position + 1e-4f * p.direction;
     back.direction = p.direction;
