@@ -112,7 +112,7 @@ constexpr std::string_view groups[] = {
     "Transform", "Group",    "StaticGroup", "Anchor",  "Collision", "Billboard", "LOD",
     "Switch",    "CADLayer", "CADAssembly", "CADPart", "Layer",     "LayerSet",  "ScreenGroup"};
 
-// Of these something is read, a warning says why not, or there is nothing in them for a figure.
+// Something of these is read, a warning says why not, or a figure has no use for them.
 constexpr std::string_view known[] = {"Scene",
                                       "WorldInfo",
                                       "NavigationInfo",

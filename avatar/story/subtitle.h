@@ -24,7 +24,7 @@ struct Subtitles {
 // Times as hh:mm:ss.mmm; markup characters are escaped.
 std::string write_subtitles(const std::vector<SubtitleCue>& cues);
 
-// What the header says (X-TIMESTAMP-MAP, ...), cue settings, NOTE, STYLE and REGION blocks and tags
+// Words of the header (X-TIMESTAMP-MAP, ...), cue settings, NOTE, STYLE and REGION blocks and tags
 // inside cues are passed over; a block without times is no cue, and noted. Throws LoadError{file,
 // "line n", what}: no WEBVTT at the beginning, not UTF-8, times that are none, a cue that ends
 // before it begins, more than 100,000 cues.

@@ -10,8 +10,8 @@ namespace wellspring {
 // The whole file or none of it: written beside its place, then renamed over it. Throws LoadError.
 void write_file(const std::string& path, std::span<const char> bytes);
 
-// What programs that were killed while they wrote have left in a folder and those below it: taken
-// away, unless somebody writes it, or has begun it within a minute. How much that was.
+// Files that killed programs had half written, in a folder and those below it. They are taken away,
+// unless somebody writes them or has begun them within a minute; this says how much that was.
 struct Unfinished {
   size_t files = 0;
   uint64_t bytes = 0;

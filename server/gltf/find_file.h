@@ -8,9 +8,9 @@
 
 namespace wellspring {
 
-// What a relative path means below a folder: the names as they are, else those of which Unicode
-// says that they are the same (base/unicode.h). Nothing where there is no such file or folder. Does
-// not judge "..": callers resolve it first.
+// Finds what a relative path means below a folder: the names as they are, else those of which
+// Unicode says that they are the same (base/unicode.h). Returns nothing where there is no such file
+// or folder. Does not judge "..": callers resolve it first.
 std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
                                                const std::filesystem::path& relative);
 

@@ -6,8 +6,8 @@
 
 namespace wellspring::gltf {
 
-// Where copies of the node's mesh stand, in the node's space: one that is nothing special if the
-// node does not ask for more. They count towards instances_limit. Throws LoadError.
+// Returns where copies of the node's mesh stand, in the node's space: one at its origin if the node
+// does not ask for more. They count towards instances_limit. Throws LoadError.
 std::vector<dmat4> read_instances(File& file, size_t node);
 
 }  // namespace wellspring::gltf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one glTF file may cost, in one table; docs/operation.md tells users of it. Everything is
+// This table says what one glTF file may cost; docs/operation.md tells users of it. Everything is
 // bounded by bytes or by totals, never by how a file divides its data: many accessors over the same
 // bytes, or over none, cannot make a small file take unbounded memory or time.
 #pragma once
@@ -18,7 +18,7 @@ constexpr int64_t triangles_limit = 32'000'000;          // kept in all
 constexpr int64_t instances_limit = 1'000'000;           // of EXT_mesh_gpu_instancing, in all
 constexpr int64_t key_numbers_limit = int64_t(1) << 26;  // of animations, in all
 
-// What can be done about it.
+// Messages of refusal end with what can be done about it.
 constexpr const char* fewer_triangles =
     "simplify it (Blender: Decimate; gltfpack -si 0.5), or cut it into several files, which an "
     "exhibit's \"scenes\" put together";

@@ -374,7 +374,7 @@ void check_schema(File& file) {
   check_version(file);
 }
 
-// What a curator can do about a file that needs it.
+// Says what a curator can do about a file that needs it.
 static std::string remedy_for(const std::string& extension) {
   if (extension == "KHR_texture_basisu")
     return ": make PNG pictures of its KTX2 ones (gltf-transform ktxdecompress IN.glb OUT.glb; for "

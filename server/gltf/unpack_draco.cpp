@@ -16,7 +16,7 @@ constexpr uint16_t least_version = 0x0202;   // of the bitstream, which the exte
 constexpr uint32_t most_attributes = 16;     // sets of corners, each with memory of its own
 constexpr uint64_t most_faces_a_byte = 256;  // no real mesh comes near
 
-// What a stream says of its size before anything is made of it.
+// A stream says its size before anything is made of it.
 struct DracoClaim {
   uint64_t faces = 0, points = 0;
 };

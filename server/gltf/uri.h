@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the URIs of a glTF file mean (glTF 2.0 section 2.8): data themselves (RFC 2397), or files,
+// URIs of a glTF file (glTF 2.0 section 2.8) are data themselves (RFC 2397), or they name files,
 // whose paths are resolved as RFC 3986 section 5.2 says and then judged: "../textures/a.png" is
 // right where it stays inside the package.
 #pragma once
@@ -14,7 +14,7 @@ std::optional<std::filesystem::path> find_uri(const File& file, const std::strin
                                               const std::string& uri);
 // Bytes of a data URI or of that file. Throws LoadError for all that is wrong but a missing file.
 std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri);
-// That there is no such file, what was tried, and which was perhaps meant.
+// Says that there is no such file, what was tried, and which was perhaps meant.
 std::string no_such_file(const File& file, const std::string& where, const std::string& uri);
 
 }  // namespace wellspring::gltf

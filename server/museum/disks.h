@@ -11,7 +11,7 @@ class Disks {
  public:
   static constexpr uint64_t least_bytes = 4 << 20;  // with fewer free ones it is full
   Disks() = default;
-  // What is written: files or folders, there or not yet; empty ones are left out.
+  // Both are what is written: files or folders, there or not yet; empty ones are left out.
   Disks(std::string cache, std::string sums) : places_{std::move(cache), std::move(sums)} {}
   std::vector<std::string> full() const;  // those of the places whose disks are
 

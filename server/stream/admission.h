@@ -46,7 +46,7 @@ struct Limits {
 
 inline constexpr double value_bytes = 16;  // about as long as those take to be read
 
-// What a WebSocket says.
+// A WebSocket says so much.
 struct WireInput {
   double frames = 0, bytes = 0;
 };

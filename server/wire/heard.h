@@ -19,7 +19,7 @@ struct Heard {
 Heard hear_visitor(std::string text);
 Heard hear_camera(std::string text);
 
-// What it says, where it is such a thing; else null.
+// Returns what it says, where it is such a thing; else null.
 template <class Message>
 const Message* said_as(const Heard& heard) {
   const BrowserMessage* message = std::get_if<BrowserMessage>(&heard.said);

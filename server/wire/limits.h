@@ -7,7 +7,7 @@ namespace wellspring {
 
 inline constexpr size_t max_message_bytes = 64 * 1024;
 inline constexpr int max_message_depth = 32;
-// What a browser says is read only as far as it may be meant: a hello with its two tokens, any
+// Texts of browsers are read only as far as they may be meant: a hello with its two tokens, any
 // other message, and the values of JSON in either.
 inline constexpr size_t max_hello_bytes = 16 * 1024, max_order_bytes = 2 * 1024;
 inline constexpr size_t max_order_values = 256, max_observation_values = 8192;

@@ -12,10 +12,11 @@ constexpr float near_enough = 256;
 // Triangles that are so many steps (2^-23 of the largest coordinate) across show none of them. Rays
 // would start as far as 256 steps off them otherwise (offset_origin).
 constexpr float fine_steps = 1024;
-// What reaches as far as a fourth of its distance gains too little.
+// An instance that reaches as far as a fourth of its distance gains too little.
 constexpr float compact = 0.25f;
-// Of a position's error. Its corner is rounded, and so are sum and the next ray's origin, by half a
-// step in each of three directions: twice 0.87. What is not apart is as inexact as its corners.
+// A position's error in steps. Its corner is rounded, and so are sum and the next ray's origin, by
+// half a step in each of three directions: twice 0.87. What is not apart is as inexact as its
+// corners.
 constexpr float apart_steps = 3, usual_steps = 8;
 
 // Smallest across of the mesh's triangles, were they all alike: from their number and its size.

@@ -20,7 +20,7 @@ std::vector<uint32_t> make_tangents(Mesh& mesh, int uv_set);
 // The same for a mesh with tangents whose vertices have moved: they stay split as they are, and
 // keep the sign of their bitangent.
 void update_tangents(Mesh& mesh, int uv_set);
-// Of a mesh that was mirrored: its triangles and bitangents become those of their mirror images.
+// Turns a mesh that was mirrored: its triangles and bitangents become those of their mirror images.
 void turn_winding(Mesh& mesh);
 // The set of texture coordinates that what needs tangents uses; -1: nothing does.
 int tangent_uv(const Material& material);

@@ -79,7 +79,7 @@ struct World::Impl {
   bool is_culled(const Hit& hit, vec3 direction) const;
   // With `filter`, which every hit must pass, too.
   Hit nearest(const Ray& ray, RTCFilterFunctionN filter) const;
-  // What the eye sees along a ray whose nearest hit is known.
+  // Returns what the eye sees along a ray whose nearest hit is known.
   Hit seen(const Ray& ray, const Hit& hit) const {
     return any_one_sided && ray.from_eye && is_culled(hit, ray.direction)
                ? nearest(ray, filter_culled)

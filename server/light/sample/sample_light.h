@@ -55,7 +55,7 @@ vec3 eval_visibility(const Transport& transport, Ray ray);
 
 inline constexpr int most_panes = 64;  // straight through so many in a row, then the light is lost
 
-// What solid glass does with a walk (BsdfSample::glass) is no edge of it, so that a room behind ten
+// An event in solid glass (BsdfSample::glass) is no edge of a walk, so that a room behind ten
 // panes is followed as far as one before them. Beyond `sure_glass` of these Russian roulette takes
 // some of all walks, as total reflection may hold one for ever; what stays for more than
 // `most_glass` is lost.

@@ -44,7 +44,7 @@ void set_size(PictureWishes& wants, const ShowSettings& settings, int width, int
   wants.height = std::max(16, height / 8 * 8);
 }
 
-// What is larger needs room, as a newcomer does.
+// Larger pictures need room, as a newcomer does.
 Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int height) {
   PictureWishes& wants = visitor.wants;
   PictureWishes sized = wants;

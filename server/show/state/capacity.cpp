@@ -14,8 +14,8 @@ constexpr double keyframe_rate = 3;    // a second for each visitor: the floor u
 constexpr double keyframe_cost = 0.5;  // of one of full resolution, with its samples, then
 constexpr double fixed_pixels = 30e3;
 constexpr double bytes_a_pixel = 64, fixed_bytes = 1e6;
-// Of the cores, more than all: for who comes from an address that has no seat. Everybody has so
-// much less then.
+// This share of the cores is given beyond all of them to who comes from an address that has no
+// seat. Everybody has so much less then.
 constexpr double spare_cores = 0.25;
 constexpr double kept_memory = 1.0 / 8;  // of the memory, for such newcomers
 constexpr int kept_seats = 8;            // one in so many is for them
