@@ -33,7 +33,7 @@ bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& sett
 // other and the rest for itself: in the middle of a surface the plain mean, and nowhere is light
 // won or lost, so that a picture's mean stays what it was. Windows up to 7 x 7. `edges`, if wanted:
 // of each pixel, not 0 where is_edge between it and one of the eight around it. All cores.
-// Where there are several windows, by one after the other; edges are those of the first one.
+// Several windows are applied one after the other; edges are those of the first one.
 void filter_windows(const View& view, std::span<const DiscontinuitySettings> windows,
                     std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);
 
