@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh needs more than its corners: normals from faces, tangents from texture coordinates, and the
-// winding of its mirror image.
+// A mesh needs more than its corners: normals from faces, tangents from texture coordinates, and
+// the winding of its mirror image.
 #pragma once
 #include "world/scene.h"
 
