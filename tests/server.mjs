@@ -85,7 +85,7 @@ export function start_server(words = [],
     { port = 0, content, programs = bin, places = true, prefix = [] } = {}) {
   const args = content || words.includes('--exhibit') ? [...words]
       : ['--exhibit', 'castle', ...words];
-  if (!args.includes('--least-fps')) args.push('--least-fps', '1');
+  if (!args.includes('--least-fps')) args.push('--least-fps', '0.01');
   if (cache && !args.includes('--cache')) args.push('--cache', cache);
   content ??= join(source, 'content');
   return new Promise((resolve, reject) => {

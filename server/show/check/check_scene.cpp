@@ -108,14 +108,7 @@ void check_view(const Exhibit& exhibit, const World& world, const ExhibitViewpoi
                       who + " is inside '" + inside +
                           "', whose surfaces show it their backs; if that is your room, turn "
                           "its faces inwards (Blender: Mesh > Normals > Flip)");
-  constexpr int width = 32, height = 18;
-  View view = make_view(exhibit.scene, at, width, height);
-  for (int i = 0; i < width * height; i++) {
-    Ray ray = view_ray(view, float(i % width) + 0.5f, float(i / width) + 0.5f);
-    Hit hit = world.intersect(ray);
-    if (hit.valid() && !world.is_moving(hit.instance)) return;
-  }
-  noter.note(where, "nothing of the scene is in view of " + who);
+  if (!sees_something(world, at)) noter.note(where, "nothing of the scene is in view of " + who);
 }
 
 void check_storyteller(const Exhibit& exhibit, const World& world, size_t index, Noter& noter) {
@@ -161,6 +154,17 @@ bool is_in_solid(const World& world, vec3 place, std::string& inside) {
   if (float(backs) < solid_share * directions) return false;
   inside = world.scene().objects[world.object_of(nearest.instance)];
   return true;
+}
+
+bool sees_something(const World& world, const Viewpoint& viewpoint) {
+  constexpr int width = 96, height = 56;  // wires are seen, too
+  View view = make_view(world.scene(), viewpoint, width, height);
+  for (int i = 0; i < width * height; i++) {
+    Ray ray = view_ray(view, float(i % width) + 0.5f, float(i / width) + 0.5f);
+    Hit hit = world.intersect(ray);
+    if (hit.valid() && !world.is_moving(hit.instance)) return true;
+  }
+  return false;
 }
 
 void check_places(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems) {

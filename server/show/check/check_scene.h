@@ -13,6 +13,10 @@ namespace wellspring {
 // nearest of them belongs to goes to `inside`.
 bool is_in_solid(const World& world, vec3 place, std::string& inside);
 
+// Whether what stands still is in view. Eyes look through the backs of single-sided faces, so from
+// some sides nothing may be there.
+bool sees_something(const World& world, const Viewpoint& viewpoint);
+
 // Notes about places, views and size. Milliseconds.
 void check_places(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems);
 

@@ -132,17 +132,6 @@ std::vector<Viewpoint> propose_inside(const World& world, const Bounds& box, flo
   return views;
 }
 
-// Eyes look through the backs of single-sided faces, so from some sides nothing may be there.
-bool sees_something(const World& world, const Viewpoint& at) {
-  constexpr int width = 8 * columns, height = 8 * rows;  // wires are seen, too
-  View view = make_view(world.scene(), at, width, height);
-  for (int i = 0; i < width * height; i++) {
-    Ray ray = view_ray(view, float(i % width) + 0.5f, float(i / width) + 0.5f);
-    if (world.intersect(ray).valid()) return true;
-  }
-  return false;
-}
-
 std::vector<Viewpoint> propose_outside(const World& world, const Bounds& box) {
   struct Side {
     const char* name;

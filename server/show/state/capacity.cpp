@@ -10,7 +10,7 @@ namespace wellspring {
 namespace {
 
 constexpr double usable = 0.85;        // of the cores: sockets, ticks and the system take the rest
-constexpr double keyframe_rate = 3;    // a second for each visitor: the floor under load
+constexpr double keyframe_rate = 3;    // a second for each visitor: the floor under load, at most
 constexpr double keyframe_cost = 0.5;  // of one of full resolution, with its samples, then
 constexpr double fixed_pixels = 30e3;
 constexpr double bytes_a_pixel = 64, fixed_bytes = 1e6;
@@ -25,7 +25,7 @@ constexpr int remembered = 400;          // pictures that the mean goes over
 }  // namespace
 
 double cores_a_pixel(const PictureCost& cost, double rate) {
-  return rate * cost.shown + keyframe_rate * keyframe_cost * cost.drawn;
+  return rate * cost.shown + std::min(keyframe_rate, rate) * keyframe_cost * cost.drawn;
 }
 
 double weighed_pixels(double pixels) { return pixels + fixed_pixels; }

@@ -36,11 +36,12 @@ TEST(Capacity, SeatsAreAsManyAsTheCoresServeAtTheLeastRate) {
     double cores, rate, shown_ms, drawn_ms, pixels;
     size_t seats;
   };
-  // A visitor takes rate * shown + 3 * 0.5 * drawn; 0.85 of the cores are for that.
+  // A visitor takes rate * shown + min(3, rate) * 0.5 * drawn; 0.85 of the cores are for that.
   for (const Row& row : {
            Row{2, 15, 4, 20, pixels, 18},                                 // 0.09 cores each
            Row{4, 15, 4, 20, pixels, 37}, Row{4, 30, 4, 20, pixels, 22},  // 0.15
            Row{4, 15, 8, 40, pixels, 18},      // a machine of half the speed
+           Row{2, 1, 4, 20, pixels, 121},      // no more keyframes than pictures
            Row{4, 15, 4, 20, 4 * pixels, 10},  // its fixed part once, 3.65 times as much
        }) {
     auto capacity = measured(row.shown_ms, row.drawn_ms, {.rate = row.rate, .cores = row.cores});
