@@ -90,7 +90,7 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
                  "seconds to go on serving after SIGTERM, while /healthz says 503, draining")
       ->check(CLI::Range(0, 3600));
   app.add_option("--fps", show.fps, "pictures a second for each visitor")
-      ->check(CLI::Range(0.01, 120.0));
+      ->check(CLI::Range(1.0, 120.0));
   CapacitySettings& capacity = options.museum.capacity;
   app.add_option("--max-visitors", capacity.most,
                  "visitors who are shown pictures at once, in all exhibits together, however many "
@@ -100,7 +100,7 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
          "--least-fps", capacity.rate,
          "pictures a second that everybody is to have who walks: while the machine makes no "
          "more, newcomers wait")
-      ->check(CLI::Range(1.0, 120.0));
+      ->check(CLI::Range(0.01, 120.0));
   app.add_option(
          "--visitors-memory", words.visitors_memory,
          "MiB that pictures of all visitors may take: while newcomers need more, they wait; "
