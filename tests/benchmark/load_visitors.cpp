@@ -62,7 +62,8 @@ void measure(BenchReport& report, const BenchOptions& options, int visitors) {
 void bench_load_visitors(BenchReport& report, const BenchOptions& options) {
   BenchOptions all = options;
   // Everybody is let in, at however few pictures.
-  if (all.server_words.empty()) all.server_words = {"--least-fps", "0.01", "--max-visitors", "1000"};
+  if (all.server_words.empty())
+    all.server_words = {"--least-fps", "0.01", "--max-visitors", "1000"};
   for (int visitors : {1, 2, 4, 8, 16, 32}) measure(report, all, visitors);
 }
 
