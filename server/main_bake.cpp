@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "light/bake/bake_file.h"
+#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 #include "show/exhibit/exhibit_load.h"
@@ -62,14 +63,18 @@ struct Bakery {
   Exhibit exhibit;
   uint64_t key;
   World world;
-  std::string file;
+  std::string file, light;  // what it can go on with, and the map that comes of it
 
   Bakery(const Options& options, const BakeSettings& settings)
       : exhibit(load_exhibit(options.package)),
         key(hash_scene(exhibit.scene)),
         world(exhibit.scene),
-        file(options.out) {
-    if (!file.empty()) return;
+        file(options.out),
+        light(shipped_light(options.package)) {
+    if (!file.empty()) {
+      light = std::filesystem::path(file).replace_extension(".maps").string();
+      return;
+    }
     file = options.cache + "/" + exhibit.id;
     if (settings.shards > 1)
       file += "." + std::to_string(settings.shard + 1) + "of" + std::to_string(settings.shards);
@@ -81,14 +86,14 @@ struct Bakery {
   // And unless it is a shard the map that comes of it.
   void finish(Bake& bake) const {
     keep(bake);
-    float error = bake_error(bake);
-    if (bake.settings.shards == 1) {
-      const std::string maps = std::filesystem::path(file).replace_extension(".maps").string();
-      std::shared_ptr<const IlluminationMap> map = finish_map(world, all_eye_places(exhibit), bake);
-      if (map && !save_map(*map, maps, key)) throw Failure(maps + ": cannot be written");
-      if (map) error = map->error;
-    }
-    std::cout << file << ": " << bake.passes << " passes, error " << 100 * error << " %\n";
+    std::cout << file << ": " << bake.passes << " passes, error " << 100 * bake_error(bake)
+              << " %\n";
+    if (bake.settings.shards > 1) return;
+    std::shared_ptr<const IlluminationMap> map = finish_map(world, all_eye_places(exhibit), bake);
+    if (!map) return;
+    if (!save_map(world, *map, light, key)) throw Failure(light + ": cannot be written");
+    std::cout << light << ": " << std::filesystem::file_size(light) << " bytes, error "
+              << 100 * map->error << " %\n";
   }
 };
 

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
       wellspring::World world(exhibit.scene);
       wellspring::check_places(exhibit, world, problems);
       wellspring::check_light(exhibit, world, problems);
+      wellspring::check_shipped_light(exhibit, problems);
       wellspring::check_ground(exhibit, world, problems);
       wellspring::make_tour_roads(exhibit, world, problems);
     }

@@ -10,63 +10,11 @@
 #include "picture/drawn_run.h"
 #include "picture/nearby_light.h"
 #include "picture/object_light.h"
+#include "picture/own_light.h"
 #include "picture/soften_edges.h"
 
 namespace wellspring {
 namespace {
-
-template <int Scale>
-constexpr Lanes light_columns =
-    Scale == 1 ? Lanes{0, 1, 2, 3, 4, 5, 6, 7} : Lanes{0, 0, 1, 1, 2, 2, 3, 3};
-
-// What the light's points say of eight pixels.
-struct OwnLight {
-  LaneBits plane[surface_planes];
-};
-// Of `count` light pixels, not all of them in the picture.
-[[gnu::noinline]] void read_cut(const Frame& light, int lx, int ly, int count,
-                                uint32_t (*words)[lane_count]) {
-  for (int p = 0; p < surface_planes; p++)
-    std::fill_n(words[p], lane_count, p == plane_object ? no_object : 0);
-  for (int x = std::max(lx, 0); x < std::min(lx + count, light.width); x++) {
-    uint32_t word[surface_planes];
-    read_packed(light, x, ly, word);
-    for (int p = 0; p < surface_planes; p++) words[p][x - lx] = word[p];
-  }
-}
-// Each light pixel is for `Scale` pixels of a row.
-template <int Scale>
-OwnLight read_own(const Frame& light, int lx, int ly) {
-  constexpr int count = lane_count / Scale;
-  auto spread = [](const uint32_t* from) {
-    if constexpr (Scale == 1) return load_lanes<LaneBits>(from);
-    HalfLaneBits v = load_lanes<HalfLaneBits>(from);
-    return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
-  };
-  OwnLight own;
-  if (lx < 0 || lx + count > light.width) {
-    uint32_t words[surface_planes][lane_count];
-    read_cut(light, lx, ly, count, words);
-    for (int p = 0; p < surface_planes; p++) own.plane[p] = spread(words[p]);
-    return own;
-  }
-  size_t at = size_t(ly) * size_t(light.width) + size_t(lx);
-  auto bits = [&](const std::vector<float>& plane) {
-    return reinterpret_cast<const uint32_t*>(&plane[at]);
-  };
-  own.plane[plane_object] = spread(&light.object[at]);
-  own.plane[plane_more] = spread(bits(light.confidence));
-  own.plane[plane_depth] = spread(bits(light.depth));
-  const uint32_t* words = packed_words(light, lx, ly);
-  for (int p : {plane_albedo, plane_rest, plane_smooth}) {
-    const uint32_t* four = words + packed_four * p;
-    if constexpr (Scale == 1)
-      own.plane[p] = join_halves(load_lanes<HalfLaneBits>(four),
-                                 load_lanes<HalfLaneBits>(four + 3 * packed_four));
-    else own.plane[p] = spread(four);
-  }
-  return own;
-}
 
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
@@ -247,6 +195,8 @@ struct Composer {
   int left = 0, top = 0;  // where in the picture the light's begins, whole groups
   float own_counts = 1;   // samples of a pixel's own point, each
   KeptLight kept = {};
+  bool passing = false;  // what maps say all of is not asked of points: the picture is soon another
+  Shade shade = {};
 
   // Eight lanes each.
   static int parts_of(const VisibleRun& run) {
@@ -258,7 +208,7 @@ struct Composer {
                  const RunGlow& emitting, int n, LanePart part, Drawn& d) const;
   Shown light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
                    const RunMoving& moving, const RunMapped& mapped, const RunDynamic& dynamic,
-                   const CellRows<Scale>& rows, int n, LanePart part) const;
+                   const CellRows<Scale>* rows, int n, LanePart part) const;
 };
 
 template <int Scale>
@@ -336,9 +286,10 @@ template <int Scale>
 Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
                                   const RunGlow& emitting, const RunMoving& moving,
                                   const RunMapped& mapped, const RunDynamic& dynamic,
-                                  const CellRows<Scale>& rows, int n, LanePart part) const {
+                                  const CellRows<Scale>* rows, int n, LanePart part) const {
   const int i = n * lane_count - half_group;
-  const unsigned here = part.bits(), moves = bits_at(moving.pixels, i) & here;
+  const unsigned here = part.bits(), moves = bits_at(moving.pixels, i) & here,
+                 plain = bits_at(mapped.plain, i) & here;
   Drawn d;
   Pixels& q = d.pixels;
   q.depth = lanes_min(lanes_at(run.depth, i), all_lanes(infinite_depth));
@@ -347,7 +298,7 @@ Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
               all_lanes(skin_samples),
               q.depth < 0.5f * infinite_depth ? q.depth : all_lanes(INFINITY),
               q.object};
-  if (moves != here) {
+  if ((moves | plain) != here) {
     if (unsigned maps = bits_at(mapped.pixels, i)) {
       d.mapped = lanes_of_bits(maps);
       d.raised = keep_lanes(d.mapped, all_lanes(kept.maps->least_known()));
@@ -355,12 +306,13 @@ Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
                 d.mapped ? lanes_at(mapped.unit.green, i) : d.unit.g,
                 d.mapped ? lanes_at(mapped.unit.blue, i) : d.unit.b};
     }
-    light_run(p, run, rows, emitting, n, part, d);
+    light_run(p, run, *rows, emitting, n, part, d);
     shown.color = {positive_lanes(d.albedo.r * (q.smooth.r * d.unit.r - d.raised) + q.rest.r),
                    positive_lanes(d.albedo.g * (q.smooth.g * d.unit.g - d.raised) + q.rest.g),
                    positive_lanes(d.albedo.b * (q.smooth.b * d.unit.b - d.raised) + q.rest.b)};
     shown.samples = q.samples;
   }
+  if (plain) put_plain(p, mapped.unit, kept.maps->least_known(), i, lanes_of_bits(plain), shown);
   if (moves) put_moving(p, moving.light, i, lanes_of_bits(moves), shown);
   if (dynamic.any) add_dynamic(p, dynamic, i, shown);
   add_glow(p, emitting, i, here, shown);
@@ -377,9 +329,14 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
     const KeptLight& kept = composer.kept;
     if (kept.skin) moving.pixels = run.light(*kept.skin, p.surface, moving.light);
     RunMapped mapped;
-    if (kept.maps) mapped.pixels = run.known(*kept.maps, mapped.unit);
+    if (kept.maps) mapped.pixels = run.known(*kept.maps, p.surface, mapped.unit);
+    if (kept.maps && composer.passing)
+      mapped.plain = mapped.unit.plain & ~emitting.some &
+                     ~composer.shade.pixels(run, composer.rays, composer.offset);
     const RunDynamic dynamic = find_dynamic(kept.dynamic, composer.view, run, p);
-    const CellRows<Scale>& rows = composer.rows_around(run);
+    const uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
+    const CellRows<Scale>* rows =
+        (moving.pixels | mapped.plain) == all ? nullptr : &composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
       int i = n * lane_count - composer.half_group;
@@ -407,6 +364,8 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const V
   auto draw = [&](auto composer) {
     if (filtered) composer.own_counts = filtered_counts;
     composer.kept = kept;
+    composer.passing = true;
+    composer.shade = Shade(view, visibility.moving_bounds());
     auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
     return visibility.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
                                 differ);

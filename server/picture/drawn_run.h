@@ -30,6 +30,7 @@ struct RunMoving {
 // What of a run an illumination map lights.
 struct RunMapped {
   uint64_t pixels = 0;  // a bit each
+  uint64_t plain = 0;   // those that are lit by it alone
   RunKnown unit;
 };
 
@@ -53,6 +54,50 @@ inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
   put(skin.blue, p.surface.blue, shown.color.b);
   shown.samples = lanes_that_move ? all_lanes(skin_samples) : shown.samples;
 }
+
+// Radiance of those of eight pixels, from lane `i` on, of which a map says all; `raised`: as
+// Sample::raised.
+inline void put_plain(const RunPixels& p, const RunKnown& known, float raised, int i,
+                      const LaneMask& lanes, Shown& shown) {
+  const Lanes gloss = lanes_at(known.gloss, i);
+  auto put = [&](const float* light, const float* reflectance, Lanes& to) {
+    const Lanes lit =
+        (lanes_at(light, i) - raised) * (lanes_at(reflectance, i) * (1.0f - gloss) + gloss);
+    to = lanes ? positive_lanes(lit) : to;
+  };
+  put(known.red, p.surface.red, shown.color.r);
+  put(known.green, p.surface.green, shown.color.g);
+  put(known.blue, p.surface.blue, shown.color.b);
+  shown.samples = lanes ? all_lanes(skin_samples) : shown.samples;
+}
+
+// Around what moves, in the view's axes: it may change the light of what stands there.
+struct Shade {
+  static constexpr float reach = 2.5f;  // times as far as it is large
+  vec3 centre{0};                       // to the right, up and ahead
+  float radius = 0;                     // 0: nothing moves
+  Shade() = default;
+  Shade(const View& view, const Bounds& box) {
+    if (!(box.low.x <= box.high.x)) return;
+    const vec3 to = 0.5f * (box.low + box.high) - view.position;
+    centre = {dot(to, view.right), dot(to, view.up), dot(to, view.forward)};
+    radius = reach * 0.5f * length(box.high - box.low);
+  }
+  // Pixels of a run that see a place in it, a bit each, maybe others beyond.
+  uint64_t pixels(const VisibleRun& run, const PixelRays& rays, vec2 offset) const {
+    constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+    uint64_t found = 0;
+    const float up = rays.y(float(run.y) + offset.y);
+    for (int i = 0; radius > 0 && i < run.count; i += lane_count) {
+      const Lanes depth = load_lanes(run.depth + i),
+                  x = depth * (rays.x(float(run.x + i) + offset.x) + rays.inverse_focal * lane) -
+                      centre.x,
+                  y = depth * up - centre.y, z = depth - centre.z;
+      found |= uint64_t(negative_lanes(x * x + y * y + z * z < radius * radius)) << i;
+    }
+    return found;
+  }
+};
 
 // `image`: null, or computed for pictures of `view`.
 inline RunDynamic find_dynamic(const DynamicImage* image, const View& view, const VisibleRun& run,

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// bake.*: illumination maps against converged `path`, by time; and what pictures in their light
-// cost.
-#include <oneapi/tbb/global_control.h>
-
+// bake.*: illumination maps against converged `path`, by time.
 #include <algorithm>
 #include <cmath>
 
 #include "bake_particles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "light/material/bsdf.h"
+#include "light/walk/known_light.h"
 #include "light_scenes.h"
-#include "picture/compositor.h"
 #include "report.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/exhibit/eye_places.h"
@@ -72,12 +70,20 @@ DiffuseView find_diffuse(const World& world, const Lights& lights, const View& v
   return seen;
 }
 
+// What a picture takes from the map, maps of normals counted.
+vec3 light_of(const World& world, const Lights& lights, const IlluminationMap& map, const Ray& ray,
+              const Hit& hit) {
+  Transport transport{world, *lights.tables};
+  transport.maps = &map;
+  return find_known_light(transport, ray, hit, eval_surface(world, ray, hit)).light;
+}
+
 struct MapError {
   double error = 0, bias = 0, noise = 0, known = 0;
 };
 // Root mean square over the mean light, of all pixels that the map knows, without the reference's
 // own noise.
-MapError judge(const World& world, const IlluminationMap& map,
+MapError judge(const World& world, const Lights& lights, const IlluminationMap& map,
                const std::vector<DiffuseView>& views) {
   double squares = 0, sum = 0, bias = 0, noise = 0, count = 0, all = 0;
   for (const DiffuseView& view : views)
@@ -87,9 +93,8 @@ MapError judge(const World& world, const IlluminationMap& map,
       bool front = dot(eval_face(world, hit.instance, hit.triangle), view.ray[i].direction) < 0;
       uint32_t chart = map.places->find(hit.instance, hit.triangle, front);
       if (chart == no_chart) continue;
-      vec3 place = view.ray[i].origin + hit.t * view.ray[i].direction;
-      double off = double(luminance(eval_illumination(map, map.places->charts[chart], place))) -
-                   double(view.light[i]);
+      double off =
+          double(luminance(light_of(world, lights, map, view.ray[i], hit))) - double(view.light[i]);
       squares += off * off, bias += off, sum += double(view.light[i]);
       noise += double(view.variance[i]), count++;
     }
@@ -113,6 +118,7 @@ double seam_error(const Bake& bake, const IlluminationMap& map) {
 struct Bakery {
   std::string scene;
   const World& world;
+  const Lights& lights;
   std::vector<vec3> places, eyes;
   std::vector<DiffuseView> views;
 };
@@ -120,12 +126,13 @@ struct Bakery {
 void add(BenchReport& report, const Bakery& bakery, const char* technique, double seconds,
          const IlluminationMap& map) {
   nlohmann::json fields = {{"scene", bakery.scene}, {"technique", technique}, {"seconds", seconds}};
-  MapError error = judge(bakery.world, map, bakery.views);
+  MapError error = judge(bakery.world, bakery.lights, map, bakery.views);
   report.add("bake.rmse", error.error, "share", fields);
+  report.add("bake.rmse_true", error.error, "share", fields);
   report.add("bake.bias", error.bias, "share", fields);
   report.add("bake.reference_noise", error.noise, "share", fields);
   report.add("bake.known", error.known, "share", fields);
-  report.add("bake.estimate", double(map.error), "share", fields);
+  report.add("bake.rmse_told", double(map.error), "share", fields);
 }
 
 void bake_by_samples(BenchReport& report, const Bakery& bakery, bool gathers,
@@ -140,8 +147,8 @@ void bake_by_samples(BenchReport& report, const Bakery& bakery, bool gathers,
     add(report, bakery, gathers ? "gather" : "paths", mark, *map);
     if (mark != marks.back() || !gathers) continue;
     nlohmann::json fields = {{"scene", bakery.scene}};
-    report.add("bake.texels", double(map->light.size()), "texels", fields);
-    report.add("bake.bytes", double(map->light.size() * 4 * map->layers->size()), "B", fields);
+    report.add("bake.texels", double(map->nodes.light.size()), "texels", fields);
+    report.add("bake.bytes", double(memory_bytes(*map)), "B", fields);
     report.add("bake.vertex_bytes", double(vertex_bytes(bake)), "B", fields);
     report.add("bake.seam", seam_error(bake, *map), "share", fields);
   }
@@ -167,34 +174,6 @@ void bake_by_particles(BenchReport& report, const Bakery& bakery,
   }
 }
 
-// A whole picture in the light of maps alone, or of points alone.
-void time_pictures(BenchReport& report, const World& world, const Lights& lights, const View& view,
-                   std::shared_ptr<const IlluminationMap> map, int cores) {
-  oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                    size_t(cores));
-  const VisibilityPass visibility(world, lights);
-  for (bool maps : {false, true}) {
-    RenderCache cache;
-    Compositor compositor;
-    if (maps) compositor.set_maps(map);
-    cache.resize(view.width, view.height);
-    cache.project(light_view(view));
-    Image8 image;
-    std::vector<double> times;
-    for (int i = 0; i < 15; i++) {
-      double start = seconds_now();
-      compositor.draw(cache, view, visibility, Tonemap{}, image);
-      times.push_back(1e3 * (seconds_now() - start));
-    }
-    report.add("bake.picture.ms", quantile(times, 0.5), "ms",
-               {{"scene", "castle"},
-                {"technique", maps ? "maps" : "points"},
-                {"width", view.width},
-                {"height", view.height},
-                {"cores", cores}});
-  }
-}
-
 }  // namespace
 
 void bench_bake(BenchReport& report, const BenchOptions& options) {
@@ -206,7 +185,8 @@ void bench_bake(BenchReport& report, const BenchOptions& options) {
     BenchScene hall = load_bench_scene(options, "diffuse_hall");
     World world(hall.scene);
     Lights lights = make_lights(world);
-    Bakery bakery{hall.name, world, {vec3(hall.camera.position - hall.scene.origin)}, {}, {}};
+    Bakery bakery{hall.name, world, lights, {vec3(hall.camera.position - hall.scene.origin)},
+                  {},        {}};
     bakery.eyes = bakery.places;
     bakery.views.push_back(find_diffuse(world, lights, bench_view(hall, width, height), spp));
     bake_by_samples(report, bakery, true, marks);
@@ -216,21 +196,13 @@ void bench_bake(BenchReport& report, const BenchOptions& options) {
   Exhibit castle = load_exhibit(options.content + "/castle");
   World world(castle.scene);
   Lights lights = make_lights(world);
-  Bakery bakery{"castle", world, eye_places(castle), all_eye_places(castle), {}};
+  Bakery bakery{"castle", world, lights, eye_places(castle), all_eye_places(castle), {}};
   for (const char* name : {"hall", "figure", "fireplace"}) {
     const Viewpoint& at = castle.viewpoints[size_t(find_viewpoint(castle, name))].view;
     View view = make_view(castle.scene, at.position, at.yaw, at.pitch, at.fov, width, height);
     bakery.views.push_back(find_diffuse(world, lights, view, spp));
   }
   bake_by_samples(report, bakery, true, marks);
-  const Viewpoint& at = castle.viewpoints[size_t(castle.start)].view;
-  View view = make_view(castle.scene, at.position, at.yaw, at.pitch, at.fov, 1280, 720);
-  const BakeScene scene = make_bake_scene_of_paths(world);
-  Bake bake = begin_bake(world, bakery.places);
-  bake_passes(scene, bake, 1);
-  auto map = finish_map(world, {}, bake);
-  for (int cores : {1, oneapi::tbb::this_task_arena::max_concurrency()})
-    time_pictures(report, world, lights, view, map, cores);
 }
 
 }  // namespace wellspring

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "light/bake/bake_file.h"
+#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 #include "show/exhibit/eye_places.h"
@@ -32,16 +33,16 @@ std::shared_ptr<const IlluminationMap> find_baked(const Show& show, const std::s
                                                   double seconds) {
   const Scene& scene = show.exhibit.scene;
   const uint64_t key = hash_scene(scene);
-  if (auto kept = load_map(scene, file, key)) return kept;
   const World world(scene);
+  if (LoadedMap kept = load_map(world, file, key); kept.found == KeyedFile::read) return kept.map;
   const std::vector<vec3> places = eye_places(show.exhibit);
-  const BakeScene baked = make_bake_scene(world, places, show.lights.grid);
+  const BakeScene baked = make_bake_scene(world, places);
   Bake bake = begin_bake(world, places);
   const double began = seconds_now();
   go_on(baked, bake, [&] { return seconds_now() - began > seconds && bake.passes > 0; });
   auto maps = finish_map(world, all_eye_places(show.exhibit), bake);
   log::info("{}: {} passes, error {:.1f} %", file, bake.passes, 100 * maps->error);
-  save_map(*maps, file, key);
+  save_map(world, *maps, file, key);
   return maps;
 }
 

@@ -73,6 +73,7 @@ void bench_corrective(BenchReport& report, const BenchOptions& options);
 void bench_denoise_time(BenchReport& report, const BenchOptions& options);
 void bench_denoise_flip(BenchReport& report, const BenchOptions& options);
 void bench_bake(BenchReport& report, const BenchOptions& options);
+void bench_picture(BenchReport& report, const BenchOptions& options);
 void bench_light_error(BenchReport& report, const BenchOptions& options);
 void bench_light_hall(BenchReport& report, const BenchOptions& options);  // one scene of it
 void bench_light_frame(BenchReport& report, const BenchOptions& options);

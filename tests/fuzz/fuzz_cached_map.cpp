@@ -9,12 +9,12 @@ namespace wellspring::fuzz {
 void fuzz_cached_map(Bytes bytes) {
   static const std::string file = folder().file("fuzz.maps");
   static const uint64_t format = [] {
-    save_map(*baked_square().map(1), file, cached_key);
+    save_map(baked_square().world, *baked_square().map(1), file, cached_key);
     return format_of(file);
   }();
   replace_contents(file, format, bytes);
   const Scene& scene = baked_square().scene;
-  const auto map = load_map(scene, file, cached_key);
+  const auto map = load_map(baked_square().world, file, cached_key).map;
   if (!map) return;
   mapped_objects(scene, *map);
   relit(*map, LampLevels(scene.lamps.size(), 100));

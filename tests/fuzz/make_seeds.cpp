@@ -155,7 +155,7 @@ void write_scenes(const Corpus& corpus) {
 void write_kept(const Corpus& corpus) {
   test::Baked& baked = fuzz::baked_square();
   const auto map = baked.map(2);
-  save_map(*map, corpus.folder.file("square.maps"), 1);
+  save_map(baked.world, *map, corpus.folder.file("square.maps"), 1);
   save_bake(baked.bake, corpus.folder.file("square.bake"), 1);
   RadianceGrid grid;
   grid.keys.assign(16, 0), grid.light.assign(16, vec3(1)), grid.count.assign(16, 20);

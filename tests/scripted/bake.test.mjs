@@ -11,6 +11,7 @@ const folder = mkdtempSync(join(tmpdir(), 'wellspring-bake-'));
 after(() => rmSync(folder, { recursive: true, force: true }));
 const cache = join(folder, 'cache');
 const bake = (...args) => run('wellspring_bake', ['--cache', cache, ...args]);
+const check = (package_folder) => run('wellspring_check', ['--cache', cache, package_folder]);
 const passes_of = (said) => Number(/: (\d+) passes, error/.exec(said.stdout)?.[1]);
 
 // A floor under a bulb: {folder} of its package.
@@ -68,12 +69,14 @@ test('bakes, goes on and keeps what servers look for', async () => {
   const passes = passes_of(first);
   const later = await bake_passes(passes + 1, floor);
   assert.ok(passes_of(later) > passes);
-  assert.ok(statSync(join(cache, 'floor.maps')).size > 100000);
+  assert.ok(statSync(join(floor, 'light.maps')).size > 10000, 'the package carries its light');
   // Another scene is begun anew.
   make_package('floor', { color: 0.6 });
   const changed = await bake(floor, '--resume', '--time', '0.1s');
   assert.equal(changed.status, 0);
   assert.match(changed.stderr, /floor\.bake: stale/);
+  const said = await check(floor);
+  assert.match(said.stdout, /light\.maps: is stale: .*wellspring bake/);
   assert.ok(passes_of(changed) < passes_of(later));
 });
 
@@ -83,7 +86,7 @@ test('shards are merged into one', async () => {
     await bake_passes(1, hall, '--shard', `${i}/2`);
     assert.ok(existsSync(part(i)));
   }
-  assert.ok(!existsSync(join(cache, 'hall.maps')), 'half of it is no map');
+  assert.ok(!existsSync(join(hall, 'light.maps')), 'half of it is no map');
   const alone = await bake('--merge', part(1));
   assert.equal(alone.status, 1);
   assert.match(alone.stderr, /shards are missing: 1 of 2/);
@@ -93,7 +96,8 @@ test('shards are merged into one', async () => {
   const merged = await bake('--merge', part(1), part(2));
   assert.equal(merged.status, 0, merged.stderr);
   assert.ok(passes_of(merged) >= 1);
-  for (const ending of ['bake', 'maps']) assert.ok(existsSync(join(cache, `hall.${ending}`)));
+  assert.ok(existsSync(join(cache, 'hall.bake')));
+  assert.ok(existsSync(join(hall, 'light.maps')));
   make_package('hall', { color: 0.6 });
   const stale = await bake('--merge', part(1), part(2));
   assert.equal(stale.status, 1);
@@ -125,7 +129,7 @@ test('where nothing is diffuse it ends at once', async () => {
   const said = await bake(make_package('metal', { metallic: 1 }), '--time', '1h');
   assert.equal(said.status, 0, said.stderr);
   assert.match(said.stdout, /^0 charts/);
-  assert.ok(!existsSync(join(cache, 'metal.maps')));
+  assert.ok(!existsSync(join(folder, 'metal', 'light.maps')));
 });
 
 test('a wrong command line is 2, wrong input 1, and both are told', async () => {

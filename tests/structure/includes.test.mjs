@@ -55,7 +55,7 @@ const may_enter = {
     sample: ['', 'material', 'random'],
     walk: ['', 'sample', 'material', 'random'],
     known: ['', 'walk', 'sample', 'material', 'random'],
-    bake: ['', 'known', 'walk', 'sample', 'material', 'random'],
+    bake: ['', 'walk', 'sample', 'material', 'random'],
     visible: ['', 'known', 'walk', 'sample', 'material', 'random'],
     instant: ['', 'walk', 'sample', 'material', 'random'],
     splat: ['', 'visible', 'known', 'walk', 'sample', 'material', 'random'],

@@ -17,7 +17,10 @@ constexpr int pilot_samples = 8;  // of a node, by which its tile is refined or 
 constexpr int refine_rounds = 3;
 constexpr int gathers_a_pass = 8;  // samples of a gathering node for one of a direct node
 constexpr int tiles_a_step = 64;
-constexpr double tile_nodes = 64;  // of a tile, on average, before refinement
+constexpr double tile_nodes = 64;      // of a tile, on average, before refinement
+constexpr float most_brightness = 25;  // of a gathered sample, times the mean light
+// What lies nearer than either covers a place: shares of the widths of a cell and of a tile.
+constexpr float cell_covering = 0.3f, tile_covering = 0.03f;
 // Neighbouring nodes that differ by that share of their light, of which a share of the scene's mean
 // counts as there everywhere.
 constexpr float rough_contrast = 0.15f, contrast_floor = 0.25f;
@@ -27,15 +30,31 @@ uint64_t node_seed(const Bake& bake, int field, uint32_t tile, uint32_t node) {
   return mix64(bake.settings.seed + mix64(uint64_t(tile) << 32 | node << 1 | uint32_t(field)));
 }
 
-void add_light(BakeField& field, size_t node, std::span<const vec3> light, float scale) {
+// What one sample has found, of each layer.
+struct LayerLight {
+  std::vector<vec3> light, slope;  // luminance times slope_of()
+  explicit LayerLight(int layers) : light(size_t(layers)), slope(size_t(layers)) {}
+};
+
+void add_light(BakeField& field, size_t node, const LayerLight& found, float scale) {
   vec3 sum(0);
-  for (vec3 l : light) sum += l;
+  for (vec3 l : found.light) sum += l;
   if (!is_finite(sum)) return;
-  vec3* to = field.light_of(node);
-  for (size_t p = 0; p < light.size(); p++) to[p] += scale * light[p];
+  vec3 *to = field.light_of(node), *slope = field.slope_of(node);
+  for (size_t p = 0; p < found.light.size(); p++) to[p] += scale * found.light[p];
+  for (size_t p = 0; slope && p < found.slope.size(); p++) slope[p] += scale * found.slope[p];
   float whole = scale * luminance(sum);
   field.squares[node] += whole * whole;
   field.count[node] += 1;
+}
+
+// What a walk comes upon once in thousands (the sun in a brass knob) would stay a spark on the wall
+// for hours.
+void cut_off(float most, std::span<vec3> light) {
+  vec3 sum(0);
+  for (vec3 l : light) sum += l;
+  if (!(luminance(sum) > most)) return;
+  for (vec3& l : light) l *= most / luminance(sum);
 }
 
 // A place around a node, ready to be lit: a white Lambertian surface but for its coat.
@@ -67,6 +86,16 @@ bool leave(const LitPlace& lit, Sampler& sampler, Walk& walk) {
   return true;
 }
 
+// Something lies upon the surface there, or closely before it: no eye comes between, and the dark
+// there must not bleed into what is seen.
+bool is_covered(const World& world, const SurfacePlace& place, float distance) {
+  Ray up;
+  up.origin = offset_origin(place, place.geometric_normal);
+  up.direction = place.geometric_normal;
+  up.t_max = distance;
+  return world.occluded(up);
+}
+
 // One more sample of each node of a tile: visit(node, place, number of the sample, sampler).
 template <class Visit>
 void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, BakeField& field,
@@ -74,16 +103,24 @@ void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, Ba
   const IlluminationTile& grid = field.tiles[tile];
   const int which = &field == &bake.gather;
   const uint32_t number = field.asked[tile]++;
+  const IlluminationChart& chart = bake.charts.places->charts[bake.places[tile].chart];
+  const float cell = 1 / std::max(length(chart.along_u) * float(grid.columns),
+                                  length(chart.along_v) * float(grid.rows)),
+              covering = std::min(cell_covering * cell, tile_covering * bake.tile);
   for (uint32_t i = 0; i < grid.nodes(); i++) {
     Sampler sampler(node_seed(bake, which, tile, i), number);
     float choice = sampler.next();
     NodePlace place = sample_node(scene.world, bake.charts, field, bake.places[tile], tile, i,
                                   choice, sampler.next2());
-    if (place.valid) visit(size_t(grid.first) + i, light_place(scene, place), number, sampler);
+    if (!place.valid) continue;
+    const LitPlace lit = light_place(scene, place);
+    const size_t node = size_t(grid.first) + i;
+    if (is_covered(scene.world, lit.surface, covering)) field.hidden[node] += 1;
+    else visit(node, lit, number, sampler);
   }
 }
 
-void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<vec3> light) {
+void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.direct;
   auto sample = [&](size_t node, const LitPlace& lit, uint32_t number, Sampler& sampler) {
     Walk probe;
@@ -93,26 +130,43 @@ void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<
       field.hidden[node] += 1;
       return;
     }
-    for (size_t p = 0; p < light.size(); p++) {
+    for (size_t p = 0; p < found.light.size(); p++) {
       sampler.seek(Dimensions::first_surface);
       DirectLight direct =
           sample_direct_light(scene.parts[p], Walk{}, lit.surface, lit.bsdf, true, sampler);
-      light[p] = direct.area_diffuse + direct.punctual_diffuse;
+      found.light[p] = direct.area_diffuse + direct.punctual_diffuse;
+      found.slope[p] = vec3(0);
+      auto add_slope = [&](vec3 light, vec3 direction) {
+        if (float l = luminance(light); l > 0)
+          found.slope[p] += l * slope_of(direction, lit.surface.normal);
+      };
+      if (field.slope.empty()) continue;
+      add_slope(direct.area_diffuse, direct.area_direction);
+      add_slope(direct.punctual_diffuse, direct.punctual_direction);
     }
-    add_light(field, node, light, lit.uncoated);
+    add_light(field, node, found, lit.uncoated);
   };
   for_each_sample(scene, bake, tile, field, sample);
 }
 
-void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<vec3> light) {
+void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.gather;
   auto sample = [&](size_t node, const LitPlace& lit, uint32_t, Sampler& sampler) {
     Walk walk;
-    std::fill(light.begin(), light.end(), vec3(0));
+    std::fill(found.light.begin(), found.light.end(), vec3(0));
+    std::fill(found.slope.begin(), found.slope.end(), vec3(0));
     bool inside = false;
-    if (leave(lit, sampler, walk)) gather_light(scene, walk, sampler, light, inside);
+    if (leave(lit, sampler, walk)) {
+      gather_light(scene, walk, sampler, found.light, inside);
+      if (scene.known) cut_off(most_brightness * scene.known->mean, found.light);
+      if (!field.slope.empty()) {
+        const vec3 slope = slope_of(walk.ray.direction, lit.surface.normal);
+        for (size_t p = 0; p < found.light.size(); p++)
+          found.slope[p] = luminance(found.light[p]) * slope;
+      }
+    }
     if (inside) field.hidden[node] += 1;
-    else add_light(field, node, light, lit.uncoated);
+    else add_light(field, node, found, lit.uncoated);
   };
   for_each_sample(scene, bake, tile, field, sample);
 }
@@ -179,7 +233,7 @@ void refine(const BakeScene& scene, Bake& bake) {
     nodes += more;
     c = finer;
   }
-  BakeField field = make_field(scene.world, bake.charts, cells, old.layers);
+  BakeField field = make_field(scene.world, bake.charts, cells, old.layers, !old.slope.empty());
   for (uint32_t t = 0; t < cells.size(); t++) {
     const IlluminationTile &from = old.tiles[t], &to = field.tiles[t];
     if (from.nodes() != to.nodes() || from.columns != to.columns) continue;
@@ -198,8 +252,7 @@ uint32_t do_step(const BakeScene& scene, Bake& bake) {
   parallel_for(int(end - first), [&](int i) {
     const uint32_t tile = first + uint32_t(i);
     if (tile % shards != shard || bake.gather.tiles[tile].first == no_tile) return;
-    thread_local std::vector<vec3> light;
-    light.resize(size_t(scene.layers()));
+    LayerLight light(scene.layers());
     if (pilot) {
       while (bake.direct.asked[tile] < pilot_samples) sample_direct(scene, bake, tile, light);
     } else {
@@ -236,7 +289,8 @@ Bake begin_bake(const World& world, std::span<const vec3> places, const BakeSett
   bake.places = tile_places(bake.charts);
   std::vector<TileCells> cells = choose_cells(world, bake.charts, places, settings.gather_nodes);
   check_cancelled();
-  bake.gather = make_field(world, bake.charts, cells, int(layer_count(world.scene())));
+  bake.gather = make_field(world, bake.charts, cells, int(layer_count(world.scene())),
+                           has_mapped_normals(world.scene()));
   bake.direct = bake.gather;
   return bake;
 }
@@ -252,8 +306,13 @@ void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop
   } while (!stop());
 }
 
-void bake_passes(const BakeScene& scene, Bake& bake, uint64_t passes) {
-  if (passes > 0) go_on(scene, bake, [&] { return bake.passes >= passes; });
+void sample_fields(const BakeScene& scene, Bake& bake, int direct, int gather) {
+  parallel_for(int(bake.charts.tiles), [&](int tile) {
+    if (bake.gather.tiles[size_t(tile)].first == no_tile) return;
+    LayerLight light(scene.layers());
+    for (int k = 0; k < direct; k++) sample_direct(scene, bake, uint32_t(tile), light);
+    for (int k = 0; k < gather; k++) sample_gather(scene, bake, uint32_t(tile), light);
+  });
 }
 
 float bake_error(const Bake& bake) {

@@ -2,10 +2,10 @@
 // Baking: the light of illumination maps, found sample by sample for as long as there is time.
 //
 // Two fields of nodes. Light that has scattered before is smooth: few nodes gather it, each sample
-// a ray over the cosine that ends where cached radiance is known (as technique `gather`), or goes
-// on as a path. Light straight from its sources has shadows with edges: its nodes become finer
-// where neighbours differ, and each sample is next-event estimation. The parts of the light that
-// belong to each lamp are kept apart.
+// a ray over the cosine that ends in coarse light (light/bake/coarse_light.h), or goes on as a
+// path. Light straight from its sources has shadows with edges: its nodes become finer where
+// neighbours differ, and each sample is next-event estimation. The parts of the light that belong
+// to each lamp are kept apart.
 //
 // A sample is a function of its node, its number and the seed, so a bake that was interrupted goes
 // on to the same bits, and shards, each with every n-th tile, add up to those of one run of as many
@@ -49,8 +49,9 @@ Bake begin_bake(const World& world, std::span<const vec3> places,
 // Goes on, on all cores, until `stop` says so, which is asked every few milliseconds; at least one
 // step is done.
 void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop);
-// Until so many passes are done.
-void bake_passes(const BakeScene& scene, Bake& bake, uint64_t passes);
+
+// Some more samples of each node of either field, refined or not. All cores.
+void sample_fields(const BakeScene& scene, Bake& bake, int direct, int gather);
 
 // The standard error of the light at the nodes over its mean, estimated from the samples, before
 // noise is filtered (light/bake/filter_nodes.h).

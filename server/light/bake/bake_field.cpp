@@ -165,11 +165,22 @@ void copy_tile(const BakeField& from, uint32_t from_tile, BakeField& to, uint32_
   std::copy_n(from.hidden.data() + a, nodes, to.hidden.data() + b);
   std::copy_n(from.squares.data() + a, nodes, to.squares.data() + b);
   std::copy_n(from.light_of(a), nodes * size_t(to.layers), to.light_of(b));
+  const size_t layers = size_t(to.layers);
+  if (!to.slope.empty())
+    std::copy_n(from.slope.data() + a * layers, nodes * layers, to.slope.data() + b * layers);
+}
+
+void clear_samples(BakeField& field) {
+  std::fill(field.light.begin(), field.light.end(), vec3(0));
+  std::fill(field.slope.begin(), field.slope.end(), vec3(0));
+  for (auto* sums : {&field.squares, &field.count, &field.hidden})
+    std::fill(sums->begin(), sums->end(), 0.0f);
 }
 
 size_t memory_bytes(const BakeField& f) {
   return bytes_of(f.tiles) + bytes_of(f.first_support) + bytes_of(f.supports) + bytes_of(f.light) +
-         bytes_of(f.squares) + bytes_of(f.count) + bytes_of(f.hidden) + bytes_of(f.asked);
+         bytes_of(f.slope) + bytes_of(f.squares) + bytes_of(f.count) + bytes_of(f.hidden) +
+         bytes_of(f.asked);
 }
 
 std::vector<TilePlace> tile_places(const BakeCharts& charts) {
@@ -244,7 +255,7 @@ std::vector<TileCells> choose_cells(const World& world, const BakeCharts& charts
 }
 
 BakeField make_field(const World& world, const BakeCharts& charts, std::span<const TileCells> cells,
-                     int layers) {
+                     int layers, bool sloped) {
   BakeField field;
   field.layers = layers;
   field.tiles.resize(cells.size());
@@ -280,6 +291,7 @@ BakeField make_field(const World& world, const BakeCharts& charts, std::span<con
     field.supports[counts[node]++] = {triangle, area};
   });
   field.light.assign(size_t(nodes) * size_t(layers), vec3(0));
+  if (sloped) field.slope = field.light;
   field.squares.assign(nodes, 0);
   field.count.assign(nodes, 0);
   field.hidden.assign(nodes, 0);

@@ -21,6 +21,7 @@ struct BakeField {
   std::vector<NodeSupport> supports;
   int layers = 1;
   std::vector<vec3> light;           // sums: of each node, each layer's
+  std::vector<vec3> slope;           // likewise, luminance times slope_of(); empty: not wanted
   std::vector<float> squares;        // of each node: of the luminance of all layers
   std::vector<float> count, hidden;  // samples that count, and those within something solid
   std::vector<uint32_t> asked;       // of each tile: samples of each of its nodes
@@ -29,12 +30,16 @@ struct BakeField {
   // variance of one sample.
   double mean_of(size_t node) const;
   double variance_of(size_t node) const;
+  vec3* slope_of(size_t node) { return slope.empty() ? nullptr : &slope[node * size_t(layers)]; }
   vec3* light_of(size_t node) { return &light[node * size_t(layers)]; }
   const vec3* light_of(size_t node) const { return &light[node * size_t(layers)]; }
 };
 size_t memory_bytes(const BakeField& field);
 // What a tile's samples have found, into a tile of as many nodes.
 void copy_tile(const BakeField& from, uint32_t from_tile, BakeField& to, uint32_t to_tile);
+
+// Forgets what samples have found, but not how many were asked: the next ones are others.
+void clear_samples(BakeField& field);
 
 // How many cells a tile has along its sides, powers of two; 0: nothing of the surface is in it.
 struct TileCells {
@@ -52,7 +57,7 @@ size_t node_count(std::span<const TileCells> cells);
 std::vector<TileCells> cells_of(const BakeField& field);
 
 BakeField make_field(const World& world, const BakeCharts& charts, std::span<const TileCells> cells,
-                     int layers);
+                     int layers, bool sloped);
 
 // The chart of each tile, and where it is in it.
 struct TilePlace {

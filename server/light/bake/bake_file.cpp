@@ -6,7 +6,7 @@
 namespace wellspring {
 namespace {
 
-constexpr uint64_t format = 0x314b414257535701;  // changes with what is written, and with charts
+constexpr uint64_t format = 0x324b414257535701;  // changes with what is written, and with charts
 
 struct FieldBytes {
   std::vector<TileCells> cells;
@@ -28,6 +28,7 @@ void list_fields(auto& to, auto& settings, auto& bake, auto& source, auto& direc
     to.array(field->sums.hidden);
     to.array(field->sums.squares);
     to.array(field->sums.light);
+    to.array(field->sums.slope);
   }
 }
 
@@ -42,12 +43,15 @@ bool take_field(const World& world, const BakeCharts& charts, int layers, FieldB
   if (sums.count.size() != nodes || sums.hidden.size() != nodes || sums.squares.size() != nodes ||
       sums.light.size() != nodes * size_t(layers))
     return false;
-  field = make_field(world, charts, bytes.cells, layers);
+  const bool sloped = has_mapped_normals(world.scene());
+  if (sums.slope.size() != (sloped ? sums.light.size() : 0)) return false;
+  field = make_field(world, charts, bytes.cells, layers, sloped);
   field.asked = std::move(sums.asked);
   field.count = std::move(sums.count);
   field.hidden = std::move(sums.hidden);
   field.squares = std::move(sums.squares);
   field.light = std::move(sums.light);
+  field.slope = std::move(sums.slope);
   return true;
 }
 

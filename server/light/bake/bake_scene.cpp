@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/known/fill_radiance_grid.h"
+#include "light/material/microfacet.h"
+#include "light/material/bsdf_gloss.h"
 #include "light/random/warp.h"
 #include "light/sample/light_tables.h"
-#include "light/sample/radiance_grid.h"
 
 namespace wellspring {
 namespace {
@@ -35,41 +35,44 @@ bool is_inside(const World& world, const Walk& walk, const Hit& met) {
   return hit.valid() && meets_inside(world, other, hit);
 }
 
-static void set_parts(BakeScene& bake) {
-  for (const auto& tables : bake.tables)
-    bake.parts.push_back({bake.world, *tables, bake.lights.grid.get(),
-                          bake.lights.grid ? bake.lights.grid->lamps.get() : nullptr});
-}
-
-static BakeScene make_lamp_parts(const World& world) {
+BakeScene make_bake_scene_of_paths(const World& world) {
   const Scene& scene = world.scene();
   BakeScene bake{world, make_lights(world), {}, {}, find_lamp_parts(scene), {}};
   if (scene.lamps.empty()) bake.tables = {bake.lights.tables};
   else bake.tables = make_lamp_tables(*bake.lights.tables, scene);
+  for (const auto& tables : bake.tables) bake.parts.push_back({world, *tables});
   return bake;
 }
 
-BakeScene make_bake_scene_of_paths(const World& world) {
-  BakeScene bake = make_lamp_parts(world);
-  set_parts(bake);
-  return bake;
+namespace {
+
+// What of light from all around, as bright everywhere, a surface sends back towards the viewer; of
+// a gloss that is `sharp` that is left out, and followed.
+vec3 reflectance_of(const Bsdf& b, bool sharp) {
+  const vec3 diffuse = b.diffuse * b.coat_passes;
+  const vec3 gloss =
+      b.metallic * fresnel_schlick(b.metal, b.view.z) + (1 - b.metallic) * (1 - b.coat_passes);
+  return b.beneath * (sharp ? diffuse : diffuse + gloss);
 }
 
-BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
-                          std::shared_ptr<const RadianceGrid> grid) {
-  BakeScene bake = make_lamp_parts(world);
-  const bool parted = grid && grid->parts && grid->parts->light.size() == bake.tables.size();
-  if (!parted && !places.empty() && bake.lights.tables->plan.uses(TransportPart::cached_radiance))
-    grid = make_radiance_grid({world, *bake.lights.tables}, places, {}, bake.tables);
-  else if (!parted) grid = nullptr;
-  bake.lights.grid = grid;
-  if (grid) {
-    bake.number_of.assign(grid->keys.size(), 0);
-    for (size_t i = 0; i < grid->parts->slots.size(); i++)
-      bake.number_of[grid->parts->slots[i]] = uint32_t(i);
-  }
-  set_parts(bake);
-  return bake;
+constexpr float sharp_gloss_alpha = 0.09f;  // a roughness of 0.3
+
+}  // namespace
+
+// The chart of what the walk met, where coarse light is known.
+static uint32_t find_known_chart(const BakeScene& scene, const Walk& walk, const Hit& hit) {
+  if (!scene.known || walk.media.here.count > 0) return no_chart;
+  const bool front =
+      dot(eval_face(scene.world, hit.instance, hit.triangle), walk.ray.direction) < 0;
+  return scene.known->places->find(hit.instance, hit.triangle, front);
+}
+
+static void add_known_light(const BakeScene& scene, uint32_t chart, vec3 place, vec3 weight,
+                            std::span<vec3> light) {
+  const IlluminationMap& map = *scene.known;
+  const IlluminationTaps taps = find_taps(map, map.places->charts[chart], place);
+  for (size_t p = 0; p < light.size(); p++)
+    light[p] += weight * eval_illumination((*map.layers)[p], taps);
 }
 
 void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span<vec3> light,
@@ -93,17 +96,6 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
       inside = true;
       return;
     }
-    vec3 kept;
-    if (any.grid && walk.pdf > 0 && walk.media.here.count == 0 &&
-        eval_grid(*any.grid, world, walk.ray, hit, hit.t / std::sqrt(walk.pdf), kept)) {
-      vec3 normal = eval_face(world, hit.instance, hit.triangle);
-      if (dot(normal, walk.ray.direction) > 0) normal = -normal;
-      uint32_t slot =
-          find_grid_slot(*any.grid, walk.ray.origin + hit.t * walk.ray.direction, normal);
-      for (size_t p = 0; p < light.size(); p++)
-        light[p] += walk.throughput * any.grid->parts->light[p][scene.number_of[slot]];
-      return;
-    }
     Surface surface = meet_surface(any, walk.ray, hit, walk.media);
     const Material& material = world.material_of(hit.instance);
     walk.throughput *= eval_absorption(any, walk.media.here.innermost(), hit.t);
@@ -112,17 +104,25 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
     light[own] += walk.throughput * walk_met_emission(scene.parts[own], walk, surface, material);
     if (material.unlit || walk.depth >= most_depth) return;
     Bsdf bsdf = make_bsdf_in(any, walk.media, surface, material, walk.ray.direction);
-    if (!is_smooth(bsdf))
+    Lobes goes_on = Lobes::all;
+    if (const uint32_t chart = find_known_chart(scene, walk, hit); chart != no_chart) {
+      const bool sharp = bsdf.alpha < sharp_gloss_alpha && has_specular(bsdf);
+      add_known_light(scene, chart, surface.position, walk.throughput * reflectance_of(bsdf, sharp),
+                      light);
+      if (!sharp) return;
+      goes_on = Lobes::specular;
+    } else if (!is_smooth(bsdf)) {
       for (size_t p = 0; p < light.size(); p++) {
         sampler.seek(base);
         light[p] += walk.throughput *
                     sample_direct_light(scene.parts[p], walk, surface, bsdf, false, sampler).sum();
       }
+    }
     sampler.seek(base + Dimensions::scatter);
-    BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
+    BsdfSample scattered = sample_bsdf(bsdf, goes_on, sampler);
     if (!advance(walk, surface, scattered)) return;
     if (scattered.bounce != Bounce::pass) {
-      sampled = scattered.pdf > 0;
+      sampled = scattered.pdf > 0 && goes_on == Lobes::all;
       apart = false;
       walk.from_normal = lit_side(surface, bsdf);
     }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "light/sample/illumination_map.h"
 #include "light/sample/lights.h"
 #include "light/walk/walk.h"
 
@@ -16,17 +17,14 @@ struct BakeScene {
   // What belongs to no lamp, then each lamp alone; one where there are no lamps.
   std::vector<std::shared_ptr<const LightTables>> tables;
   std::vector<Transport> parts;
-  std::vector<uint8_t> part_of;     // of each material: what its own light belongs to
-  std::vector<uint32_t> number_of;  // of each slot of lights.grid, in its parts; not set: no grid
+  std::vector<uint8_t> part_of;  // of each material: what its own light belongs to
+  // Coarse light on which gathering walks end; null: they go on until they end by chance.
+  std::shared_ptr<const IlluminationMap> known;
   int layers() const { return int(parts.size()); }
 };
 
-// `world` is borrowed, and should not have moving meshes: they would be baked. Walks end on cached
-// radiance `grid`, of the same scene with all lamps on and its parts; null: it is made here for
-// eyes near `places` (seconds).
-BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
-                          std::shared_ptr<const RadianceGrid> grid = nullptr);
-// Walks go on until they end by chance: no bias, more noise.
+// Without coarse light: no bias, more noise. `world` is borrowed, and should not have moving
+// meshes: they would be baked.
 BakeScene make_bake_scene_of_paths(const World& world);
 
 // Whether the walk's next ray, which leaves a node, shows that it is within something solid.

@@ -172,6 +172,13 @@ bool keeps_illumination(const Material& m, TextureRanges& ranges) {
   return m.metallic * ranges.of(m.metallic_roughness_texture).low.z < all_metal;
 }
 
+bool has_mapped_normals(const Scene& scene) {
+  TextureRanges ranges(scene);
+  for (const Material& m : scene.materials)
+    if (m.normal_texture.texture >= 0 && keeps_illumination(m, ranges)) return true;
+  return false;
+}
+
 double charted_area(const World& world) {
   const Scene& scene = world.scene();
   const std::vector<char> kept = kept_materials(scene);
@@ -191,6 +198,7 @@ BakeCharts make_charts(const World& world, float tile) {
   BakeCharts charts;
   charts.places = std::make_shared<IlluminationCharts>();
   IlluminationCharts& places = *charts.places;
+  places.tile = tile;
   places.first_triangle.assign(scene.instances.size() * 2, no_chart);
   std::vector<uint32_t> chart_of, order;
   for (uint32_t i = 0; i < scene.instances.size(); i++) {

@@ -39,6 +39,9 @@ struct BakeCharts {
 // Whether a material's light is kept: it is opaque but for its alpha, and not a metal all over.
 bool keeps_illumination(const Material& material, TextureRanges& ranges);
 
+// Whether something whose light is kept has a map of normals.
+bool has_mapped_normals(const Scene& scene);
+
 // `tile`: metres; the sides of a chart are cut into equal parts of at most that. Two-sided
 // materials have charts for either side. A function of the scene alone.
 BakeCharts make_charts(const World& world, float tile);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noise of a bake's nodes, filtered as far as their samples say that it is noise: the local Wiener
-// filter (Lee 1980, "Digital Image Enhancement and Noise Filtering by Use of Local Statistics").
+// Noise of a bake's nodes, filtered along the surface as far as their samples say that it is noise:
+// anisotropic diffusion (Perona and Malik 1990, "Scale-Space and Edge Detection Using Anisotropic
+// Diffusion", eq. 7 and 8) whose edges are told by the nodes' own variance. What one node gives
+// another gets, so no light is lost: rare bright samples are spread, not taken for errors.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,12 +13,16 @@
 
 namespace wellspring {
 
-// What to make of each node's mean: `own` of it, the rest from the nodes around in its tile. The
-// same for all layers.
+// How much light passes between nodes side by side, the same for all layers.
 struct NodeFilter {
-  std::vector<float> own[2];  // of either round; 1: it stays
-  double variance = 0;        // of the filtered luminance, mean over the nodes
-  double light = 0;           // mean luminance
+  static constexpr int rounds = 6;
+  // Of each round and node, to the four of its neighbours that come later in the tile: the next
+  // one, and the three of the next row; of 255, which is as much as may pass.
+  std::array<std::vector<std::array<uint8_t, 4>>, rounds> passes;
+  double variance = 0;  // of the filtered luminance, mean over the nodes
+  double roughness =
+      0;             // mean square of what no grid of this width holds, as far as it is not noise
+  double light = 0;  // mean luminance
 };
 // `leaks`: nodes that do not count (light/bake/unseen.h).
 NodeFilter make_node_filter(const BakeField& field, std::span<const uint8_t> leaks);

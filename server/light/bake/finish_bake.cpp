@@ -87,15 +87,16 @@ void match(const Border& a, const Border& b, std::vector<vec3>& light) {
 
 }  // namespace
 
-std::vector<vec3> layer_means(const BakeField& field, int layer, std::span<const uint8_t> leaks,
-                              const NodeFilter* filter) {
+std::vector<vec3> layer_means(const BakeField& field, const std::vector<vec3>& of, int layer,
+                              std::span<const uint8_t> leaks, const NodeFilter* filter) {
   std::vector<vec3> light(field.nodes(), vec3(0));
   std::vector<uint8_t> known(field.nodes(), 0);
   parallel_for(int(field.tiles.size()), [&](int t) {
     const IlluminationTile& tile = field.tiles[size_t(t)];
     for (uint32_t node = tile.first; node < tile.first + tile.nodes(); node++) {
       known[node] = field.count[node] > 0 && (leaks.empty() || !leaks[node]);
-      if (known[node]) light[node] = field.light_of(node)[layer] / field.count[node];
+      if (known[node])
+        light[node] = of[node * size_t(field.layers) + size_t(layer)] / field.count[node];
     }
   });
   if (filter) filter_nodes(field, *filter, known, light);
@@ -173,43 +174,61 @@ void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> til
 
 static std::shared_ptr<const IlluminationMap> finish(const Bake& bake,
                                                      std::span<const uint8_t> direct_leaks,
-                                                     std::span<const uint8_t> gather_leaks) {
+                                                     std::span<const uint8_t> gather_leaks,
+                                                     bool filtered) {
   auto map = std::make_shared<IlluminationMap>();
   map->places = bake.charts.places;
   map->tiles = bake.direct.tiles;
   const size_t nodes = bake.direct.nodes();
-  const NodeFilter direct = make_node_filter(bake.direct, direct_leaks),
-                   gather = make_node_filter(bake.gather, gather_leaks);
-  auto layers = std::make_shared<std::vector<std::vector<uint32_t>>>(size_t(bake.direct.layers));
-  parallel_each(bake.direct.layers, [&](int layer) {
-    std::vector<vec3> light = layer_means(bake.direct, layer, direct_leaks, &direct);
-    add_coarser(bake.gather.tiles, layer_means(bake.gather, layer, gather_leaks, &gather),
-                map->tiles, light);
-    for (int round = 0; round < border_rounds; round++) {
-      match_seams(bake.charts, map->tiles, light);
-      match_borders(bake.charts, map->tiles, light);
-    }
-    std::vector<uint32_t>& packed = (*layers)[size_t(layer)];
-    packed.resize(nodes);
-    for (size_t i = 0; i < nodes; i++) packed[i] = pack_rgb9e5(light[i]);
-  });
-  double mean = 0;
-  map->light.resize(nodes);
-  for (size_t i = 0; i < nodes; i++) {
-    vec3 sum(0);
-    for (const auto& layer : *layers) sum += unpack_rgb9e5(layer[i]);
-    map->light[i] = pack_rgb9e5(sum);
-    mean += double(luminance(sum));
+  NodeFilter direct, gather;
+  if (filtered) {
+    direct = make_node_filter(bake.direct, direct_leaks);
+    gather = make_node_filter(bake.gather, gather_leaks);
   }
-  map->mean = nodes > 0 ? float(mean / double(nodes)) : 0;
-  const double light = direct.light + gather.light;
-  map->error = light > 0 ? float(std::sqrt(direct.variance + gather.variance) / light) : 0;
+  auto if_filtered = [&](const NodeFilter& filter) { return filtered ? &filter : nullptr; };
+  auto layers = std::make_shared<std::vector<IlluminationNodes>>(size_t(bake.direct.layers));
+  auto finish_sums = [&](const std::vector<vec3>& fine, const std::vector<vec3>& coarse,
+                         int layer) {
+    std::vector<vec3> sums =
+        layer_means(bake.direct, fine, layer, direct_leaks, if_filtered(direct));
+    add_coarser(bake.gather.tiles,
+                layer_means(bake.gather, coarse, layer, gather_leaks, if_filtered(gather)),
+                map->tiles, sums);
+    for (int round = 0; round < border_rounds; round++) {
+      match_seams(bake.charts, map->tiles, sums);
+      match_borders(bake.charts, map->tiles, sums);
+    }
+    return sums;
+  };
+  parallel_each(bake.direct.layers, [&](int layer) {
+    const std::vector<vec3> light = finish_sums(bake.direct.light, bake.gather.light, layer);
+    IlluminationNodes& packed = (*layers)[size_t(layer)];
+    packed.light.resize(nodes);
+    for (size_t i = 0; i < nodes; i++) packed.light[i] = pack_rgb9e5(light[i]);
+    if (bake.direct.slope.empty()) return;
+    const std::vector<vec3> slope = finish_sums(bake.direct.slope, bake.gather.slope, layer);
+    packed.slope.resize(nodes);
+    for (size_t i = 0; i < nodes; i++) {
+      const float l = luminance(light[i]);
+      packed.slope[i] = pack_slope(l > 0 ? slope[i] / l : vec3(0));
+    }
+  });
   map->layers = layers;
+  map = std::make_shared<IlluminationMap>(sum_of_layers(std::move(*map)));
+  const double light = direct.light + gather.light;
+  map->error = light > 0 ? float(std::sqrt(direct.variance + direct.roughness + gather.variance +
+                                           gather.roughness) /
+                                 light)
+                         : 0;
   return map;
 }
 
+std::shared_ptr<const IlluminationMap> finish_fields(const Bake& bake) {
+  return finish(bake, {}, {}, false);
+}
+
 std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake) {
-  return bake.passes == 0 ? nullptr : finish(bake, {}, {});
+  return bake.passes == 0 ? nullptr : finish(bake, {}, {}, true);
 }
 
 std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<const vec3> eyes,
@@ -219,7 +238,7 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
                                                  bake.direct_sight),
                              gather = find_leaks(world, bake.charts, bake.places, eyes, bake.gather,
                                                  bake.gather_sight);
-  return finish(bake, direct, gather);
+  return finish(bake, direct, gather, true);
 }
 
 }  // namespace wellspring

@@ -19,10 +19,13 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
 // The same where everything may be seen.
 std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake);
 
+// Of a bake's fields as they are, refined or not, and unfiltered.
+std::shared_ptr<const IlluminationMap> finish_fields(const Bake& bake);
+
 // Its parts.
-// Means of one layer at the nodes. Nodes without samples, and those that `leaks` names, get their
-// neighbours' in the tile.
-std::vector<vec3> layer_means(const BakeField& field, int layer,
+// Means of one layer's sums `of` the field (its light, or its slopes) at the nodes. Nodes without
+// samples, and those that `leaks` names, get their neighbours' in the tile.
+std::vector<vec3> layer_means(const BakeField& field, const std::vector<vec3>& of, int layer,
                               std::span<const uint8_t> leaks = {},
                               const NodeFilter* filter = nullptr);
 // `coarse` read at the nodes of finer tiles of the same charts, and added to `fine`.

@@ -10,24 +10,52 @@
 namespace wellspring {
 
 size_t memory_bytes(const IlluminationMap& map) {
-  size_t sum = bytes_of(map.tiles) + bytes_of(map.light) + bytes_of(map.places->chart_of) +
+  auto bytes = [](const IlluminationNodes& nodes) {
+    return bytes_of(nodes.light) + bytes_of(nodes.slope);
+  };
+  size_t sum = bytes_of(map.tiles) + bytes(map.nodes) + bytes_of(map.places->chart_of) +
                bytes_of(map.places->first_triangle) + bytes_of(map.places->charts);
-  for (const auto& layer : *map.layers) sum += bytes_of(layer);
+  for (const IlluminationNodes& layer : *map.layers) sum += bytes(layer);
   return sum;
+}
+
+// `levels`: empty where all lamps are full.
+static void sum_layers(std::span<const LampLevel> levels, IlluminationMap& map) {
+  const std::vector<IlluminationNodes>& layers = *map.layers;
+  const bool sloped = !layers.front().slope.empty();
+  map.nodes.light.resize(layers.front().light.size());
+  map.nodes.slope.resize(layers.front().slope.size());
+  parallel_ranges(int(map.nodes.light.size()), 4096, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      vec3 sum(0), slope(0);
+      auto add = [&](const IlluminationNodes& layer, float brightness) {
+        const vec3 light = brightness * unpack_rgb9e5(layer.light[i]);
+        sum += light;
+        if (sloped) slope += luminance(light) * unpack_slope(layer.slope[i]);
+      };
+      add(layers[0], 1);
+      for (size_t lamp = 0; lamp + 1 < layers.size(); lamp++)
+        if (levels.empty()) add(layers[lamp + 1], 1);
+        else if (levels[lamp]) add(layers[lamp + 1], brightness_of(levels[lamp]));
+      map.nodes.light[i] = pack_rgb9e5(sum);
+      if (sloped) map.nodes.slope[i] = pack_slope(slope / std::max(luminance(sum), 1e-20f));
+    }
+  });
+}
+
+IlluminationMap sum_of_layers(IlluminationMap map) {
+  sum_layers({}, map);
+  double mean = 0;
+  for (uint32_t light : map.nodes.light) mean += double(luminance(unpack_rgb9e5(light)));
+  const size_t nodes = map.nodes.light.size();
+  map.mean = nodes > 0 ? float(mean / double(nodes)) : 0;
+  return map;
 }
 
 std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
                                              std::span<const LampLevel> levels) {
   auto map = std::make_shared<IlluminationMap>(all);
-  const auto& layers = *all.layers;
-  parallel_ranges(int(map->light.size()), 4096, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++) {
-      vec3 light = unpack_rgb9e5(layers[0][i]);
-      for (size_t lamp = 0; lamp + 1 < layers.size(); lamp++)
-        if (levels[lamp]) light += brightness_of(levels[lamp]) * unpack_rgb9e5(layers[lamp + 1][i]);
-      map->light[i] = pack_rgb9e5(light);
-    }
-  });
+  sum_layers(levels, *map);
   return map;
 }
 
@@ -55,23 +83,62 @@ vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& char
   return eval_illumination(map, chart, place_in_chart(chart, place));
 }
 
-vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at) {
+static IlluminationTaps taps_at(const IlluminationMap& map, const IlluminationChart& chart,
+                                vec2 at) {
   const PlaceInTile place = find_tile(chart, map.tiles, at);
-  if (!place.tile) return vec3(0);
+  if (!place.tile) return {};
   const IlluminationTile& tile = *place.tile;
   float u = place.u * float(tile.columns), v = place.v * float(tile.rows);
-  int i = std::min(int(u), tile.columns - 1), j = std::min(int(v), tile.rows - 1);
+  const int i = std::min(int(u), tile.columns - 1), j = std::min(int(v), tile.rows - 1);
   u -= float(i), v -= float(j);
-  const uint32_t* node = &map.light[tile.first + size_t(j) * (tile.columns + 1u) + size_t(i)];
-  const uint32_t* above = node + tile.columns + 1;
-  vec3 low = glm::mix(unpack_rgb9e5(node[0]), unpack_rgb9e5(node[1]), u);
-  vec3 high = glm::mix(unpack_rgb9e5(above[0]), unpack_rgb9e5(above[1]), u);
-  return glm::mix(low, high, v);
+  const uint32_t stride = tile.columns + 1u, node = tile.first + uint32_t(j) * stride + uint32_t(i);
+  return {{node, node + 1, node + stride, node + stride + 1},
+          {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
+}
+
+static vec3 mix_nodes(const std::vector<uint32_t>& of, const IlluminationTaps& taps,
+                      vec3 (*unpack)(uint32_t)) {
+  vec3 sum(0);
+  for (int k = 0; k < 4; k++)
+    if (taps.weight[k] > 0) sum += taps.weight[k] * unpack(of[taps.node[k]]);
+  return sum;
+}
+
+IlluminationTaps find_taps(const IlluminationMap& map, const IlluminationChart& chart, vec3 place) {
+  return taps_at(map, chart, place_in_chart(chart, place));
+}
+
+vec3 eval_illumination(const IlluminationNodes& nodes, const IlluminationTaps& taps) {
+  return mix_nodes(nodes.light, taps, unpack_rgb9e5);
+}
+
+vec3 eval_illumination_slope(const IlluminationNodes& nodes, const IlluminationTaps& taps) {
+  return nodes.slope.empty() ? vec3(0) : mix_nodes(nodes.slope, taps, unpack_slope);
+}
+
+vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at) {
+  return eval_illumination(map.nodes, taps_at(map, chart, at));
+}
+
+vec3 eval_illumination_slope(const IlluminationMap& map, const IlluminationChart& chart,
+                             vec3 place) {
+  return eval_illumination_slope(map.nodes, find_taps(map, chart, place));
+}
+
+// from[at[i]] in lane i.
+static LaneBits gather_words(const uint32_t* from, const LaneBits& at) {
+#ifdef __AVX2__
+  return LaneBits(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), __m256i(at), 4));
+#else
+  LaneBits words;
+  for (int i = 0; i < lane_count; i++) words[i] = from[at[i]];
+  return words;
+#endif
 }
 
 // Of places in one tile.
 static IlluminationLanes eval_tile(const IlluminationMap& map, const IlluminationTile& tile,
-                                   Lanes u, Lanes v) {
+                                   Lanes u, Lanes v, bool sloped) {
   const Lanes zero{};
   u = lanes_min(lanes_max(u, zero), all_lanes(1)) * float(tile.columns);
   v = lanes_min(lanes_max(v, zero), all_lanes(1)) * float(tile.rows);
@@ -80,24 +147,26 @@ static IlluminationLanes eval_tile(const IlluminationMap& map, const Illuminatio
   u -= to_float(i), v -= to_float(j);
   const uint32_t stride = tile.columns + 1u;
   const LaneBits node = tile.first + j * stride + i;
-  LaneBits words[4];
-  for (int k = 0; k < lane_count; k++) {
-    const uint32_t* at = &map.light[node[k]];
-    words[0][k] = at[0], words[1][k] = at[1];
-    words[2][k] = at[stride], words[3][k] = at[stride + 1];
-  }
+  const LaneBits corners[4] = {node, node + 1u, node + stride, node + stride + 1u};
   const Lanes weights[4] = {(1.0f - u) * (1.0f - v), u * (1.0f - v), (1.0f - u) * v, u * v};
-  IlluminationLanes light{};
+  IlluminationLanes at{};
+  Lanes least = all_lanes(INFINITY), most{};
   for (int k = 0; k < 4; k++) {
     Lanes r, g, b;
-    unpack_rgb9e5(words[k], r, g, b);
-    light.red += weights[k] * r, light.green += weights[k] * g, light.blue += weights[k] * b;
+    unpack_rgb9e5(gather_words(map.nodes.light.data(), corners[k]), r, g, b);
+    at.red += weights[k] * r, at.green += weights[k] * g, at.blue += weights[k] * b;
+    least = lanes_min(least, r + g + b), most = lanes_max(most, r + g + b);
+    if (!sloped) continue;
+    unpack_slope(gather_words(map.nodes.slope.data(), corners[k]), r, g, b);
+    at.x += weights[k] * r, at.y += weights[k] * g, at.z += weights[k] * b;
   }
-  return light;
+  at.spread = most - least;
+  return at;
 }
 
 IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
-                                    Lanes u, Lanes v, LaneMask asked) {
+                                    Lanes u, Lanes v, LaneMask asked, bool sloped) {
+  sloped = sloped && !map.nodes.slope.empty();
   const Lanes zero{};
   u = lanes_min(lanes_max(u, zero), all_lanes(float(chart.columns)));
   v = lanes_min(lanes_max(v, zero), all_lanes(float(chart.rows)));
@@ -109,14 +178,16 @@ IlluminationLanes eval_illumination(const IlluminationMap& map, const Illuminati
   // Neighbours mostly lie in one tile, else in two.
   for (unsigned left = negative_lanes(asked); left != 0;) {
     const uint32_t first = tile[std::countr_zero(left)];
-    const LaneMask here = lanes_of_bits(left) & (tile == first);
+    const LaneMask same = (tile == first), here = lanes_of_bits(left) & same;
     left &= ~negative_lanes(here);
     const IlluminationTile& at = map.tiles[chart.first_tile + first];
     if (at.first == no_tile) continue;
-    IlluminationLanes one = eval_tile(map, at, u, v);
-    light.red = here ? one.red : light.red;
-    light.green = here ? one.green : light.green;
-    light.blue = here ? one.blue : light.blue;
+    const IlluminationLanes one = eval_tile(map, at, u, v, sloped);
+    if (negative_lanes(same) == 0xff) return one;
+    auto take = [&](Lanes& to, const Lanes& from) { to = here ? from : to; };
+    take(light.red, one.red), take(light.green, one.green), take(light.blue, one.blue);
+    take(light.spread, one.spread);
+    take(light.x, one.x), take(light.y, one.y), take(light.z, one.z);
   }
   return light;
 }

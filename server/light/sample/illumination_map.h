@@ -14,6 +14,7 @@
 
 #include "base/rgb9e5.h"
 #include "base/simd.h"
+#include "light/material/light_slope.h"
 #include "world/world.h"
 
 namespace wellspring {
@@ -36,6 +37,7 @@ struct IlluminationTile {
 
 // Where charts lie: shared by all maps of a bake.
 struct IlluminationCharts {
+  float tile = 0;  // metres: sides of charts are cut into parts of at most that
   std::vector<uint32_t> first_triangle;  // of instance * 2 + (1: seen from the back) in chart_of
   std::vector<uint32_t> chart_of;        // of each triangle of those; or no_chart
   std::vector<IlluminationChart> charts;
@@ -47,12 +49,18 @@ struct IlluminationCharts {
   }
 };
 
+// What every node keeps.
+struct IlluminationNodes {
+  std::vector<uint32_t> light;  // pack_rgb9e5()
+  std::vector<uint32_t> slope;  // pack_slope(); empty where no material has a use for it
+};
+
 struct IlluminationMap {
   std::shared_ptr<const IlluminationCharts> places;
   std::vector<IlluminationTile> tiles;
-  std::vector<uint32_t> light;  // of each node, pack_rgb9e5; of the lamps as they are
+  IlluminationNodes nodes;  // of the lamps as they are
   // The light of what belongs to no lamp, then of each lamp alone. Copies share them.
-  std::shared_ptr<const std::vector<std::vector<uint32_t>>> layers;
+  std::shared_ptr<const std::vector<IlluminationNodes>> layers;
   float error = 1;  // estimated: standard error of the nodes over their mean light
   float mean = 0;   // luminance of the mean light
   float least_known() const { return mean > 0 ? 0.01f * mean : 1.0f; }  // see known_light()
@@ -60,6 +68,9 @@ struct IlluminationMap {
 size_t memory_bytes(const IlluminationMap& map);
 // Of a scene's map: one for each lamp, and one for what belongs to none.
 inline size_t layer_count(const Scene& scene) { return scene.lamps.size() + 1; }
+
+// Gives a map of layers alone its nodes, of all lamps full, and their mean.
+IlluminationMap sum_of_layers(IlluminationMap map);
 
 // Its light where lamp i is as bright as levels[i]. Milliseconds.
 std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
@@ -85,17 +96,33 @@ inline PlaceInTile find_tile(const IlluminationChart& chart,
   return find_tile(chart, tiles, place_in_chart(chart, place));
 }
 
+// The four nodes around a place of a chart (scene coordinates), and how much each counts; of
+// weight 0 where nothing of the surface is.
+struct IlluminationTaps {
+  uint32_t node[4] = {0, 0, 0, 0};
+  float weight[4] = {0, 0, 0, 0};
+};
+IlluminationTaps find_taps(const IlluminationMap& map, const IlluminationChart& chart, vec3 place);
+vec3 eval_illumination(const IlluminationNodes& nodes, const IlluminationTaps& taps);
+vec3 eval_illumination_slope(const IlluminationNodes& nodes, const IlluminationTaps& taps);
+
 // The light at a place of a chart: scene coordinates, or in tiles as IlluminationChart has them.
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec3 place);
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at);
+// How it changes with the direction that the surface faces (light/material/light_slope.h); 0 where
+// the map keeps no slopes.
+vec3 eval_illumination_slope(const IlluminationMap& map, const IlluminationChart& chart,
+                             vec3 place);
 
-// The same of eight places, as `eval_illumination(map, chart, vec2)`; those that are not `asked`
-// give anything finite.
+// The same of eight places (counted in tiles, as IlluminationChart has it); those that are not
+// `asked` give anything finite. Slopes are read where `sloped`.
 struct IlluminationLanes {
   Lanes red, green, blue;
+  Lanes spread;   // of the sum of the three, among the nodes around
+  Lanes x, y, z;  // the slope
 };
 IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
-                                    Lanes u, Lanes v, LaneMask asked);
+                                    Lanes u, Lanes v, LaneMask asked, bool sloped = false);
 
 // What Sample::known is of light that a map gives: a little more (Sample::raised), so that no ratio
 // to it is without bounds.

@@ -24,6 +24,23 @@ FacetPicture place_picture(const World& world, const Facet& facet, const Texture
   return p;
 }
 
+static void place_relief(const World& world, Facet& f) {
+  const PlacedMesh& placed = *f.placed;
+  const std::vector<vec4>& tangents = placed.mesh->tangents;
+  if (f.material->normal_texture.texture < 0 || tangents.empty()) return;
+  vec3 normal = f.normal[0] + f.normal[1] + f.normal[2], tangent(0);
+  for (int k = 0; k < 3; k++) tangent += vec3(tangents[f.corner[k]]);
+  if (!placed.moving) tangent = mat3(placed.to_world) * tangent;
+  tangent -= normal * (dot(normal, tangent) / std::max(dot(normal, normal), 1e-30f));
+  const float length2 = dot(tangent, tangent);
+  if (!(length2 > 1e-25f)) return;
+  f.tangent = tangent / std::sqrt(length2);
+  const float turn = (tangents[f.corner.x].w < 0) != placed.mirrored ? -1.0f : 1.0f;
+  f.bitangent =
+      cross(normal, f.tangent) * (turn / std::sqrt(std::max(dot(normal, normal), 1e-30f)));
+  f.relief = place_picture(world, f, f.material->normal_texture);
+}
+
 Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 eye) {
   Facet f;
   f.instance = instance;
@@ -48,6 +65,7 @@ Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 
   f.root_area = std::sqrt(area);
   f.base = place_picture(world, f, f.material->base_color_texture);
   f.shine = place_picture(world, f, f.material->metallic_roughness_texture);
+  place_relief(world, f);
   return f;
 }
 

@@ -23,6 +23,13 @@ struct Facet {
   bool one_normal = false;
   bool front = false;        // the eye is on the winding's side
   FacetPicture base, shine;  // base colour; metallic and roughness
+  // The map of normals, and along its u and v on the winding's side, unit; alike all over.
+  FacetPicture relief;
+  vec3 tangent{0}, bitangent{0};
+  // Where its light lies, once that was asked for: as of IlluminationChart, counted in tiles.
+  const struct IlluminationCharts* charts = nullptr;
+  uint32_t chart = 0xffffffffu;
+  vec2 light_corner{0}, light_edge1{0}, light_edge2{0};
 };
 Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 eye);
 FacetPicture place_picture(const World& world, const Facet& facet, const TextureRef& reference);
@@ -36,7 +43,7 @@ class FacetCache {
     picture_ = picture;
     for (Facet& f : facets_) f.instance = 0xffffffffu;
   }
-  const Facet& find(const World& world, uint32_t instance, uint32_t triangle, vec3 eye) {
+  Facet& find(const World& world, uint32_t instance, uint32_t triangle, vec3 eye) {
     Facet& f = facets_[(triangle * 0x9e3779b1u ^ instance * 0x85ebca6bu) >> (32 - bits)];
     if (f.triangle != triangle || f.instance != instance)
       f = make_facet(world, instance, triangle, eye);

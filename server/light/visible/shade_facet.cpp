@@ -45,8 +45,8 @@ Pictures make_pictures(const Scene& scene) {
   Pictures pictures{&scene, std::vector<TexturePyramid>(scene.images.size())};
   std::vector<uint8_t> used(scene.images.size(), 0);
   for (const Material& m : scene.materials)
-    for (const TextureRef* r :
-         {&m.base_color_texture, &m.metallic_roughness_texture, &m.emission_texture})
+    for (const TextureRef* r : {&m.base_color_texture, &m.metallic_roughness_texture,
+                                &m.emission_texture, &m.normal_texture})
       if (r->texture >= 0 && scene.textures[size_t(r->texture)].image >= 0)
         used[size_t(scene.textures[size_t(r->texture)].image)] = 1;
   parallel_for(int(used.size()), [&](int i) {

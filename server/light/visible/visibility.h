@@ -31,6 +31,10 @@ struct RunSkin {
 // Of a run's pixels, Sample::known: what the light of points counts in multiples of.
 struct RunKnown {
   float red[RunSurface::most], green[RunSurface::most], blue[RunSurface::most];
+  // Pixels of which a map says all, a bit each: what they reflect is plain (is_plain()), and their
+  // light has no edge that its nodes could not hold. Of those, as in RunSkin:
+  uint64_t plain = 0;
+  float gloss[RunSurface::most];
 };
 
 // Up to 64 pixels of a row, from (x, y) to the right. As light/visible/see_through.h answers for
@@ -55,8 +59,8 @@ class VisibleRun {
   // others anything. Returns those, a bit each; none where rays have seen them.
   uint64_t light(const struct SkinLight& skin, const RunSurface& surface, RunSkin& to) const;
   // Of its pixels whose diffuse light the map knows (light/sample/illumination_map.h); of others
-  // anything. Returns those, a bit each; none where rays have seen them.
-  uint64_t known(const struct IlluminationMap& map, RunKnown& to) const;
+  // anything. Returns those, a bit each; none where rays have seen them. `surface`: as described.
+  uint64_t known(const struct IlluminationMap& map, const RunSurface& surface, RunKnown& to) const;
   // Everything of pixel i; costs as much as a dozen descriptions.
   PrimaryHit see(int i) const;
 
@@ -90,6 +94,8 @@ class VisibilityPass {
   bool moves(uint32_t object) const;
   // Is there a visible one that does, wherever it is?
   bool anything_moves() const;
+  // Around all that moves and is visible, in scene coordinates; empty: low above high.
+  Bounds moving_bounds() const;
   // Is the view rasterised? Otherwise rays are cast: no edges are found, and what moves counts as
   // still.
   bool rasterises(const View& view) const;

@@ -55,4 +55,16 @@ inline bool may_gloss(const Material& m, TextureRanges& ranges) {
   return m.roughness * range.low.y < least_rough || m.metallic * range.high.z >= least_metal;
 }
 
+// All of it is diffuse but for a gloss so rough that it shows the light around as the diffuse layer
+// does: an illumination map says all of its light.
+inline constexpr float least_plain_roughness = 0.45f, most_plain_metal = 0.02f;
+inline bool is_plain(const Material& m, TextureRanges& ranges) {
+  if (m.unlit || m.transmission > 0 || m.alpha_mode == AlphaMode::blend || m.emission != vec3(0))
+    return false;
+  if (m.clearcoat > 0 || m.sheen_color != vec3(0)) return false;
+  const TexelRange& range = ranges.of(m.metallic_roughness_texture);
+  return m.roughness * range.low.y >= least_plain_roughness &&
+         m.metallic * range.high.z <= most_plain_metal;
+}
+
 }  // namespace wellspring

@@ -43,6 +43,19 @@ KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hi
   return known;
 }
 
+KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
+                            const Surface& surface) {
+  KnownLight known = find_known_light(transport, ray, hit, surface.position);
+  if (!known.known || transport.world.material_of(hit.instance).normal_texture.texture < 0)
+    return known;
+  const IlluminationMap& maps = *transport.maps;
+  const vec3 slope = eval_illumination_slope(
+      maps, maps.places->charts[find_chart(transport, ray, hit)], surface.position);
+  known.light *= eval_slope(slope, eval_mesh_normal(transport.world, hit, surface), surface.normal);
+  known.unit = known_light(maps, known.light);
+  return known;
+}
+
 bool may_be_shaded(const Transport& transport, vec3 position) {
   const Bounds box = transport.world.moving_bounds();
   if (!(box.low.x <= box.high.x)) return false;

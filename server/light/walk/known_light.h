@@ -14,9 +14,12 @@ struct KnownLight {
 };
 // Whether a map knows the light of what a ray has met, in air.
 bool has_known_light(const Transport& transport, const Ray& ray, const Hit& hit);
-// Of what a ray has met at `position` in air.
+// Of what a ray has met at `position` in air, as light falls on the mesh.
 KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
                             vec3 position);
+// The same as it falls on the surface's own normal, which a map of normals may have turned.
+KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
+                            const Surface& surface);
 // Whether something that moves may change the light there by more than a little: it is near, or
 // close to the way from a punctual light.
 bool may_be_shaded(const Transport& transport, vec3 position);

@@ -26,7 +26,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
   bool diffuse = kept.diffuse;
   KnownLight known;
   if (diffuse && first.metal == MetalDemodulation::none && walk.media.here.count == 0)
-    known = find_known_light(transport, walk.ray, first.hit, surface.position);
+    known = find_known_light(transport, walk.ray, first.hit, surface);
   const bool read = known.known && rules.reads_maps && !may_be_shaded(transport, surface.position);
   vec3 albedo = kept.albedo, diffuse_albedo = kept.diffuse ? bsdf.diffuse : vec3(0);
   auto add_gloss = [&](vec3 light, float filtered) {

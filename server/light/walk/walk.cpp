@@ -146,6 +146,7 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
       if (max_component(value.diffuse + value.specular) > 0) {
         vec3 arrives = arriving(light, light_pdf);
         float both = scattering.pdf(value);
+        direct.area_direction = light.direction;
         direct.area_diffuse =
             value.diffuse * arrives * mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
         direct.specular =
@@ -164,6 +165,7 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
       if (max_component(value.diffuse + value.specular) > 0) {
         vec3 arrives = arriving(light, punctual_chance);
         direct.punctual_diffuse = value.diffuse * arrives;
+        direct.punctual_direction = light.direction;
         direct.specular += value.specular * arrives;
       }
     }

@@ -80,7 +80,8 @@ bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered)
 // viewer.
 struct DirectLight {
   vec3 area_diffuse{0}, punctual_diffuse{0}, specular{0};
-  float punctual_share = 1;  // LightSample::share
+  vec3 area_direction{0}, punctual_direction{0};  // where either comes from; 0: there is none
+  float punctual_share = 1;                       // LightSample::share
   bool sure_of_punctual() const { return punctual_share > 0.99f; }
   vec3 sum() const { return area_diffuse + punctual_diffuse + specular; }
 };

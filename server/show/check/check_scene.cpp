@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "base/near_name.h"
+#include "light/bake/bake_file.h"
+#include "light/bake/map_file.h"
 #include "show/exhibit/exhibit_light.h"
 #include "show/check/scene_scale.h"
 #include "world/view.h"
@@ -175,6 +177,25 @@ void check_places(const Exhibit& exhibit, const World& world, std::vector<Proble
     check_view(exhibit, world, viewpoint, noter);
   for (size_t i = 0; i < exhibit.storytellers.size(); i++)
     check_storyteller(exhibit, world, i, noter);
+}
+
+void check_shipped_light(const Exhibit& exhibit, std::vector<Problem>& problems) {
+  const std::string file = shipped_light(exhibit.folder);
+  switch (find_map(file, hash_scene(exhibit.scene))) {
+    case KeyedFile::read:
+    case KeyedFile::missing: return;
+    case KeyedFile::damaged:
+      return problems.push_back({file, "",
+                                 "is damaged, or of another version: ./wellspring bake " +
+                                     exhibit.folder + " makes it anew",
+                                 false});
+    case KeyedFile::another_key:
+      return problems.push_back({file, "",
+                                 "is stale: the scene has changed since, so light is only "
+                                 "right after a while. ./wellspring bake " +
+                                     exhibit.folder + " makes it anew",
+                                 false});
+  }
 }
 
 void check_light(const Exhibit& exhibit, World& world, std::vector<Problem>& problems) {

@@ -20,6 +20,9 @@ bool sees_something(const World& world, const Viewpoint& viewpoint);
 // Notes about places, views and size. Milliseconds.
 void check_places(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems);
 
+// A note where the light that the package carries (light.maps) is of another scene, or damaged.
+void check_shipped_light(const Exhibit& exhibit, std::vector<Problem>& problems);
+
 // Notes about lamps and exposure; draws coarse pictures, as exhibit_light.h has it. `world` is of
 // exhibit.scene alone.
 void check_light(const Exhibit& exhibit, World& world, std::vector<Problem>& problems);

@@ -39,7 +39,7 @@ ShowReport make_report(const Show& show) {
   if (const IlluminationMap* maps = show.lights.maps.get()) {
     report.display = show.settings.display == Display::corrected ? "corrected" : "maps";
     report.map_error = maps->error;
-    report.map_texels = maps->light.size();
+    report.map_texels = maps->nodes.light.size();
   }
   if (show.baker) report.bake = show.baker->status();
   for (const Kiosk& kiosk : show.kiosks) {

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "light/bake/bake_file.h"
+#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 
@@ -17,12 +18,12 @@ namespace {
 
 constexpr double look_every = 0.05, save_every = 120, at_a_time = 1;  // seconds
 constexpr float worth_showing = 0.15f;  // error; above it points say more
-constexpr float much_better = 0.8f;     // of the last error
+constexpr float better = 0.97f;         // of the last error
 
 }  // namespace
 
-Baker::Baker(const Scene& scene, std::shared_ptr<const RadianceGrid> grid, BakerSettings settings)
-    : scene_(scene), grid_(std::move(grid)), settings_(std::move(settings)) {
+Baker::Baker(const Scene& scene, BakerSettings settings)
+    : scene_(scene), settings_(std::move(settings)) {
   thread_ = std::jthread([this](const std::stop_token& end) {
     const CancelScope scope(end);
     try {
@@ -49,10 +50,12 @@ bool Baker::wait_until_allowed(const std::stop_token& end) {
   return !end.stop_requested();
 }
 
-void Baker::publish(const World& world, Bake& bake, uint64_t key) {
+// Where it is better than what is shown.
+void Baker::publish(const World& world, Bake& bake, uint64_t key, float& shown) {
   std::shared_ptr<const IlluminationMap> map = finish_map(world, settings_.eyes, bake);
-  if (!map) return;
-  if (!save_map(*map, settings_.file + ".maps", key))
+  if (!map || map->error > better * shown) return;
+  shown = map->error;
+  if (!save_map(world, *map, settings_.file + ".maps", key))
     log::warn("{}.maps cannot be written: the next start knows less light", settings_.file);
   std::lock_guard lock(mutex_);
   found_ = std::move(map);
@@ -73,7 +76,8 @@ void Baker::live(const std::stop_token& end) {
   if (bake.charts.tiles == 0) return;  // nothing is diffuse
   bake.source = settings_.source;
   float error = bake.passes > 0 ? bake_error(bake) : 1;
-  float shown = settings_.has_map ? std::min(error, worth_showing) : worth_showing;
+  float shown = std::min(settings_.shown_error, worth_showing);
+  uint64_t next = bake.passes + 1;  // passes after which it is looked at again
   double saved = seconds_now();
   auto tell = [&](bool works) {
     std::lock_guard lock(mutex_);
@@ -81,16 +85,16 @@ void Baker::live(const std::stop_token& end) {
   };
   tell(false);
   if (error <= settings_.least_error) return;
-  const BakeScene scene = make_bake_scene(world, settings_.places, grid_);
+  const BakeScene scene = make_bake_scene(world, settings_.places);
   while (wait_until_allowed(end) && error > settings_.least_error) {
     tell(true);
     const double began = seconds_now();
     go_on(scene, bake,
           [&] { return !allowed_ || end.stop_requested() || seconds_now() - began > at_a_time; });
     if (!bake.pilot() && bake.passes > 1) error = bake_error(bake);
-    if (error < much_better * shown) {
-      publish(world, bake, key);
-      shown = error;
+    if (!bake.pilot() && bake.passes >= next) {
+      publish(world, bake, key, shown);
+      next = 2 * bake.passes;
     }
     if (seconds_now() - saved > save_every) {
       if (!save_bake(bake, file, key)) log::warn("{} cannot be written", file);

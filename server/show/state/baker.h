@@ -22,7 +22,7 @@ struct BakerSettings {
   std::vector<vec3> eyes;      // and wherever they may be
   double least_error = 0.004;  // of the mean light: good enough for ever
   BakeSettings bake;           // of one that is begun
-  bool has_map = false;        // one of earlier is shown already
+  float shown_error = 1;       // of the map that is shown already; 1: there is none
 };
 
 struct BakerStatus {
@@ -33,8 +33,7 @@ struct BakerStatus {
 
 class Baker {
  public:
-  // Borrows the scene. `grid`: cached radiance of the same scene, may be null.
-  Baker(const Scene& scene, std::shared_ptr<const RadianceGrid> grid, BakerSettings settings);
+  Baker(const Scene& scene, BakerSettings settings);  // borrows the scene
   ~Baker();  // what has been found is saved; tenths of a second
   Baker(const Baker&) = delete;
   Baker& operator=(const Baker&) = delete;
@@ -47,10 +46,9 @@ class Baker {
 
  private:
   void live(const std::stop_token& end);
-  void publish(const World& world, Bake& bake, uint64_t key);
+  void publish(const World& world, Bake& bake, uint64_t key, float& shown);
   bool wait_until_allowed(const std::stop_token& end);
   const Scene& scene_;
-  std::shared_ptr<const RadianceGrid> grid_;
   BakerSettings settings_;
   std::atomic<bool> allowed_ = false;
   mutable std::mutex mutex_;

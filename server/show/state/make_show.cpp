@@ -64,27 +64,42 @@ void prepare(Show& show) {
     log::warn("{} cannot be written: the next start takes as long as this one", file);
 }
 
+// Light that this machine has baked, or that the package carries, whichever is better; else that of
+// another scene, as far as its things stand where they stood.
+LoadedMap find_maps(const Show& show) {
+  const uint64_t key = hash_scene(show.exhibit.scene);
+  const World world(show.exhibit.scene);
+  LoadedMap own, shipped = load_map(world, shipped_light(show.exhibit.folder), key);
+  if (!show.settings.cache.empty())
+    own = load_map(world, show.settings.cache + "/" + show.exhibit.id + ".maps", key);
+  auto worth = [](const LoadedMap& loaded) {
+    return !loaded.map ? 2.0f : loaded.found == KeyedFile::read ? loaded.map->error : 1.0f;
+  };
+  return worth(own) < worth(shipped) ? own : shipped;
+}
+
 // Maps that were baked before, and who goes on with that.
 void begin_maps(Show& show) {
   const ShowSettings& settings = show.settings;
   bool used = settings.display != Display::points && show.technique->uses_maps &&
               show.still_technique->uses_maps &&
               show.lights.tables->plan.uses(TransportPart::cached_radiance);
-  if (!used || settings.cache.empty()) return;
+  if (!used) return;
   BakerSettings baker;
+  if (LoadedMap loaded = find_maps(show); loaded.map) {
+    const bool fits = loaded.found == KeyedFile::read;
+    log::info("illumination maps: {} texels, error {:.1f} %{}", loaded.map->nodes.light.size(),
+              100 * loaded.map->error,
+              fits ? "" : "; of another scene, until there are better ones");
+    if (fits) baker.shown_error = loaded.map->error;
+    use_maps(show, std::move(loaded.map));
+  }
+  if (settings.cache.empty() || !settings.bakes || !settings.background) return;
   baker.file = settings.cache + "/" + show.exhibit.id;
   baker.source = show.exhibit.folder;
   baker.places = eye_places(show.exhibit);
   baker.eyes = all_eye_places(show.exhibit);
-  if (auto maps =
-          load_map(show.exhibit.scene, baker.file + ".maps", hash_scene(show.exhibit.scene))) {
-    baker.has_map = true;
-    log::info("illumination maps: {} texels, error {:.1f} %", maps->light.size(),
-              100 * maps->error);
-    use_maps(show, std::move(maps));
-  }
-  if (settings.bakes && settings.background)
-    show.baker = std::make_unique<Baker>(show.exhibit.scene, show.lights.grid, std::move(baker));
+  show.baker = std::make_unique<Baker>(show.exhibit.scene, std::move(baker));
 }
 
 }  // namespace

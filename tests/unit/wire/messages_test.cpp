@@ -56,7 +56,7 @@ TEST(Messages, bad_browser_messages_are_refused_naming_the_field) {
     const auto message = read_browser_message(row["text"].get<std::string>());
     ASSERT_TRUE(std::holds_alternative<WireError>(message)) << row;
     const auto& error = std::get<WireError>(message);
-    EXPECT_EQ(error.code, row["code"]) << row << error.message;
+    EXPECT_EQ(error.code, row["code"].get<std::string>()) << row << error.message;
     EXPECT_NE(error.message.find(row["names"].get<std::string>()), std::string::npos)
         << row << error.message;
     EXPECT_LT(error.message.size(), 300u);
@@ -76,7 +76,7 @@ TEST(Messages, bad_observations_are_refused_naming_the_field) {
     const auto observation = read_observation(row["text"].get<std::string>());
     ASSERT_TRUE(std::holds_alternative<WireError>(observation)) << row;
     const auto& error = std::get<WireError>(observation);
-    EXPECT_EQ(error.code, row["code"]) << row << error.message;
+    EXPECT_EQ(error.code, row["code"].get<std::string>()) << row << error.message;
     EXPECT_NE(error.message.find(row["names"].get<std::string>()), std::string::npos)
         << row << error.message;
   }
@@ -92,7 +92,7 @@ TEST(Messages, orders_to_eyes_mean_what_the_golden_files_say) {
     const auto order = read_eye_order(row["text"].get<std::string>());
     ASSERT_TRUE(std::holds_alternative<WireError>(order)) << row;
     const auto& error = std::get<WireError>(order);
-    EXPECT_EQ(error.code, row["code"]) << row << error.message;
+    EXPECT_EQ(error.code, row["code"].get<std::string>()) << row << error.message;
     EXPECT_NE(error.message.find(row["names"].get<std::string>()), std::string::npos)
         << row << error.message;
   }

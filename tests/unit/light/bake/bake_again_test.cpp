@@ -38,7 +38,7 @@ TEST(BakeAgain, TheNumberOfThreadsChangesNoBit) {
     global_control limit(global_control::max_allowed_parallelism, threads);
     const Bake other = bake_at_once();
     EXPECT_TRUE(same_bits(other, expected)) << threads;
-    EXPECT_EQ(finish_map(other)->light, finish_map(expected)->light);
+    EXPECT_EQ(finish_map(other)->nodes.light, finish_map(expected)->nodes.light);
     EXPECT_EQ(bake_error(other), bake_error(expected));
   }
 }
@@ -62,7 +62,7 @@ TEST(BakeAgain, InterruptionsChangeNoBit) {
   }
   EXPECT_GT(within, 3) << "not only between passes";
   EXPECT_TRUE(same_bits(baked.bake, expected));
-  EXPECT_EQ(finish_map(baked.bake)->light, finish_map(expected)->light);
+  EXPECT_EQ(finish_map(baked.bake)->nodes.light, finish_map(expected)->nodes.light);
 }
 
 TEST(BakeAgain, AnotherSeedIsAnotherBake) {
@@ -87,7 +87,7 @@ TEST(BakeAgain, ShardsAddUpToOneRun) {
       EXPECT_TRUE(merge_bake(parts[size_t(shard)], whole)) << shard;
     EXPECT_TRUE(same_bits(whole, expected)) << shards;
     EXPECT_EQ(whole.settings.shards, 1);
-    EXPECT_EQ(finish_map(whole)->light, finish_map(expected)->light);
+    EXPECT_EQ(finish_map(whole)->nodes.light, finish_map(expected)->nodes.light);
     // It goes on as one.
     Baked on(make_hall(), few), of_one(make_hall(), few);
     on.bake = whole, of_one.bake = expected;

@@ -7,8 +7,18 @@
 #include <utility>
 
 #include "light/bake/bake_file.h"
+#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "scenes/scenes.h"
+
+namespace wellspring {
+
+// Until so many passes are done.
+inline void bake_passes(const BakeScene& scene, Bake& bake, uint64_t passes) {
+  if (passes > 0) go_on(scene, bake, [&] { return bake.passes >= passes; });
+}
+
+}  // namespace wellspring
 
 namespace wellspring::test {
 
@@ -101,26 +111,20 @@ inline std::shared_ptr<const IlluminationMap> paint_map(const World& world, floa
     if (c.columns > 0) c = {4, 4};
   auto map = std::make_shared<IlluminationMap>();
   map->places = charts.places;
-  map->tiles = make_field(world, charts, cells, 1).tiles;
-  map->light.resize(node_count(cells));
-  auto parts = std::make_shared<std::vector<std::vector<uint32_t>>>(layers.size(), map->light);
+  map->tiles = make_field(world, charts, cells, 1, false).tiles;
+  IlluminationNodes dark;
+  dark.light.resize(node_count(cells));
+  auto parts = std::make_shared<std::vector<IlluminationNodes>>(layers.size(), dark);
   const std::vector<TilePlace> places = tile_places(charts);
-  double mean = 0;
   for (size_t t = 0; t < cells.size(); t++)
     for (uint32_t i = 0; i < map->tiles[t].nodes(); i++) {
       vec3 place = node_place(charts.places->charts[places[t].chart], places[t], map->tiles[t], i);
-      vec3 sum(0);
-      for (size_t l = 0; l < layers.size(); l++) {
-        (*parts)[l][map->tiles[t].first + i] = pack_rgb9e5(layers[l](place));
-        sum += layers[l](place);
-      }
-      map->light[map->tiles[t].first + i] = pack_rgb9e5(sum);
-      mean += double(luminance(sum));
+      for (size_t l = 0; l < layers.size(); l++)
+        (*parts)[l].light[map->tiles[t].first + i] = pack_rgb9e5(layers[l](place));
     }
-  map->mean = float(mean / double(map->light.size()));
   map->error = 0.01f;
   map->layers = parts;
-  return map;
+  return std::make_shared<IlluminationMap>(sum_of_layers(std::move(*map)));
 }
 
 }  // namespace wellspring::test

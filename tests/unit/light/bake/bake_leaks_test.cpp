@@ -45,7 +45,7 @@ TEST(BakeLeaks, TheRoomBesideALitOneIsDarkBehindThinWalls) {
       for (uint32_t i = 0; i < tile.nodes(); i++) {
         vec3 place = test::node_place(chart, at, tile, i), inner = place + 0.01f * surface.normal;
         if (std::abs(inner.y - 1) > 1 || std::abs(inner.z) > 1 || std::abs(inner.x) > 2) continue;
-        double light = double(luminance(unpack_rgb9e5(map->light[tile.first + i])));
+        double light = double(luminance(unpack_rgb9e5(map->nodes.light[tile.first + i])));
         if (place.x < -0.5f * wall - 1e-4f) lit += light, lit_places++;
         bool on_wall = std::abs(surface.normal.x) > 0.9f;
         float away = place.x - 0.5f * wall;

@@ -30,7 +30,7 @@ void for_each_node(const Baked& baked, const IlluminationMap& map, const Visit& 
     const IlluminationTile& tile = map.tiles[t];
     for (uint32_t i = 0; i < tile.nodes(); i++)
       visit(at.chart, t, node_place(map.places->charts[at.chart], at, tile, i),
-            unpack_rgb9e5(map.light[tile.first + i]));
+            unpack_rgb9e5(map.nodes.light[tile.first + i]));
   }
 }
 
@@ -146,8 +146,8 @@ TEST(Bake, WithoutLightTheMapIsBlackAndSure) {
   ASSERT_TRUE(map);
   EXPECT_EQ(map->error, 0);
   EXPECT_EQ(map->mean, 0);
-  ASSERT_GT(map->light.size(), 0u);
-  for (uint32_t light : map->light) ASSERT_EQ(unpack_rgb9e5(light), vec3(0));
+  ASSERT_GT(map->nodes.light.size(), 0u);
+  for (uint32_t light : map->nodes.light) ASSERT_EQ(unpack_rgb9e5(light), vec3(0));
 }
 
 TEST(Bake, WhereNothingIsDiffuseThereIsNothingToDo) {
@@ -204,22 +204,22 @@ TEST(Bake, NodesAreFinerAtTheEdgeOfAShadow) {
   EXPECT_LE(baked.bake.direct.nodes(), 8000u);
 }
 
-// Walks that end on cached radiance find the light that paths find, lamp by lamp.
-TEST(Bake, CachedRadianceIsTheLightOfPaths) {
+// Walks that end on coarse light find the light that paths find, lamp by lamp.
+TEST(Bake, OfCoarseLightTheLightOfPathsComes) {
   Scene scene = make_cornell_box();
   scene.lights.push_back(point_light({-0.1f, 0.3f, -0.1f}, {0.1f, 0.2f, 0.3f}));
   scene.lamps.push_back({"bulb", {0}, {}});
   const BakeSettings few{.gather_nodes = 200, .direct_nodes = 400};
   Baked paths(scene, few), cached(scene, few);
   const vec3 eye(0, 0.27f, 0.3f);
-  BakeScene with_grid = make_bake_scene(cached.world, std::span(&eye, 1));
-  ASSERT_TRUE(with_grid.lights.grid);
-  bake_passes(with_grid, cached.bake, 32);
+  BakeScene with_coarse = make_bake_scene(cached.world, std::span(&eye, 1));
+  ASSERT_TRUE(with_coarse.known);
+  bake_passes(with_coarse, cached.bake, 32);
   bake_passes(paths.lit, paths.bake, 32);
   for (int layer : {0, 1}) {
     vec3 a(0), b(0);
-    for (vec3 light : layer_means(cached.bake.gather, layer)) a += light;
-    for (vec3 light : layer_means(paths.bake.gather, layer)) b += light;
+    for (vec3 light : layer_means(cached.bake.gather, cached.bake.gather.light, layer)) a += light;
+    for (vec3 light : layer_means(paths.bake.gather, paths.bake.gather.light, layer)) b += light;
     for (int c = 0; c < 3; c++) EXPECT_NEAR(a[c] / b[c], 1, 0.04) << layer;
   }
 }
@@ -242,26 +242,28 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
   ASSERT_TRUE(map);
   const auto& layers = *map->layers;
   ASSERT_EQ(layers.size(), 3u);
-  for (size_t i = 0; i < map->light.size(); i++) {
-    vec3 sum(0), all = unpack_rgb9e5(map->light[i]);
-    for (const auto& layer : layers) sum += unpack_rgb9e5(layer[i]);
+  for (size_t i = 0; i < map->nodes.light.size(); i++) {
+    vec3 sum(0), all = unpack_rgb9e5(map->nodes.light[i]);
+    for (const auto& layer : layers) sum += unpack_rgb9e5(layer.light[i]);
     ASSERT_LT(length(sum - all), 0.005f * length(all) + 1e-6f);
-    EXPECT_EQ(unpack_rgb9e5(layers[0][i]), vec3(0));
+    EXPECT_EQ(unpack_rgb9e5(layers[0].light[i]), vec3(0));
   }
   for (int lamp : {0, 1}) {
     LampLevels on(2, 0);
     on[size_t(lamp)] = lamp_full;
     auto alone = relit(*map, on);
-    for (size_t i = 0; i < map->light.size(); i++) {
-      vec3 layer = unpack_rgb9e5(layers[size_t(lamp) + 1][i]);
-      ASSERT_LT(length(unpack_rgb9e5(alone->light[i]) - layer), 0.005f * length(layer) + 1e-6f);
+    for (size_t i = 0; i < map->nodes.light.size(); i++) {
+      vec3 layer = unpack_rgb9e5(layers[size_t(lamp) + 1].light[i]);
+      ASSERT_LT(length(unpack_rgb9e5(alone->nodes.light[i]) - layer),
+                0.005f * length(layer) + 1e-6f);
     }
     on[size_t(lamp)] = level_of(0.25f);
     const float dim = brightness_of(on[size_t(lamp)]);
     auto dimmed = relit(*map, on);
-    for (size_t i = 0; i < map->light.size(); i++) {
-      vec3 layer = dim * unpack_rgb9e5(layers[size_t(lamp) + 1][i]);
-      ASSERT_LT(length(unpack_rgb9e5(dimmed->light[i]) - layer), 0.005f * length(layer) + 1e-6f);
+    for (size_t i = 0; i < map->nodes.light.size(); i++) {
+      vec3 layer = dim * unpack_rgb9e5(layers[size_t(lamp) + 1].light[i]);
+      ASSERT_LT(length(unpack_rgb9e5(dimmed->nodes.light[i]) - layer),
+                0.005f * length(layer) + 1e-6f);
     }
     Baked other(make_two_lamps(lamp == 0, lamp == 1), few);
     auto expected = other.map(48);
@@ -281,7 +283,7 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
   }
   const LampLevels none{0, 0};
   auto dark = relit(*map, none);
-  for (uint32_t light : dark->light) EXPECT_EQ(unpack_rgb9e5(light), vec3(0));
+  for (uint32_t light : dark->nodes.light) EXPECT_EQ(unpack_rgb9e5(light), vec3(0));
 }
 
 }  // namespace

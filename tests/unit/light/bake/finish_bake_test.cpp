@@ -26,7 +26,7 @@ struct Tiles {
     std::vector<TileCells> cells = find_occupied(world, charts);
     for (uint32_t t = 0; t < cells.size(); t++)
       if (cells[t].columns > 0) cells[t] = choose(t);
-    tiles = make_field(world, charts, cells, 1).tiles;
+    tiles = make_field(world, charts, cells, 1, false).tiles;
     light.resize(node_count(cells));
     for (size_t i = 0; i < light.size(); i++)
       light[i] = vec3(float(mix64(i) >> 40) * (1.0f / (1 << 24)));
@@ -68,7 +68,7 @@ struct Tiles {
   float seam_jump() const {
     IlluminationMap map;
     map.tiles = tiles;
-    for (vec3 l : light) map.light.push_back(pack_rgb9e5(l));
+    for (vec3 l : light) map.nodes.light.push_back(pack_rgb9e5(l));
     float sum = 0;
     for (const ChartSeam& seam : charts.seams) {
       vec3 middle = 0.5f * (seam.from + seam.to);
@@ -151,7 +151,7 @@ TEST(FinishBake, CreasesAreLeftAlone) {
 TEST(FinishBake, HolesAreFilledFromTheirNeighbours) {
   Tiles t(make_square(), 0.5f, [](uint32_t) { return TileCells{8, 8}; });
   std::vector<TileCells> cells(4, TileCells{8, 8});
-  BakeField field = make_field(t.world, t.charts, cells, 2);
+  BakeField field = make_field(t.world, t.charts, cells, 2, false);
   for (size_t i = 0; i < field.nodes(); i++) {
     uint32_t column = uint32_t(i % 9), row = uint32_t(i % 81 / 9);
     bool hole = (column > 1 && column < 6 && row > 2) || i >= 3 * 81;
@@ -159,7 +159,8 @@ TEST(FinishBake, HolesAreFilledFromTheirNeighbours) {
     field.light_of(i)[0] = hole ? vec3(0) : vec3(4, 8, float(4 * column));
     field.light_of(i)[1] = hole ? vec3(0) : vec3(1);
   }
-  std::vector<vec3> first = layer_means(field, 0), second = layer_means(field, 1);
+  std::vector<vec3> first = layer_means(field, field.light, 0),
+                    second = layer_means(field, field.light, 1);
   for (size_t i = 0; i < field.nodes(); i++) {
     const bool unknown = i >= 3 * 81;  // a whole tile
     EXPECT_EQ(vec2(first[i]), unknown ? vec2(0) : vec2(1, 2)) << i;

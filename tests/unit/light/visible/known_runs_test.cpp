@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "light/visible/visibility.h"
+#include "light/walk/known_light.h"
 #include "unit/light/bake/bake_cases.h"
 
 namespace wellspring {
@@ -41,8 +42,10 @@ TEST(KnownRuns, AreLitAsThePlacesThatRaysMeet) {
   View view = cornell_view(scene, width, height);
   std::atomic<int> known = 0, unknown = 0, differ = 0, moved = 0;
   visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
+    RunSurface surface;
+    run.describe(~uint64_t(0) >> (64 - run.count), surface);
     RunKnown told;
-    const uint64_t bits = run.known(*map, told);
+    const uint64_t bits = run.known(*map, surface, told);
     for (int i = 0; i < run.count; i++) {
       Ray ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
       Hit hit = world.intersect(ray);
@@ -68,6 +71,76 @@ TEST(KnownRuns, AreLitAsThePlacesThatRaysMeet) {
   EXPECT_GT(moved, 20);
   // Where a triangle's edge runs through the middle of a pixel.
   EXPECT_LE(differ, known / 500);
+}
+
+// A wall whose map of normals leans one way on its left and another on its right, seen from both
+// sides, mirrored or not, in light from its upper left.
+struct ReliefWall {
+  static constexpr int size = 64;
+  Scene scene = empty_scene();
+  explicit ReliefWall(bool mirrored, float scale) {
+    Material m = diffuse(vec3(0.5f));
+    m.double_sided = true;
+    m.normal_scale = scale;
+    Image image;
+    image.width = size, image.height = 1;
+    for (int i = 0; i < size; i++)
+      for (int code :
+           {i < size / 2 ? 191 : 89, i < size / 2 ? 110 : 179, i < size / 2 ? 237 : 238, 255})
+        image.texels8.push_back(uint8_t(code));
+    scene.images.push_back(image);
+    scene.textures.push_back({.image = 0});
+    m.normal_texture.texture = 0;
+    add_quad(scene, add_material(scene, m), {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, "wall");
+    Mesh& mesh = scene.meshes.back();
+    mesh.uv[0].clear();
+    for (vec3 p : mesh.positions) mesh.uv[0].push_back({0.5f + 0.5f * p.x, 0.5f - 0.5f * p.y});
+    mesh.tangents.assign(mesh.positions.size(), vec4(1, 0, 0, 1));
+    if (mirrored) scene.instances.back().to_world = glm::scale(mat4(1), vec3(-1, 1, 1));
+  }
+};
+
+TEST(KnownRuns, OnMapsOfNormalsAreLitAsSamplesAre) {
+  for (bool mirrored : {false, true})
+    for (float side : {1.0f, -1.0f})
+      for (float scale : {1.0f, 0.5f}) {
+        ReliefWall wall(mirrored, scale);
+        const World world(wall.scene);
+        const Lights lights = make_lights(world);
+        const VisibilityPass visibility(world, lights);
+        IlluminationMap map =
+            *test::paint_map(world, 0.1f, {[](vec3 p) { return vec3(1) + 0.2f * p; }});
+        IlluminationNodes nodes = map.layers->front();
+        nodes.slope.assign(nodes.light.size(), pack_slope({-0.6f, 0.5f, 0.4f}));
+        map.layers = std::make_shared<std::vector<IlluminationNodes>>(1, nodes);
+        map = sum_of_layers(std::move(map));
+        Transport transport{world, *lights.tables};
+        transport.maps = &map;
+        const View view = make_view(wall.scene, {0, 0, 2.5 * double(side)}, side > 0 ? 0 : pi, 0,
+                                    0.7f, width, height);
+        std::atomic<int> judged = 0, differ = 0, turned = 0;
+        visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
+          RunSurface surface;
+          run.describe(~uint64_t(0) >> (64 - run.count), surface);
+          RunKnown told;
+          const uint64_t bits = run.known(map, surface, told);
+          for (int i = 0; i < run.count; i++) {
+            const Ray ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
+            const Hit hit = world.intersect(ray);
+            if (!(bits >> i & 1) || !hit.valid()) continue;
+            const Surface at = eval_surface(world, ray, hit);
+            if (std::abs(at.position.x) < 0.05f) continue;  // between the two
+            const vec3 wanted = find_known_light(transport, ray, hit, at).unit;
+            const vec3 off = vec3(told.red[i], told.green[i], told.blue[i]) - wanted;
+            judged++, differ += !(length(off) < 0.02f * length(wanted));
+            turned +=
+                std::abs(luminance(wanted) / luminance(vec3(1) + 0.2f * at.position) - 1) > 0.05f;
+          }
+        });
+        EXPECT_GT(judged, 2000);
+        EXPECT_GT(turned, judged / 3) << "the map of normals makes a difference";
+        EXPECT_LE(differ, judged / 200) << mirrored << " " << side << " " << scale;
+      }
 }
 
 }  // namespace

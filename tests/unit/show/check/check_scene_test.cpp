@@ -4,6 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "light/bake/bake_file.h"
+#include "light/bake/bake_scene.h"
+#include "light/bake/coarse_light.h"
+#include "light/bake/map_file.h"
 #include "show/exhibit/exhibit_light.h"
 #include "show/check/scene_scale.h"
 #include "unit/show/exhibit/room_package.h"
@@ -16,6 +22,31 @@ TEST(CheckScene, AGoodRoomIsGood) {
   RoomPackage package;
   package.check();
   EXPECT_EQ(package.told(), "");
+}
+
+// The light of a room, of one that was painted since, and a file that is cut off.
+TEST(CheckScene, StaleOrDamagedLightIsNamed) {
+  RoomPackage package;
+  Exhibit exhibit = package.read();
+  std::vector<Problem> problems;
+  check_shipped_light(exhibit, problems);
+  EXPECT_TRUE(problems.empty()) << "none is shipped";
+  const World world(exhibit.scene);
+  const BakeScene scene = make_bake_scene(world, {});
+  const std::string file = shipped_light(exhibit.folder);
+  ASSERT_TRUE(save_map(world, *scene.known, file, hash_scene(exhibit.scene)));
+  check_shipped_light(exhibit, problems);
+  EXPECT_TRUE(problems.empty());
+  exhibit.scene.materials.back().base_color.x *= 0.5f;
+  check_shipped_light(exhibit, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].what.find("stale"), std::string::npos) << problems[0].what;
+  EXPECT_EQ(problems[0].file, file);
+  std::filesystem::resize_file(file, 200);
+  exhibit.scene.materials.back().base_color.x *= 2;
+  check_shipped_light(exhibit, problems);
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_NE(problems[1].what.find("damaged"), std::string::npos) << problems[1].what;
 }
 
 TEST(CheckScene, SeesWhoIsInSolidMatter) {

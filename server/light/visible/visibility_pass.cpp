@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "light/visible/visibility.h"
+#include "light/visible/visibility_impl.h"
 
 #include <algorithm>
 #include <atomic>
@@ -8,35 +8,10 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "light/known/skin_light.h"
-#include "light/material/gloss_albedo.h"
-#include "light/sample/illumination_map.h"
 #include "light/sample/medium.h"
-#include "light/visible/facet.h"
-#include "light/visible/shade_facet.h"
-#include "light/visible/visible_material.h"
 #include "light/walk/first_surface.h"
 
 namespace wellspring {
-struct VisibilityPass::Impl {
-  const World& world;
-  Lights lights;
-  Raster raster;
-  Pictures pictures;
-  std::vector<Reflectance> reflectance;  // of each material
-  std::vector<DemodulationScale> scale;  // of those scaled
-  std::vector<uint8_t> panes;            // of each material: is one everywhere
-  std::vector<uint8_t> polished;         // of each material: some place of it may be
-  std::vector<uint8_t> glossy;           // of each material: some place of it has highlights
-  bool any_gloss = false;                // of a mesh of the scene
-  std::vector<uint8_t> moving_object;    // by object
-  MetalDemodulation metal_of(int material) const {
-    return lights.tables->materials[size_t(material)].metal;
-  }
-  Impl(const World& w, const Lights& l)
-      : world(w), lights(l), raster(w), pictures(make_pictures(w.scene())) {}
-};
-
 VisibilityPass::VisibilityPass(const World& world, const Lights& lights)
     : impl_(std::make_unique<Impl>(world, lights)) {
   const Scene& scene = world.scene();
@@ -56,6 +31,7 @@ VisibilityPass::VisibilityPass(const World& world, const Lights& lights)
     impl_->scale.push_back(scale);
     impl_->panes.push_back(pane_kind(m));
     impl_->glossy.push_back(may_gloss(m, ranges));
+    impl_->plain.push_back(is_plain(m, ranges));
   }
   for (const Mesh& mesh : scene.meshes)
     if (mesh.material >= 0) impl_->any_gloss |= impl_->glossy[size_t(mesh.material)] != 0;
@@ -72,75 +48,6 @@ bool VisibilityPass::rasterises(const View& view) const {
   Transport transport{impl_->world, *impl_->lights.tables};
   return !impl_->lights.tables->any_solid || find_media(transport, view.position).innermost() < 0;
 }
-
-namespace {
-
-// Pixels side by side of one material, whose pictures are read at one level, maybe of several
-// triangles: of many small ones each for itself would leave most lanes unused.
-struct Stretch {
-  int begin, end;
-  const Material* material;
-  int index;                           // of the material in the scene
-  float base_texels, emission_texels;  // a pixel's width
-  bool alone;                          // each pixel has to be looked up by itself
-  bool goes_on_with(const Stretch& s) const {
-    return end == s.begin && material == s.material && index == s.index && alone == s.alone &&
-           pyramid_level(base_texels) == pyramid_level(s.base_texels) &&
-           pyramid_level(emission_texels) == pyramid_level(s.emission_texels);
-  }
-};
-struct PicturePlaces {
-  float u[RunSurface::most], v[RunSurface::most];
-  void put(const FacetPicture& place, Lanes a, Lanes b, int i) {
-    store_lanes(u + i, place.corner.x + place.edge1.x * a + place.edge2.x * b);
-    store_lanes(v + i, place.corner.y + place.edge1.y * a + place.edge2.y * b);
-  }
-};
-struct Stretches {
-  int count = 0;
-  Stretch of[RasterRun::most];
-  PicturePlaces base, shine;
-};
-
-}  // namespace
-
-struct VisibleRun::Impl {
-  const VisibilityPass::Impl& visibility;
-  const View& view;
-  vec2 offset;
-  float pixel_angle, blurred_angle;
-  FacetCache& facets;
-  const RasterRun* run = nullptr;
-  // Towards pixel i, at depth 1.
-  vec3 direction(int i) const {
-    vec2 axis = axis_place(view);
-    float x = float(run->x + i) + offset.x - axis.x, y = axis.y - float(run->y) - offset.y;
-    return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
-  }
-  const Facet& facet(int i) const {
-    return facets.find(visibility.world, run->instance[i], run->triangle[i], view.position);
-  }
-  PrimaryHit see(int i) const;
-  void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
-  vec3 scale_of(const Material& m, int index) const {
-    return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * visibility.scale[size_t(index)].factor;
-  }
-  bool has_picture(const TextureRef& reference) const {
-    const Scene& scene = *visibility.pictures.scene;
-    return reference.texture >= 0 && scene.textures[size_t(reference.texture)].image >= 0;
-  }
-  bool reads_base(const Material& m, int index) const {
-    return has_picture(m.base_color_texture) && scale_of(m, index) != vec3(0);
-  }
-  bool reads_emission(const Material& m, int index) const {
-    return visibility.reflectance[size_t(index)] == Reflectance::base &&
-           has_picture(m.metallic_roughness_texture);
-  }
-  bool place(const Facet& f, int begin, int end, Stretches& to) const;
-  bool read_lanes(const PicturePlaces& places, const TextureRef& reference, float texels, int i,
-                  int end, Lanes (&rgb)[3]) const;
-  void describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const;
-};
 
 // As demodulated_albedo(), eight base colours at a time.
 static void keep_lanes(MetalDemodulation metal, Lanes metallic, Lanes (&rgb)[3]) {
@@ -300,76 +207,6 @@ void VisibleRun::gloss(uint32_t* codes, uint8_t* metallic) const {
   }
 }
 
-uint64_t VisibleRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {
-  if (seen_) return 0;
-  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-  const RasterRun& r = *impl_->run;
-  float f0[RunSurface::most], roughness[RunSurface::most], share[RunSurface::most];
-  uint64_t moving = 0;
-  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
-    if (r.instance[begin] == RasterRun::nothing) continue;
-    const Facet& f = impl_->facet(begin);
-    if (!f.placed->moving) continue;
-    SkinTriangle light = find_skin(skin, r.instance[begin], f.corner, !f.front);
-    GlossFactors gloss = gloss_factors(*f.material);
-    for (int i = begin; i < r.end[p]; i++) moving |= uint64_t(1) << i;
-    for (int i = begin; i < r.end[p]; i += lane_count) {
-      Lanes u = load_lanes(r.u + i), v = load_lanes(r.v + i);
-      store_lanes(to.red + i, light.corner.x + light.edge1.x * u + light.edge2.x * v);
-      store_lanes(to.green + i, light.corner.y + light.edge1.y * u + light.edge2.y * v);
-      store_lanes(to.blue + i, light.corner.z + light.edge1.z * u + light.edge2.z * v);
-      store_lanes(f0 + i, all_lanes(gloss.f0));
-      store_lanes(roughness + i, all_lanes(gloss.roughness));
-      store_lanes(share + i, all_lanes(gloss.share));
-    }
-  }
-  const vec3 step = impl_->view.right * impl_->pixel_angle;
-  for (int i = 0; i < count; i += lane_count) {
-    if (!(moving >> i & 0xff)) continue;
-    vec3 way = -impl_->direction(i);
-    Lanes x = way.x - step.x * lane, y = way.y - step.y * lane, z = way.z - step.z * lane;
-    Lanes nx = load_lanes(surface.nx + i), ny = load_lanes(surface.ny + i),
-          nz = load_lanes(surface.nz + i);
-    Lanes lengths = (nx * nx + ny * ny + nz * nz) * (x * x + y * y + z * z);
-    Lanes cosine = (nx * x + ny * y + nz * z) / lanes_sqrt(lanes_max(lengths, all_lanes(1e-30f)));
-    cosine = lanes_min(lanes_max(cosine, all_lanes(0)), all_lanes(1));
-    store_lanes(to.gloss + i, gloss_albedo(load_lanes(f0 + i), load_lanes(roughness + i),
-                                           load_lanes(share + i), cosine));
-  }
-  return moving;
-}
-
-uint64_t VisibleRun::known(const IlluminationMap& map, RunKnown& to) const {
-  if (seen_) return 0;
-  const RasterRun& r = *impl_->run;
-  uint64_t known = 0;
-  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
-    if (r.instance[begin] == RasterRun::nothing) continue;
-    const Facet& f = impl_->facet(begin);
-    if (f.placed->moving) continue;
-    uint32_t found = map.places->find(f.instance, f.triangle, f.front);
-    if (found == no_chart) continue;
-    const IlluminationChart& chart = map.places->charts[found];
-    Face face = make_face(*f.placed, f.triangle);
-    auto along = [&](vec3 way) { return vec2(dot(way, chart.along_u), dot(way, chart.along_v)); };
-    const vec2 corner = along(face.corner - chart.origin), edge1 = along(face.edge1),
-               edge2 = along(face.edge2);
-    const Lanes more = all_lanes(map.least_known());
-    for (int i = begin; i < r.end[p]; i += lane_count) {
-      constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-      const LaneMask here = lane < float(r.end[p] - i);
-      const Lanes a = load_lanes(r.u + i), b = load_lanes(r.v + i);
-      IlluminationLanes light = eval_illumination(map, chart, corner.x + edge1.x * a + edge2.x * b,
-                                                  corner.y + edge1.y * a + edge2.y * b, here);
-      store_lanes(to.red + i, light.red + more);
-      store_lanes(to.green + i, light.green + more);
-      store_lanes(to.blue + i, light.blue + more);
-      known |= uint64_t(negative_lanes(here)) << i;
-    }
-  }
-  return known;
-}
-
 PrimaryHit VisibleRun::see(int i) const { return seen_ ? seen_[i] : impl_->see(i); }
 
 PrimaryHit VisibleRun::Impl::see(int i) const {
@@ -404,6 +241,8 @@ bool VisibilityPass::anything_moves() const {
     if (world.is_moving(uint32_t(i)) && world.is_visible(uint32_t(i))) return true;
   return false;
 }
+
+Bounds VisibilityPass::moving_bounds() const { return impl_->world.moving_bounds(); }
 
 void VisibilityPass::see(const View& view, vec2 offset,
                          const std::function<void(const VisibleRun&)>& take, RasterShows shows,

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Diffuse light as a function of the direction that a surface faces, near the normal of its mesh:
+//   light(seen) = light * max(0, 1 + dot(slope, seen - normal)),
+// so a map of normals is lit rightly by what is kept at the mesh. It is first order, as spherical
+// harmonics of two bands are (Ramamoorthi and Hanrahan 2001, "An Efficient Representation for
+// Irradiance Environment Maps"), but exact at the mesh's normal and fitted to directions within
+// the tilts that maps of normals have: of light from one direction the cosine is followed to where
+// it ends at 0.
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "base/simd.h"
+#include "base/vec.h"
+
+namespace wellspring {
+
+// What light from `direction` (unit, on the side of `normal`) adds to the slope, for each unit of
+// the light that it brings there.
+vec3 slope_of(vec3 direction, vec3 normal);
+
+// Slopes in 32 bits: ten bits a coordinate; what is longer than most_slope is cut to that.
+inline constexpr float most_slope = 4;
+inline uint32_t pack_slope(vec3 slope) {
+  const float longest = max_component(glm::abs(slope));
+  if (!(longest > 0) || !std::isfinite(longest)) return 0x20080200u;
+  if (longest > most_slope) slope *= most_slope / longest;
+  auto code = [](float x) { return uint32_t(512 + int(std::lrint(x * (511 / most_slope)))); };
+  return code(slope.x) | code(slope.y) << 10 | code(slope.z) << 20;
+}
+inline vec3 unpack_slope(uint32_t code) {
+  constexpr float unit = most_slope / 511;
+  return (vec3(float(code & 1023), float(code >> 10 & 1023), float(code >> 20 & 1023)) - 512.0f) *
+         unit;
+}
+inline void unpack_slope(const LaneBits& code, Lanes& x, Lanes& y, Lanes& z) {
+  constexpr float unit = most_slope / 511;
+  x = (to_float(code & 1023u) - 512.0f) * unit;
+  y = (to_float(code >> 10 & 1023u) - 512.0f) * unit;
+  z = (to_float(code >> 20 & 1023u) - 512.0f) * unit;
+}
+
+// Times as much light as at the mesh's normal.
+inline float eval_slope(vec3 slope, vec3 normal, vec3 seen) {
+  return std::max(1 + dot(slope, seen - normal), 0.0f);
+}
+
+}  // namespace wellspring

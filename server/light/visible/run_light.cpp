@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light that is kept, on a run's pixels: VisibleRun::light(), VisibleRun::known().
+#include <algorithm>
+
+#include "light/known/skin_light.h"
+#include "light/material/gloss_albedo.h"
+#include "light/visible/visibility_impl.h"
+
+namespace wellspring {
+
+// What part of light from all around eight pixels' gloss reflects, of a surface as described.
+Lanes VisibleRun::Impl::read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness,
+                                   Lanes share) const {
+  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+  const vec3 way = -direction(i), step = view.right * pixel_angle;
+  const Lanes x = way.x - step.x * lane, y = way.y - step.y * lane, z = way.z - step.z * lane;
+  const Lanes nx = load_lanes(surface.nx + i), ny = load_lanes(surface.ny + i),
+              nz = load_lanes(surface.nz + i);
+  const Lanes lengths = (nx * nx + ny * ny + nz * nz) * (x * x + y * y + z * z);
+  const Lanes cosine =
+      (nx * x + ny * y + nz * z) / lanes_sqrt(lanes_max(lengths, all_lanes(1e-30f)));
+  return gloss_albedo(f0, roughness, share,
+                      lanes_min(lanes_max(cosine, all_lanes(0)), all_lanes(1)));
+}
+
+uint64_t VisibleRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {
+  if (seen_) return 0;
+  const RasterRun& r = *impl_->run;
+  float f0[RunSurface::most], roughness[RunSurface::most], share[RunSurface::most];
+  uint64_t moving = 0;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    if (r.instance[begin] == RasterRun::nothing) continue;
+    const Facet& f = impl_->facet(begin);
+    if (!f.placed->moving) continue;
+    SkinTriangle light = find_skin(skin, r.instance[begin], f.corner, !f.front);
+    GlossFactors gloss = gloss_factors(*f.material);
+    for (int i = begin; i < r.end[p]; i++) moving |= uint64_t(1) << i;
+    for (int i = begin; i < r.end[p]; i += lane_count) {
+      Lanes u = load_lanes(r.u + i), v = load_lanes(r.v + i);
+      store_lanes(to.red + i, light.corner.x + light.edge1.x * u + light.edge2.x * v);
+      store_lanes(to.green + i, light.corner.y + light.edge1.y * u + light.edge2.y * v);
+      store_lanes(to.blue + i, light.corner.z + light.edge1.z * u + light.edge2.z * v);
+      store_lanes(f0 + i, all_lanes(gloss.f0));
+      store_lanes(roughness + i, all_lanes(gloss.roughness));
+      store_lanes(share + i, all_lanes(gloss.share));
+    }
+  }
+  for (int i = 0; i < count; i += lane_count)
+    if (moving >> i & 0xff)
+      store_lanes(to.gloss + i,
+                  impl_->read_gloss(surface, i, load_lanes(f0 + i), load_lanes(roughness + i),
+                                    load_lanes(share + i)));
+  return moving;
+}
+
+namespace {
+
+// The nodes around a place differ by at most that share of its light, or their light has an edge
+// between them.
+constexpr float most_even_spread = 0.4f;
+
+// Where the light of a triangle lies; false: the charts do not have it.
+bool place_light(const IlluminationCharts& charts, Facet& f) {
+  if (f.charts == &charts) return f.chart != no_chart;
+  f.charts = &charts;
+  f.chart = charts.find(f.instance, f.triangle, f.front);
+  if (f.chart == no_chart) return false;
+  const IlluminationChart& chart = charts.charts[f.chart];
+  const Face face = make_face(*f.placed, f.triangle);
+  auto along = [&](vec3 way) { return vec2(dot(way, chart.along_u), dot(way, chart.along_v)); };
+  f.light_corner = along(face.corner - chart.origin);
+  f.light_edge1 = along(face.edge1), f.light_edge2 = along(face.edge2);
+  return true;
+}
+
+}  // namespace
+
+// Times as much light as on the mesh falls on eight pixels' mapped normals.
+Lanes VisibleRun::Impl::read_relief(const Facet& f, const IlluminationLanes& light, int i,
+                                    int end) const {
+  const Material& m = *f.material;
+  const Texture& texture = visibility.pictures.scene->textures[size_t(m.normal_texture.texture)];
+  const Lanes a = load_lanes(run->u + i), b = load_lanes(run->v + i);
+  const Lanes u = f.relief.corner.x + f.relief.edge1.x * a + f.relief.edge2.x * b,
+              v = f.relief.corner.y + f.relief.edge1.y * a + f.relief.edge2.y * b;
+  const int middle = std::min(i + lane_count / 2, end - 1);
+  const float texels =
+      pixel_width(f, run->depth[middle], direction(middle), blurred_angle) * f.relief.texels;
+  const size_t image = size_t(texture.image);
+  Lanes map[3];
+  if (!eval_pyramid(visibility.pictures.scene->images[image], visibility.pictures.pyramids[image],
+                    texture, u, v, texels, map))
+    return all_lanes(1);  // floats, or read by the nearest texel
+  const Lanes x = map[0] * 2.0f - 1.0f, y = map[1] * 2.0f - 1.0f, z = map[2] * 2.0f - 1.0f;
+  const float scale = m.normal_scale;
+  // As steep as the scale says, and as short as the mean over the pixel is.
+  const Lanes flat = x * x + y * y,
+              shrink = lanes_sqrt((flat + z * z) /
+                                  lanes_max(scale * scale * flat + z * z, all_lanes(1e-12f)));
+  vec3 n = f.normal[0];
+  Lanes nx = all_lanes(n.x), ny = all_lanes(n.y), nz = all_lanes(n.z);
+  if (!f.one_normal) {
+    const vec3 p = f.normal[1] - n, q = f.normal[2] - n;
+    nx += p.x * a + q.x * b, ny += p.y * a + q.y * b, nz += p.z * a + q.z * b;
+  }
+  const Lanes unit = 1.0f / lanes_sqrt(lanes_max(nx * nx + ny * ny + nz * nz, all_lanes(1e-30f)));
+  auto along = [&](vec3 way) { return light.x * way.x + light.y * way.y + light.z * way.z; };
+  const Lanes up = (light.x * nx + light.y * ny + light.z * nz) * unit;
+  const Lanes more =
+      scale * shrink * (x * along(f.tangent) + y * along(f.bitangent)) + (z * shrink - 1.0f) * up;
+  return positive_lanes(1.0f + (f.front ? 1.0f : -1.0f) * more);
+}
+
+uint64_t VisibleRun::known(const IlluminationMap& map, const RunSurface& surface,
+                           RunKnown& to) const {
+  to.plain = 0;
+  if (seen_) return 0;
+  const RasterRun& r = *impl_->run;
+  uint64_t known = 0;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    if (r.instance[begin] == RasterRun::nothing) continue;
+    Facet& f = impl_->facet(begin);
+    if (f.placed->moving || !place_light(*map.places, f)) continue;
+    const IlluminationChart& chart = map.places->charts[f.chart];
+    const Lanes more = all_lanes(map.least_known());
+    const bool relief = f.relief.known && !map.nodes.slope.empty();
+    const bool plain = impl_->visibility.plain[size_t(f.placed->mesh->material)] != 0;
+    const GlossFactors gloss = gloss_factors(*f.material);
+    for (int i = begin; i < r.end[p]; i += lane_count) {
+      constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+      const LaneMask here = lane < float(r.end[p] - i);
+      const Lanes a = load_lanes(r.u + i), b = load_lanes(r.v + i);
+      IlluminationLanes light = eval_illumination(
+          map, chart, f.light_corner.x + f.light_edge1.x * a + f.light_edge2.x * b,
+          f.light_corner.y + f.light_edge1.y * a + f.light_edge2.y * b, here, relief);
+      const Lanes factor = relief ? impl_->read_relief(f, light, i, r.end[p]) : all_lanes(1);
+      store_lanes(to.red + i, light.red * factor + more);
+      store_lanes(to.green + i, light.green * factor + more);
+      store_lanes(to.blue + i, light.blue * factor + more);
+      known |= uint64_t(negative_lanes(here)) << i;
+      if (!plain) continue;
+      const Lanes all = light.red + light.green + light.blue;
+      to.plain |= uint64_t(negative_lanes(here & (light.spread <= most_even_spread * all))) << i;
+      store_lanes(to.gloss + i,
+                  impl_->read_gloss(surface, i, all_lanes(gloss.f0), all_lanes(gloss.roughness),
+                                    all_lanes(gloss.share)));
+    }
+  }
+  return known;
+}
+
+}  // namespace wellspring

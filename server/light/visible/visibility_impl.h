@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// What light/visible/visibility.h keeps, for its own units.
+#pragma once
+#include <vector>
+
+#include "light/sample/illumination_map.h"
+#include "light/visible/facet.h"
+#include "light/visible/shade_facet.h"
+#include "light/visible/visibility.h"
+#include "light/visible/visible_material.h"
+
+namespace wellspring {
+
+struct VisibilityPass::Impl {
+  const World& world;
+  Lights lights;
+  Raster raster;
+  Pictures pictures;
+  std::vector<Reflectance> reflectance;  // of each material
+  std::vector<DemodulationScale> scale;  // of those scaled
+  std::vector<uint8_t> panes;            // of each material: is one everywhere
+  std::vector<uint8_t> polished;         // of each material: some place of it may be
+  std::vector<uint8_t> glossy;           // of each material: some place of it has highlights
+  std::vector<uint8_t> plain;            // of each material: is_plain()
+  bool any_gloss = false;                // of a mesh of the scene
+  std::vector<uint8_t> moving_object;    // by object
+  MetalDemodulation metal_of(int material) const {
+    return lights.tables->materials[size_t(material)].metal;
+  }
+  Impl(const World& w, const Lights& l)
+      : world(w), lights(l), raster(w), pictures(make_pictures(w.scene())) {}
+};
+
+// Pixels side by side of one material, whose pictures are read at one level, maybe of several
+// triangles: of many small ones each for itself would leave most lanes unused.
+struct Stretch {
+  int begin, end;
+  const Material* material;
+  int index;                           // of the material in the scene
+  float base_texels, emission_texels;  // a pixel's width
+  bool alone;                          // each pixel has to be looked up by itself
+  bool goes_on_with(const Stretch& s) const {
+    return end == s.begin && material == s.material && index == s.index && alone == s.alone &&
+           pyramid_level(base_texels) == pyramid_level(s.base_texels) &&
+           pyramid_level(emission_texels) == pyramid_level(s.emission_texels);
+  }
+};
+struct PicturePlaces {
+  float u[RunSurface::most], v[RunSurface::most];
+  void put(const FacetPicture& place, Lanes a, Lanes b, int i) {
+    store_lanes(u + i, place.corner.x + place.edge1.x * a + place.edge2.x * b);
+    store_lanes(v + i, place.corner.y + place.edge1.y * a + place.edge2.y * b);
+  }
+};
+struct Stretches {
+  int count = 0;
+  Stretch of[RasterRun::most];
+  PicturePlaces base, shine;
+};
+
+struct VisibleRun::Impl {
+  const VisibilityPass::Impl& visibility;
+  const View& view;
+  vec2 offset;
+  float pixel_angle, blurred_angle;
+  FacetCache& facets;
+  const RasterRun* run = nullptr;
+  // Towards pixel i, at depth 1.
+  vec3 direction(int i) const {
+    vec2 axis = axis_place(view);
+    float x = float(run->x + i) + offset.x - axis.x, y = axis.y - float(run->y) - offset.y;
+    return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
+  }
+  Facet& facet(int i) const {
+    return facets.find(visibility.world, run->instance[i], run->triangle[i], view.position);
+  }
+  PrimaryHit see(int i) const;
+  Lanes read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness, Lanes share) const;
+  Lanes read_relief(const Facet& f, const IlluminationLanes& light, int i, int end) const;
+  void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
+  vec3 scale_of(const Material& m, int index) const {
+    return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * visibility.scale[size_t(index)].factor;
+  }
+  bool has_picture(const TextureRef& reference) const {
+    const Scene& scene = *visibility.pictures.scene;
+    return reference.texture >= 0 && scene.textures[size_t(reference.texture)].image >= 0;
+  }
+  bool reads_base(const Material& m, int index) const {
+    return has_picture(m.base_color_texture) && scale_of(m, index) != vec3(0);
+  }
+  bool reads_emission(const Material& m, int index) const {
+    return visibility.reflectance[size_t(index)] == Reflectance::base &&
+           has_picture(m.metallic_roughness_texture);
+  }
+  bool place(const Facet& f, int begin, int end, Stretches& to) const;
+  bool read_lanes(const PicturePlaces& places, const TextureRef& reference, float texels, int i,
+                  int end, Lanes (&rgb)[3]) const;
+  void describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const;
+};
+
+}  // namespace wellspring
