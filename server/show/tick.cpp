@@ -259,13 +259,11 @@ void use_renderer(Show& show, int waiting) {
   carry_out(show, decide(show.time, draw_states(show), renderer), waiting);
 }
 
-// The cores are free while there are no visitors, or while all have been at rest for long. What
-// changes the kind of light is taken over while nobody looks.
+// The cores are free while there are no visitors, or while all have been at rest for long.
 void watch_baker(Show& show) {
   if (!show.baker) return;
   const bool alone = show.visitors.empty();
-  if (alone || show.lights.maps)
-    if (auto maps = show.baker->take()) use_maps(show, std::move(maps));
+  if (auto maps = show.baker->take()) use_maps(show, std::move(maps));
   show.baker->allow(!show.others_draw && (alone || !draws(show)));
 }
 

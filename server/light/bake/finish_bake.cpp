@@ -216,10 +216,11 @@ static std::shared_ptr<const IlluminationMap> finish(const Bake& bake,
   map->layers = layers;
   map = std::make_shared<IlluminationMap>(sum_of_layers(std::move(*map)));
   const double light = direct.light + gather.light;
-  map->error = light > 0 ? float(std::sqrt(direct.variance + direct.roughness + gather.variance +
-                                           gather.roughness) /
-                                 light)
-                         : 0;
+  map->error = !filtered   ? 1
+               : light > 0 ? float(std::sqrt(direct.variance + direct.roughness + gather.variance +
+                                             gather.roughness) /
+                                   light)
+                           : 0;
   return map;
 }
 

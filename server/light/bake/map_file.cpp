@@ -20,7 +20,6 @@ constexpr int zstd_level = 19;
 constexpr float light_steps = 24;                   // of the light's logarithm to base 2
 constexpr float least_share = 1e-3f;                // of the mean light, below which steps are even
 constexpr float color_steps = 63, slope_steps = 5;  // of a share; of a unit
-constexpr size_t most_layers = 4096;
 
 // What is written of a node: light, two of its colour's shares, and a slope.
 constexpr int light_planes = 3, slope_planes = 3;
@@ -249,8 +248,8 @@ bool save_map(const World& world, const IlluminationMap& map, const std::string&
                uint32_t(map.layers->size()),
                uint32_t(map.tiles.size())};
   std::string cells;
-  std::vector<IlluminationTile> tiles = map.tiles;
-  for (IlluminationTile& tile : tiles) {
+  const std::vector<IlluminationTile>& tiles = map.tiles;
+  for (const IlluminationTile& tile : tiles) {
     const bool is_there = tile.first != no_tile;
     cells += char(is_there ? tile.columns : 0);
     cells += char(is_there ? tile.rows : 0);
@@ -292,18 +291,18 @@ LoadedMap load_map(const World& world, const std::string& file, uint64_t key) {
   take.array(things);
   take.array(packed);
   uint64_t their_tiles = 0;
-  for (const StandingThing& thing : things) their_tiles += thing.tiles;
+  for (const StandingThing& thing : things)
+    their_tiles += std::min<uint64_t>(thing.tiles, head.tiles + uint64_t(1));
   if (!take.good || !(head.tile > 0) || !std::isfinite(head.tile) || !(head.least > 0) ||
       !std::isfinite(head.least) || !(head.error >= 0) || head.layers == 0 ||
-      head.layers > most_layers || their_tiles != head.tiles || head.tiles > most_map_nodes)
+      their_tiles != head.tiles || head.tiles > most_map_nodes)
     return refuse();
   std::string cells, codes;
   if (!decompress(packed, size_t(head.tiles) * 2, cells)) return refuse();
   auto map = std::make_shared<IlluminationMap>();
   map->tiles = read_tiles(cells);
   if (map->tiles.size() != head.tiles) return refuse();
-  if (stale && head.layers != layer_count(world.scene())) return loaded;
-  if (head.layers != layer_count(world.scene())) return refuse();
+  if (head.layers != layer_count(world.scene())) return stale ? loaded : refuse();
   map->error = head.error;
   check_cancelled();
   const Quantiser quantiser{head.least, head.sloped != 0};

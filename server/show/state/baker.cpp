@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "base/cancel.h"
 #include "base/clock.h"
@@ -62,8 +63,15 @@ void Baker::publish(const World& world, Bake& bake, uint64_t key, float& shown) 
 }
 
 void Baker::live(const std::stop_token& end) {
-  if (!wait_until_allowed(end)) return;
   const World world(scene_);
+  std::optional<BakeScene> scene;
+  if (settings_.shown_error >= 1) {
+    // Nothing is known: coarse light is there in seconds, whoever needs the cores.
+    scene.emplace(make_bake_scene(world, settings_.places));
+    std::lock_guard lock(mutex_);
+    found_ = scene->known;
+  }
+  if (!wait_until_allowed(end)) return;
   const uint64_t key = hash_scene(scene_);
   const std::string file = settings_.file + ".bake";
   Bake bake;
@@ -85,11 +93,11 @@ void Baker::live(const std::stop_token& end) {
   };
   tell(false);
   if (error <= settings_.least_error) return;
-  const BakeScene scene = make_bake_scene(world, settings_.places);
+  if (!scene) scene.emplace(make_bake_scene(world, settings_.places));
   while (wait_until_allowed(end) && error > settings_.least_error) {
     tell(true);
     const double began = seconds_now();
-    go_on(scene, bake,
+    go_on(*scene, bake,
           [&] { return !allowed_ || end.stop_requested() || seconds_now() - began > at_a_time; });
     if (!bake.pilot() && bake.passes > 1) error = bake_error(bake);
     if (!bake.pilot() && bake.passes >= next) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Illumination maps come by themselves: a thread that goes on with the exhibit's bake while nobody
-// needs the cores, keeps it on disk, and hands over a map whenever it has become much better.
+// Illumination maps come by themselves: a thread that finds coarse light at once where there is no
+// other, goes on with the exhibit's bake while nobody needs the cores, keeps it on disk, and hands
+// over a map whenever it has become better.
 #pragma once
 #include <atomic>
 #include <memory>

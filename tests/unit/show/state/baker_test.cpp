@@ -45,6 +45,7 @@ struct BakerTest : testing::Test {
 
 TEST_F(BakerTest, DoesNothingUnlessAllowed) {
   {
+    settings.shown_error = 0.1f;
     Baker baker(scene, settings);
     EXPECT_TRUE(is_idle(baker));
     EXPECT_EQ(baker.status().passes, 0u);
@@ -55,8 +56,19 @@ TEST_F(BakerTest, DoesNothingUnlessAllowed) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("deep/box.maps")));
 }
 
+TEST_F(BakerTest, WhereThereIsNoLightCoarseLightComesAtOnce) {
+  Baker baker(scene, settings);
+  std::shared_ptr<const IlluminationMap> map;
+  ASSERT_TRUE(wait_until([&] { return (map = baker.take()) != nullptr; }));
+  EXPECT_EQ(map->error, 1);
+  EXPECT_GT(map->mean, 0.01f);
+  EXPECT_TRUE(is_idle(baker)) << "more of it only when allowed";
+  EXPECT_FALSE(baker.take());
+}
+
 TEST_F(BakerTest, HandsOverMapsAndKeepsThem) {
   std::shared_ptr<const IlluminationMap> map;
+  settings.shown_error = 0.9f;
   {
     Baker baker(scene, settings);
     baker.allow(true);
@@ -107,6 +119,7 @@ TEST_F(BakerTest, GoesOnWhereTheLastOneEnded) {
 }
 
 TEST_F(BakerTest, WhatIsDamagedOrOfAnotherSceneIsBakedAnew) {
+  settings.shown_error = 0.9f;
   {
     Baker baker(scene, settings);
     baker.allow(true);
