@@ -6,7 +6,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, judges_memory, patience, sleep, start_server } from '../server.mjs';
+import { Visitor, judges_memory, patience, sleep, start_server, until } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const many = Number(process.env.WELLSPRING_CONNECTIONS ?? 100);
@@ -85,7 +85,8 @@ test('who does nothing is asked, rests, and goes on where they were', async () =
   const { seconds } = await visitor.message('idle', ({ state }) => state === 'asked');
   assert.equal(seconds, 1);
   await visitor.message('idle', ({ state }) => state === 'paused');
-  assert.equal(await metric('visits_resting'), 1);
+  // What is told to the page is done before the next report.
+  await until(async () => await metric('visits_resting') === 1, 'the visit rests');
   assert.equal(await metric('seats_taken'), 0);
   const { pictures } = visitor;
   await sleep(300);
