@@ -19,7 +19,7 @@ constexpr int gathers_a_pass = 8;  // samples of a gathering node for one of a d
 constexpr int tiles_a_step = 64;
 constexpr double tile_nodes = 64;      // of a tile, on average, before refinement
 constexpr float most_brightness = 25;  // of a gathered sample, times the mean light
-// What lies nearer than either covers a place: shares of the widths of a cell and of a tile.
+// A thing that lies nearer than either covers a place: shares of the widths of a cell and a tile.
 constexpr float cell_covering = 0.3f, tile_covering = 0.03f;
 // Neighbouring nodes that differ by that share of their light, of which a share of the scene's mean
 // counts as there everywhere.
@@ -30,7 +30,7 @@ uint64_t node_seed(const Bake& bake, int field, uint32_t tile, uint32_t node) {
   return mix64(bake.settings.seed + mix64(uint64_t(tile) << 32 | node << 1 | uint32_t(field)));
 }
 
-// What one sample has found, of each layer.
+// One sample finds this of each layer.
 struct LayerLight {
   std::vector<vec3> light, slope;  // luminance times slope_of()
   explicit LayerLight(int layers) : light(size_t(layers)), slope(size_t(layers)) {}
@@ -48,8 +48,8 @@ void add_light(BakeField& field, size_t node, const LayerLight& found, float sca
   field.count[node] += 1;
 }
 
-// What a walk comes upon once in thousands (the sun in a brass knob) would stay a spark on the wall
-// for hours.
+// A light that one walk in thousands comes upon (the sun in a brass knob) would stay a spark on the
+// wall for hours.
 void cut_off(float most, std::span<vec3> light) {
   vec3 sum(0);
   for (vec3 l : light) sum += l;

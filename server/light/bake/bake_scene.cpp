@@ -8,6 +8,7 @@
 #include "light/material/bsdf_gloss.h"
 #include "light/random/warp.h"
 #include "light/sample/light_tables.h"
+#include "light/walk/known_light.h"
 
 namespace wellspring {
 namespace {
@@ -46,8 +47,8 @@ BakeScene make_bake_scene_of_paths(const World& world) {
 
 namespace {
 
-// What of light from all around, as bright everywhere, a surface sends back towards the viewer; of
-// a gloss that is `sharp` that is left out, and followed.
+// A surface sends this share of light that is as bright all around back towards the viewer. A gloss
+// that is `sharp` is left out: walks follow it.
 vec3 reflectance_of(const Bsdf& b, bool sharp) {
   const vec3 diffuse = b.diffuse * b.coat_passes;
   const vec3 gloss =
@@ -62,9 +63,7 @@ constexpr float sharp_gloss_alpha = 0.09f;  // a roughness of 0.3
 // The chart of what the walk met, where coarse light is known.
 static uint32_t find_known_chart(const BakeScene& scene, const Walk& walk, const Hit& hit) {
   if (!scene.known || walk.media.here.count > 0) return no_chart;
-  const bool front =
-      dot(eval_face(scene.world, hit.instance, hit.triangle), walk.ray.direction) < 0;
-  return scene.known->places->find(hit.instance, hit.triangle, front);
+  return find_chart(*scene.known, scene.world, walk.ray, hit);
 }
 
 static void add_known_light(const BakeScene& scene, uint32_t chart, vec3 place, vec3 weight,

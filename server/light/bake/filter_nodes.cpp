@@ -95,7 +95,7 @@ void diffuse_noise(const IlluminationTile& tile, std::span<const std::array<uint
       to.variance[node] = std::max(to.variance[node], 0.04f * from.variance[node]);
 }
 
-// What the nodes' grid does not hold, of a node; below 0: nobody knows.
+// The nodes' grid does not hold that much of the light at a node; below 0: nobody knows.
 float bend_of(const IlluminationTile& tile, uint32_t i, const Noisy& nodes) {
   const uint32_t stride = tile.columns + 1u, x = i % stride, y = i / stride;
   const size_t node = tile.first + i;

@@ -16,8 +16,8 @@ namespace wellspring {
 // How much light passes between nodes side by side, the same for all layers.
 struct NodeFilter {
   static constexpr int rounds = 6;
-  // Of each round and node, to the four of its neighbours that come later in the tile: the next
-  // one, and the three of the next row; of 255, which is as much as may pass.
+  // Each round and node lists the four neighbours that come later in the tile: the next one, and
+  // the three of the next row. 255 is as much as may pass.
   std::array<std::vector<std::array<uint8_t, 4>>, rounds> passes;
   double variance = 0;  // of the filtered luminance, mean over the nodes
   double roughness =

@@ -19,7 +19,8 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
 // The same where everything may be seen.
 std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake);
 
-// Of a bake's fields as they are, refined or not, and unfiltered: their error is not known (1).
+// Makes a map of a bake's fields as they are, refined or not, and unfiltered: nobody knows its
+// error (1).
 std::shared_ptr<const IlluminationMap> finish_fields(const Bake& bake);
 
 // Its parts.

@@ -21,7 +21,7 @@ constexpr float light_steps = 24;                   // of the light's logarithm 
 constexpr float least_share = 1e-3f;                // of the mean light, below which steps are even
 constexpr float color_steps = 63, slope_steps = 5;  // of a share; of a unit
 
-// What is written of a node: light, two of its colour's shares, and a slope.
+// A node is written as light, two of its colour's shares, and a slope.
 constexpr int light_planes = 3, slope_planes = 3;
 using NodeCodes = std::array<int, light_planes + slope_planes>;
 
@@ -53,7 +53,7 @@ struct Quantiser {
   }
 };
 
-// What a node's neighbours to the left and below, and that between these, let expect.
+// A node's neighbours to the left and below, and the one between these, let expect this.
 int expected(int left, int below, int corner) {
   if (corner >= std::max(left, below)) return std::min(left, below);
   if (corner <= std::min(left, below)) return std::max(left, below);

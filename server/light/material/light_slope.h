@@ -17,7 +17,7 @@
 
 namespace wellspring {
 
-// What light from `direction` (unit, on the side of `normal`) adds to the slope, for each unit of
+// Light from `direction` (unit, on the side of `normal`) adds this to the slope, for each unit of
 // the light that it brings there.
 vec3 slope_of(vec3 direction, vec3 normal);
 

@@ -49,7 +49,7 @@ struct IlluminationCharts {
   }
 };
 
-// What every node keeps.
+// Every node keeps these.
 struct IlluminationNodes {
   std::vector<uint32_t> light;  // pack_rgb9e5()
   std::vector<uint32_t> slope;  // pack_slope(); empty where no material has a use for it

@@ -26,7 +26,7 @@ struct Facet {
   // The map of normals, and along its u and v on the winding's side, unit; alike all over.
   FacetPicture relief;
   vec3 tangent{0}, bitangent{0};
-  // Where its light lies, once that was asked for: as of IlluminationChart, counted in tiles.
+  // Its light lies here, once somebody has asked: as IlluminationChart has it, counted in tiles.
   const struct IlluminationCharts* charts = nullptr;
   uint32_t chart = 0xffffffffu;
   vec2 light_corner{0}, light_edge1{0}, light_edge2{0};

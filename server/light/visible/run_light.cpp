@@ -79,17 +79,14 @@ bool place_light(const IlluminationCharts& charts, Facet& f) {
 Lanes VisibleRun::Impl::read_relief(const Facet& f, const IlluminationLanes& light, int i,
                                     int end) const {
   const Material& m = *f.material;
-  const Texture& texture = visibility.pictures.scene->textures[size_t(m.normal_texture.texture)];
   const Lanes a = load_lanes(run->u + i), b = load_lanes(run->v + i);
-  const Lanes u = f.relief.corner.x + f.relief.edge1.x * a + f.relief.edge2.x * b,
-              v = f.relief.corner.y + f.relief.edge1.y * a + f.relief.edge2.y * b;
+  PicturePlaces places;
+  places.put(f.relief, a, b, i);
   const int middle = std::min(i + lane_count / 2, end - 1);
   const float texels =
       pixel_width(f, run->depth[middle], direction(middle), blurred_angle) * f.relief.texels;
-  const size_t image = size_t(texture.image);
   Lanes map[3];
-  if (!eval_pyramid(visibility.pictures.scene->images[image], visibility.pictures.pyramids[image],
-                    texture, u, v, texels, map))
+  if (!read_lanes(places, m.normal_texture, texels, i, end, map))
     return all_lanes(1);  // floats, or read by the nearest texel
   const Lanes x = map[0] * 2.0f - 1.0f, y = map[1] * 2.0f - 1.0f, z = map[2] * 2.0f - 1.0f;
   const float scale = m.normal_scale;

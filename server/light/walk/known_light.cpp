@@ -21,10 +21,15 @@ bool passes(vec3 a, vec3 b, bool endless, vec3 centre, float radius) {
 
 }  // namespace
 
+uint32_t find_chart(const IlluminationMap& map, const World& world, const Ray& ray,
+                    const Hit& hit) {
+  if (world.is_moving(hit.instance)) return no_chart;
+  bool front = dot(eval_face(world, hit.instance, hit.triangle), ray.direction) < 0;
+  return map.places->find(hit.instance, hit.triangle, front);
+}
+
 static uint32_t find_chart(const Transport& transport, const Ray& ray, const Hit& hit) {
-  if (!transport.maps || transport.world.is_moving(hit.instance)) return no_chart;
-  bool front = dot(eval_face(transport.world, hit.instance, hit.triangle), ray.direction) < 0;
-  return transport.maps->places->find(hit.instance, hit.triangle, front);
+  return transport.maps ? find_chart(*transport.maps, transport.world, ray, hit) : no_chart;
 }
 
 bool has_known_light(const Transport& transport, const Ray& ray, const Hit& hit) {

@@ -68,7 +68,7 @@ void prepare(Show& show) {
 // another scene, as far as its things stand where they stood.
 LoadedMap find_maps(const Show& show) {
   const uint64_t key = hash_scene(show.exhibit.scene);
-  const World world(show.exhibit.scene);
+  const World& world = *show.world;  // its still things are the scene's
   LoadedMap own, shipped = load_map(world, shipped_light(show.exhibit.folder), key);
   if (!show.settings.cache.empty())
     own = load_map(world, show.settings.cache + "/" + show.exhibit.id + ".maps", key);
