@@ -119,13 +119,14 @@ function denoiser(metrics) {
 
 function maps(metrics) {
   const one = reader(metrics);
+  if (!one('illumination_map_texels')) return 'none: nothing is lit diffusely';
   const percent = (share) => `${number(100 * share, 1)} %`;
-  const baked = one('bake_passes_total') > 0
-    ? `; ${one('bake_working') ? 'baking' : 'baked'}: ${number(one('bake_passes_total'))} passes, `
-      + `error ${percent(one('bake_error'))}` : '';
-  if (!one('illumination_map_texels')) return `none yet${baked}`;
-  return `${number(one('illumination_map_texels'))} texels, `
-    + `error ${percent(one('illumination_map_error'))}${baked}`;
+  const error = one('illumination_map_error'), passes = one('bake_passes_total');
+  const shown = error >= 1 ? 'coarse light, the first there is' : `fine to ${percent(error)}`;
+  if (!passes) return shown;
+  const how = one('bake_working') ? 'better is being found' : 'better as cores are free';
+  return `${shown}; ${how}, `
+    + `${number(passes)} passes so far, fine to ${percent(one('bake_error'))}`;
 }
 
 function show_figures(metrics) {

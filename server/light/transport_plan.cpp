@@ -10,7 +10,7 @@ namespace {
 constexpr const char* names[] = {
     "area lights",     "light tree", "emission pictures", "punctual lights", "environment",
     "environment map", "panes",      "refraction",        "absorption",      "dispersion",
-    "coats",           "caustics",   "cached radiance",   "dynamic lights"};
+    "coats",           "caustics",   "kept light",        "dynamic lights"};
 static_assert(std::size(names) == transport_parts);
 
 // What the decisions are made from.
@@ -202,7 +202,7 @@ void decide_results(const Scene& scene, const Census& c, Deciding& d) {
       c.moving
           ? "; " + count_of(c.moving, "moving triangle is", "moving triangles are") + " lit afresh"
           : "";
-  d.decide(cached_radiance, c.still_rough > 0 && c.any_light(),
+  d.decide(kept_light, c.still_rough > 0 && c.any_light(),
            "lights and " + count_of(c.still_rough, "rough triangle", "rough triangles") +
                " stand still" + except,
            !c.any_light() ? "no light"
@@ -243,7 +243,7 @@ std::span<const char* const> technique_notes(TransportPart part) {
       "both "
       "do, hues within 1/8 of the spectrum meet"};
   static constexpr const char* caustics[] = {
-      "path: by rays that come upon the light; gather: in its cached radiance as well; direct: "
+      "path: by rays that come upon the light; gather: in its kept light as well; direct: "
       "none",
       "instant_radiosity: photons, spread over a radius that shrinks from pass to pass"};
   static constexpr const char* kept[] = {"gather alone asks for it"};
@@ -254,7 +254,7 @@ std::span<const char* const> technique_notes(TransportPart part) {
   if (part == TransportPart::dynamic_lights) return dynamic;
   if (part == TransportPart::dispersion) return dispersion;
   if (part == TransportPart::caustics) return caustics;
-  if (part == TransportPart::cached_radiance) return kept;
+  if (part == TransportPart::kept_light) return kept;
   return {};
 }
 

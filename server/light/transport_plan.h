@@ -30,7 +30,7 @@ enum class TransportPart : uint8_t {
   dispersion,              // and bend wavelengths apart; else no walk has a wavelength
   coats,                   // clearcoat or sheen over the base
   caustics,                // light from a specular thing onto a rough one: photons
-  cached_radiance,         // results may persist: what stands still, lit by what stands still
+  kept_light,              // results may persist: what stands still, lit by what stands still
   dynamic_lights,          // that move or change: their light is found anew for each picture
   count
 };

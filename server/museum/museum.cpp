@@ -242,7 +242,10 @@ struct Museum::Impl {
     if (!settings.seal_key.empty()) show->seal = std::make_shared<Seal>(settings.seal_key);
     std::vector<Problem> notes;
     check_places(show->exhibit, *show->world, notes);
-    check_shipped_light(show->exhibit, notes);
+    std::vector<Problem> light;
+    check_shipped_light(show->exhibit, light);
+    for (const Problem& problem : light) show->light_problem = to_string(problem);
+    notes.insert(notes.end(), light.begin(), light.end());
     for (const Problem& note : notes) log::warn("{}", to_string(note));
     show->capacity = capacity;
     show->speech = make_speech_source(speaker);

@@ -39,6 +39,8 @@ constexpr double state_interval = 0.5;
 constexpr double heard_state_interval = 0.1;  // while there is sound to be heard from somewhere
 constexpr double behave_interval = 0.04;
 constexpr double idle_before_bake = 5;       // seconds in which nothing was drawn
+constexpr double looks_every = 0.5;          // between what the baker is told
+constexpr double most_light_waits = 60;      // for better light, while visitors walk
 constexpr double least_wait = 0.002;         // between ticks, whatever is due
 constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
 
@@ -259,12 +261,36 @@ void use_renderer(Show& show, int waiting) {
   carry_out(show, decide(show.time, draw_states(show), renderer), waiting);
 }
 
-// The cores are free while there are no visitors, or while all have been at rest for long.
+// Rays over what visitors see.
+std::vector<Ray> looks_of(const Show& show) {
+  constexpr int across = 24, down = 14;
+  std::vector<Ray> rays;
+  for (const Visitor& visitor : show.visitors) {
+    const View& view = visitor.picture.keyframe.view;
+    for (int i = 0; i < across * down && view.width > 0; i++)
+      rays.push_back(view_ray(view, (float(i % across) + 0.5f) * float(view.width) / across,
+                              (float(i / across) + 0.5f) * float(view.height) / down));
+  }
+  return rays;
+}
+
+// All cores are free while there are no visitors, or while all have been at rest for long. Better
+// light waits until nobody walks, so that it fades in, but not for ever.
 void watch_baker(Show& show) {
   if (!show.baker) return;
-  const bool alone = show.visitors.empty();
-  if (auto maps = show.baker->take()) use_maps(show, std::move(maps));
-  show.baker->allow(!show.others_draw && (alone || !draws(show)));
+  const bool free = !show.others_draw && (show.visitors.empty() || !draws(show));
+  show.baker->allow(free ? BakerCores::all : BakerCores::spare);
+  BakerLooks& looks = show.baker_looks;
+  if (show.time - looks.told_at < looks_every) return;
+  looks.told_at = show.time;
+  show.baker->look(looks_of(show));
+  const bool walks = std::ranges::any_of(
+      show.visitors, [](const Visitor& visitor) { return visitor.picture.job.passing; });
+  if (walks && show.time - looks.took_at < most_light_waits) return;
+  if (auto maps = show.baker->take()) {
+    use_better_maps(show, std::move(maps));
+    looks.took_at = show.time;
+  }
 }
 
 // A camera on its way waits for keyframes that are slow; a visitor's own turn does not.

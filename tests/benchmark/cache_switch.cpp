@@ -32,6 +32,7 @@ struct Lit {
   LampLevels lamps;  // of an exhibit; empty: another scene is another light
   std::unique_ptr<World> world;
   Lights lights, all;  // `all`: while all of the exhibit's lamps are full
+  std::shared_ptr<const LampCells> cells;
   std::unique_ptr<VisibilityPass> visibility;
   View view;
   Truth truth;
@@ -134,7 +135,7 @@ Told tell(const Lit& was, const Lit& is, RenderCache& cache) {
   put(is.lamps);
   Lights lights = relit(is.all, *is.world);
   double lit = seconds_now();
-  LightChange change(is.scene, is.all, was.lamps, is.lamps);
+  LightChange change(is.scene, is.all, is.cells, was.lamps, is.lamps);
   cache.relight([&](const RenderCache::Surface& at, vec3& kept, vec3& added) {
     return change.changes(at.place, at.normal, kept, added);
   });
@@ -193,6 +194,8 @@ void prepare(const std::string& name, const BenchScene& scene, const TruthSettin
   if (!lit.lamps.empty()) {
     for (size_t i = 0; i < lit.lamps.size(); i++) lit.world->set_lamp(int(i), lit.lamps[i]);
     lit.all = lit.lights;
+    if (lit.all.known)
+      lit.cells = std::make_shared<LampCells>(make_lamp_cells(*lit.world, *lit.all.known));
     lit.lights = relit(lit.all, *lit.world);
   }
   lit.truth = find_truth(*lit.world, lit.lights, lit.view, truths);

@@ -10,7 +10,6 @@
 #include "fuzz/spoken.h"
 #include "ledger/sums_file.h"
 #include "light/bake/map_file.h"
-#include "light/known/radiance_grid_file.h"
 #include "unit/avatar/load/vrm_person.h"
 #include "unit/denoise/tza.h"
 #include "unit/folder.h"
@@ -157,19 +156,8 @@ void write_kept(const Corpus& corpus) {
   const auto map = baked.map(2);
   save_map(baked.world, *map, corpus.folder.file("square.maps"), 1);
   save_bake(baked.bake, corpus.folder.file("square.bake"), 1);
-  RadianceGrid grid;
-  grid.keys.assign(16, 0), grid.light.assign(16, vec3(1)), grid.count.assign(16, 20);
-  grid.keys[3] = 77, grid.keeps = {1, 0};
-  auto parts = std::make_shared<RadianceGrid::Parts>();
-  parts->slots = {3}, parts->albedo = {vec3(0.5f)}, parts->light = {{vec3(1)}, {vec3(2)}};
-  grid.parts = parts;
-  auto lamps = std::make_shared<LampsSeen>();
-  lamps->keys.assign(16, 0), lamps->keys[2] = 5, lamps->shares.resize(16);
-  grid.lamps = lamps;
-  save_radiance_grid(grid, corpus.folder.file("square.grid"), 1);
   corpus.put_contents("cached_map", "square.maps");
   corpus.put_contents("cached_bake", "square.bake");
-  corpus.put_contents("cached_grid", "square.grid");
 }
 
 void write_speech(const Corpus& corpus) {

@@ -60,8 +60,8 @@ const may_enter = {
     instant: ['', 'walk', 'sample', 'material', 'random'],
     splat: ['', 'visible', 'known', 'walk', 'sample', 'material', 'random'],
     dynamic: ['', 'splat', 'visible', 'known', 'walk', 'sample', 'material', 'random'],
-    technique: ['', 'dynamic', 'splat', 'visible', 'instant', 'known', 'walk', 'sample', 'material',
-      'random'],
+    technique: ['', 'dynamic', 'splat', 'visible', 'instant', 'bake', 'known', 'walk', 'sample',
+      'material', 'random'],
   },
   cache: {
     '': [],

@@ -158,7 +158,9 @@ void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
     bool inside = false;
     if (leave(lit, sampler, walk)) {
       gather_light(scene, walk, sampler, found.light, inside);
-      if (scene.known) cut_off(most_brightness * scene.known->mean, found.light);
+      // Coarse light knows its mean only when it is whole.
+      if (scene.known && bake.refined > 0)
+        cut_off(most_brightness * scene.known->mean, found.light);
       if (!field.slope.empty()) {
         const vec3 slope = slope_of(walk.ray.direction, lit.surface.normal);
         for (size_t p = 0; p < found.light.size(); p++)
@@ -242,6 +244,12 @@ void refine(const BakeScene& scene, Bake& bake) {
   bake.direct = std::move(field);
 }
 
+void pass_tile(const BakeScene& scene, Bake& bake, uint32_t tile) {
+  LayerLight light(scene.layers());
+  sample_direct(scene, bake, tile, light);
+  for (int k = 0; k < gathers_a_pass; k++) sample_gather(scene, bake, tile, light);
+}
+
 // Tiles from `cursor` on; the next one, or their number.
 uint32_t do_step(const BakeScene& scene, Bake& bake) {
   const uint32_t tiles = bake.charts.tiles, first = bake.cursor;
@@ -252,13 +260,9 @@ uint32_t do_step(const BakeScene& scene, Bake& bake) {
   parallel_for(int(end - first), [&](int i) {
     const uint32_t tile = first + uint32_t(i);
     if (tile % shards != shard || bake.gather.tiles[tile].first == no_tile) return;
+    if (!pilot) return pass_tile(scene, bake, tile);
     LayerLight light(scene.layers());
-    if (pilot) {
-      while (bake.direct.asked[tile] < pilot_samples) sample_direct(scene, bake, tile, light);
-    } else {
-      sample_direct(scene, bake, tile, light);
-      for (int k = 0; k < gathers_a_pass; k++) sample_gather(scene, bake, tile, light);
-    }
+    while (bake.direct.asked[tile] < pilot_samples) sample_direct(scene, bake, tile, light);
   });
   return end;
 }
@@ -304,6 +308,37 @@ void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop
     if (!bake.pilot()) bake.passes++;
     else if (bake.refined++ < refine_rounds) refine(scene, bake);
   } while (!stop());
+}
+
+std::vector<uint32_t> find_tiles(const World& world, const Bake& bake, std::span<const Ray> rays) {
+  const IlluminationCharts& places = *bake.charts.places;
+  std::vector<uint32_t> tiles;
+  for (const Ray& ray : rays) {
+    const Hit hit = world.intersect(ray);
+    if (!hit.valid()) continue;
+    const bool front = dot(eval_face(world, hit.instance, hit.triangle), ray.direction) < 0;
+    const uint32_t found = places.find(hit.instance, hit.triangle, front);
+    if (found == no_chart) continue;
+    const IlluminationChart& chart = places.charts[found];
+    const vec2 at = place_in_chart(chart, ray.origin + hit.t * ray.direction);
+    const int column = glm::clamp(int(at.x), 0, chart.columns - 1),
+              row = glm::clamp(int(at.y), 0, chart.rows - 1);
+    const uint32_t tile = chart.first_tile + uint32_t(row * chart.columns + column);
+    if (bake.gather.tiles[tile].first != no_tile) tiles.push_back(tile);
+  }
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  return tiles;
+}
+
+bool go_ahead(const BakeScene& scene, Bake& bake, std::span<const uint32_t> tiles, uint32_t ahead) {
+  if (bake.pilot()) return false;
+  const uint64_t most = uint64_t(gathers_a_pass) * (bake.passes + ahead);
+  std::vector<uint32_t> behind;
+  for (uint32_t tile : tiles)
+    if (bake.gather.asked[tile] < most) behind.push_back(tile);
+  parallel_for(int(behind.size()), [&](int i) { pass_tile(scene, bake, behind[size_t(i)]); });
+  return !behind.empty();
 }
 
 void sample_fields(const BakeScene& scene, Bake& bake, int direct, int gather) {

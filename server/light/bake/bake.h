@@ -50,6 +50,12 @@ Bake begin_bake(const World& world, std::span<const vec3> places,
 // step is done.
 void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop);
 
+// Tiles of what eyes see by these rays (scene coordinates), each once.
+std::vector<uint32_t> find_tiles(const World& world, const Bake& bake, std::span<const Ray> rays);
+// Takes those of the tiles that are less than `ahead` passes ahead of the others one pass further.
+// False: there are none, or the bake is not refined yet.
+bool go_ahead(const BakeScene& scene, Bake& bake, std::span<const uint32_t> tiles, uint32_t ahead);
+
 // Some more samples of each node of either field, refined or not. All cores.
 void sample_fields(const BakeScene& scene, Bake& bake, int direct, int gather);
 

@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/random/place_key.h"
 #include "light/sample/illumination_map.h"
 #include "light/sample/light_tables.h"
-#include "light/sample/radiance_grid.h"
 #include "light/sample/shining.h"
 
 namespace wellspring {
 namespace {
 
-constexpr float noticed = 0.1f;   // change of light, of the brighter
-constexpr float darkest = 0.02f;  // reflectance by which light can be told
+constexpr float noticed = 0.1f;  // change of light, of the brighter
 constexpr size_t most_cells = 1 << 20;
 constexpr int never = 1 << 28;
 
@@ -28,48 +27,44 @@ bool differs(vec3 was, vec3 left, vec3 added) {
 Lights relit(const Lights& all, const World& world) {
   Lights lights = all;
   lights.tables = relit(*all.tables, world.scene(), find_emitting(world));
-  if (all.grid && all.grid->parts) lights.grid = relit(*all.grid, world.lamp_levels());
-  if (all.maps && all.maps->layers->size() > 1) lights.maps = relit(*all.maps, world.lamp_levels());
+  auto relight = [&](const std::shared_ptr<const IlluminationMap>& map) {
+    return map && map->layers->size() > 1 ? relit(*map, world.lamp_levels()) : map;
+  };
+  lights.maps = relight(all.maps);
+  lights.known = all.known == all.maps ? lights.maps : relight(all.known);
   lights.pass = nullptr;
   return lights;
 }
 
-LightChange::LightChange(const Scene& scene, const Lights& all, std::span<const LampLevel> before,
+LightChange::LightChange(const Scene& scene, const Lights& all,
+                         std::shared_ptr<const LampCells> cells, std::span<const LampLevel> before,
                          std::span<const LampLevel> after) {
   if (std::equal(before.begin(), before.end(), after.begin(), after.end())) return;
-  if (!all.grid || !all.grid->parts) {
-    everywhere_ = true;
-    return;
-  }
-  grid_ = all.grid;
-  const RadianceGrid& grid = *grid_;
-  const RadianceGrid::Parts& parts = *grid.parts;
-  known_of_.assign(grid.keys.size(), 0);
-  known_.resize(1);
-  for (size_t i = 0; i < parts.slots.size(); i++) {
-    uint32_t slot = parts.slots[i];
-    if (grid.count[slot] < enough_grid_samples) continue;
-    Known k{parts.light[0][i], parts.light[0][i], vec3(0), parts.albedo[i], grid.count[slot]};
+  everywhere_ = !cells;
+  if (everywhere_) return;
+  exact_ = std::move(cells);
+  for (size_t i = 0; i < exact_->cells.size(); i++) {
+    const vec3 always = exact_->light[0][i];
+    Known k{always, always, vec3(0), exact_->weight[i]};
     for (size_t lamp = 0; lamp < before.size(); lamp++) {
-      vec3 more = parts.light[lamp + 1][i];
+      vec3 more = exact_->light[lamp + 1][i];
       const float was = brightness_of(before[lamp]), is = brightness_of(after[lamp]);
       k.was += was * more;
       k.left += std::min(was, is) * more;
       k.added += std::max(is - was, 0.0f) * more;
     }
     k.changes = differs(k.was, k.left, k.added);
-    known_of_[slot] = uint32_t(known_.size());
     known_.push_back(k);
     if (!k.changes) continue;
-    vec3 corner = grid.cell * vec3(grid_place(grid, slot));
+    vec3 corner = exact_->cell * vec3(place_of_key(exact_->cells[i]));
     box_.low = glm::min(box_.low, corner);
-    box_.high = glm::max(box_.high, corner + grid.cell);
+    box_.high = glm::max(box_.high, corner + exact_->cell);
   }
   fill_cells(scene, all, before, after);
   guess_unknown();
 }
 
-// Coarser cells than cached radiance's, without sides, so that few are unknown.
+// Coarser cells, without sides, so that few are unknown.
 void LightChange::fill_cells(const Scene& scene, const Lights& all,
                              std::span<const LampLevel> before, std::span<const LampLevel> after) {
   std::vector<char> switched(scene.materials.size(), 0);
@@ -82,25 +77,24 @@ void LightChange::fill_cells(const Scene& scene, const Lights& all,
       for (vec3 corner : {e.corner, e.corner + e.edge1, e.corner + e.edge2})
         if (is_finite(corner)) emitting.push_back(corner);
   for (vec3 corner : emitting) {
-    box_.low = glm::min(box_.low, corner - grid_->cell);
-    box_.high = glm::max(box_.high, corner + grid_->cell);
+    box_.low = glm::min(box_.low, corner - exact_->cell);
+    box_.high = glm::max(box_.high, corner + exact_->cell);
   }
   if (!(box_.low.x <= box_.high.x)) return;  // nothing to speak of, anywhere
-  for (cell_ = 2 * grid_->cell;; cell_ *= 2) {
+  for (cell_ = 2 * exact_->cell;; cell_ *= 2) {
     vec3 cells = (box_.high - box_.low) / cell_ + 1.0f;
     size_ = glm::ivec3(glm::min(cells, vec3(most_cells)));
     if (double(size_.x) * size_.y * size_.z <= double(most_cells)) break;
   }
   cells_.resize(size_t(size_.x) * size_t(size_.y) * size_t(size_.z));
   for (vec3 corner : emitting) cells_[cell_at(corner)].changes = true;
-  for (uint32_t slot : grid_->parts->slots) {
-    if (known_of_[slot] == 0) continue;
-    vec3 middle = grid_->cell * (vec3(grid_place(*grid_, slot)) + 0.5f);
+  for (size_t i = 0; i < known_.size(); i++) {
+    const vec3 middle = exact_->cell * (vec3(place_of_key(exact_->cells[i])) + 0.5f);
     if (!(middle == glm::clamp(middle, box_.low, box_.high))) continue;
-    const Known& k = known_[known_of_[slot]];
+    const Known& k = known_[i];
     Known& cell = cells_[cell_at(middle)];
     cell.was += k.weight * k.was, cell.left += k.weight * k.left, cell.added += k.weight * k.added;
-    cell.albedo += k.weight * k.albedo, cell.weight += k.weight;
+    cell.weight += k.weight;
     cell.changes |= k.changes;
   }
 }
@@ -159,13 +153,13 @@ bool LightChange::changes(vec3 place, vec3 normal, vec3& kept, vec3& added) cons
   if (everywhere_) return true;
   if (cells_.empty() || !(place == glm::clamp(place, box_.low, box_.high))) return false;
   const Known& cell = cells_[cell_at(place)];
-  uint32_t exactly = known_of_[find_grid_slot(*grid_, place, normal)];
-  const Known& k = exactly ? known_[exactly] : cell;
-  if (exactly ? !k.changes : !cell.changes) return false;
-  const float weight = exactly ? 1 : cell.weight;
+  const uint32_t exactly = find_lamp_cell(*exact_, place, normal);
+  const Known& k = exactly != no_lamp_cell ? known_[exactly] : cell;
+  if (!k.changes) return false;
+  const float weight = exactly != no_lamp_cell ? 1 : cell.weight;
   for (int c = 0; c < 3; c++) {
     if (k.was[c] > 0) kept[c] = std::min(k.left[c] / k.was[c], 1.0f);
-    if (k.albedo[c] > darkest * weight) added[c] = k.added[c] / k.albedo[c];
+    if (weight > 0) added[c] = k.added[c] / weight;
   }
   return true;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "light/known/lamp_cells.h"
 #include "light/sample/lights.h"
 
 namespace wellspring {
@@ -16,22 +17,22 @@ namespace wellspring {
 Lights relit(const Lights& all, const World& world);
 
 // Where light changes by more than a tenth between two states of the lamps, and what becomes of it,
-// as cached radiance knows it; of places that it does not know it is guessed by the nearest.
-// Without cached radiance: everywhere, and nobody knows how. Made in milliseconds, asked in
+// as cells of each lamp's light know it; of places that these do not know it is guessed by the
+// nearest. Without cells: everywhere, and nobody knows how. Made in milliseconds, asked in
 // nanoseconds.
 class LightChange {
  public:
-  // `all`: as for relit().
-  LightChange(const Scene& scene, const Lights& all, std::span<const LampLevel> before,
-              std::span<const LampLevel> after);
+  // `all`: as for relit(). `cells` may be null.
+  LightChange(const Scene& scene, const Lights& all, std::shared_ptr<const LampCells> cells,
+              std::span<const LampLevel> before, std::span<const LampLevel> after);
   // At a surface (scene coordinates): of the light that fell there `kept` is left, and `added` is
   // new, both of which stay as they are where nothing is known. Thread-safe.
   bool changes(vec3 place, vec3 normal, vec3& kept, vec3& added) const;
 
  private:
-  struct Known {  // light scattered before, what of it is left, what is new; and reflectance; each
-                  // times its weight
-    vec3 was{0}, left{0}, added{0}, albedo{0};
+  struct Known {  // light that fell there before, what of it is left, what is new; each times its
+                  // weight
+    vec3 was{0}, left{0}, added{0};
     float weight = 0;
     bool changes = false;  // here, or of guessed ones where they were guessed from
   };
@@ -43,10 +44,9 @@ class LightChange {
   size_t index_of(glm::ivec3 cell) const;
   size_t cell_at(vec3 place) const;  // in the box
   bool everywhere_ = false;
-  std::shared_ptr<const RadianceGrid> grid_;
-  std::vector<uint32_t> known_of_;  // of the grid's slots; 0: too little is known
-  std::vector<Known> known_;
-  Bounds box_;  // around all that changes; of coarser cells:
+  std::shared_ptr<const LampCells> exact_;
+  std::vector<Known> known_;  // of each of their cells
+  Bounds box_;                // around all that changes; of coarser cells:
   float cell_ = 1;
   glm::ivec3 size_{0};
   std::vector<Known> cells_;

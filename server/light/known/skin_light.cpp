@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "base/spread.h"
 #include "light/walk/first_surface.h"
-#include "light/sample/radiance_grid.h"
+#include "light/sample/lamps_seen.h"
 
 namespace wellspring {
 namespace {
@@ -269,11 +269,10 @@ int update_skin(const World& world, const Lights& lights, const SkinUpdate& upda
   if (skin.places.empty()) return 0;
   std::vector<Asked> asked;
   choose(world, update, skin, asked);
-  const LampsSeen* lamps = lights.grid ? lights.grid->lamps.get() : nullptr;
-  const Transport transport{world, *lights.tables, lights.grid.get(), lamps};
+  const Transport transport{world, *lights.tables, lights.known.get(), lights.lamps_seen.get()};
   WalkRules rules;
   rules.max_depth = update.transport.max_depth;
-  if (lights.grid) rules.blunt = gather_blunt;
+  if (lights.known) rules.blunt = gather_blunt;
   std::vector<Answer> answers(asked.size());
   parallel_ranges(int(asked.size()), 64, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {

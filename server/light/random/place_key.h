@@ -2,8 +2,6 @@
 // Cells of space and of a surface's main direction, by which light at places is remembered in hash
 // tables (Binder, Fricke, Keller 2019, "Massively Parallel Path Space Filtering", section 3).
 #pragma once
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -25,6 +23,12 @@ inline uint64_t place_key(vec3 position, vec3 normal, float cell) {
          1;
 }
 
+// Whose corners are `cell` times this and one more.
+inline glm::ivec3 place_of_key(uint64_t key) {
+  auto part = [&](int shift) { return int(key >> (shift + 1) & 0xfffff) - (1 << 19); };
+  return {part(40), part(20), part(0)};
+}
+
 // The slot of `key` in an open-addressed table with linear probing: the one that holds it, or the
 // free one (0) where it would be put. As many `keys` as a power of two, at least one of them free.
 inline uint32_t find_place_slot(std::span<const uint64_t> keys, uint64_t key) {
@@ -32,12 +36,6 @@ inline uint32_t find_place_slot(std::span<const uint64_t> keys, uint64_t key) {
   uint32_t slot = uint32_t(mix64(key)) & mask;
   while (keys[slot] != 0 && keys[slot] != key) slot = (slot + 1) & mask;
   return slot;
-}
-
-// Whether a table that was read can be asked: else a look-up would not end.
-inline bool is_place_table(std::span<const uint64_t> keys) {
-  return std::has_single_bit(keys.size()) && keys.size() <= (size_t(1) << 31) &&
-         std::find(keys.begin(), keys.end(), 0) != keys.end();
 }
 
 }  // namespace wellspring

@@ -79,14 +79,32 @@ void walk_once(const Transport& transport, const LampsSeen& seen, const std::vec
   }
 }
 
+float choose_cell(const World& world, std::span<const vec3> places, uint64_t seed) {
+  std::vector<float> lengths;
+  for (size_t i = 0; i < places.size(); i++)
+    for (uint32_t j = 0; j < 128; j++) {
+      Sampler sampler(sample_seed(seed, uint32_t(i), j, 0));
+      Ray ray;
+      ray.origin = places[i];
+      ray.direction = sample_sphere(sampler.next2());
+      const Hit hit = world.intersect(ray);
+      if (hit.valid()) lengths.push_back(hit.t);
+    }
+  if (lengths.empty()) return 1;
+  const auto median = lengths.begin() + long(lengths.size() / 2);
+  std::nth_element(lengths.begin(), median, lengths.end());
+  return std::max(*median / 12, 1e-6f);
+}
+
 }  // namespace
 
 std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
-                                                  std::span<const vec3> places, float cell,
+                                                  std::span<const vec3> places,
                                                   const LampsSeenSettings& settings) {
   if (transport.tables.few_punctual.count < 2 || places.empty()) return nullptr;
   auto seen = std::make_shared<LampsSeen>();
-  seen->cell = cell;
+  seen->cell =
+      settings.cell > 0 ? settings.cell : choose_cell(transport.world, places, settings.seed);
   seen->keys.assign(table_size, 0);
   std::vector<Tally> tallies(table_size);
   std::vector<Visit> visits;

@@ -28,13 +28,14 @@ struct LampsSeen {
 
 struct LampsSeenSettings {
   int walks = 1 << 16;
+  float cell = 0;  // metres; 0: a twelfth of the median free view from the places
   uint64_t seed = 1;
 };
 
 // For eyes near `places` (scene coordinates). Null where the scene's lamps are one, none or too
 // many. All cores, less than a second; the same whatever the thread count.
 std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
-                                                  std::span<const vec3> places, float cell,
+                                                  std::span<const vec3> places,
                                                   const LampsSeenSettings& settings = {});
 
 // Null: nobody has been there. `normal`: the geometric one, on the side that is looked at.

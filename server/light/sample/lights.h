@@ -12,9 +12,9 @@ namespace wellspring {
 
 struct IlluminationMap;  // light/sample/illumination_map.h
 struct InstantPass;      // light/instant/instant_pass.h
+struct LampsSeen;        // light/sample/lamps_seen.h
 struct LightTables;      // light/sample/light_tables.h
 struct SplatPass;        // light/splat/splat_technique.h
-struct RadianceGrid;     // light/sample/radiance_grid.h
 struct EmittingSources;  // light/sample/emitting.h
 struct TransportPlan;    // light/transport_plan.h
 
@@ -22,10 +22,12 @@ struct Lights {
   std::shared_ptr<const LightTables> tables;
   // NaN, infinite or negative samples that were dropped instead of reaching a Frame.
   std::shared_ptr<std::atomic<uint64_t>> bad_samples;
-  // Of techniques that keep light; null until they prepare it.
-  std::shared_ptr<const RadianceGrid> grid = nullptr;
-  // Diffuse light of what stands still, baked; null: none is known. Of techniques that use it.
-  std::shared_ptr<const IlluminationMap> maps = nullptr;
+  // Diffuse light of what stands still. Walks of techniques that keep light end on `known`, which
+  // they prepare where there is none; samples of techniques with `uses_maps` tell the diffuse light
+  // of a first surface in multiples of `maps`. Null: none is known.
+  std::shared_ptr<const IlluminationMap> known = nullptr, maps = nullptr;
+  // Which of few lamps places see; null where nobody has learned it.
+  std::shared_ptr<const LampsSeen> lamps_seen = nullptr;
   // Of techniques that draw light anew for each pass; null until one begins.
   std::shared_ptr<const InstantPass> pass = nullptr;
   std::shared_ptr<const SplatPass> splat_pass = nullptr;

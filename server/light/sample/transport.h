@@ -8,15 +8,14 @@ class World;
 struct IlluminationMap;  // light/sample/illumination_map.h
 struct LampsSeen;        // light/sample/lamps_seen.h
 struct LightTables;      // light/sample/light_tables.h
-struct RadianceGrid;     // light/sample/radiance_grid.h
 
 // Everything a sample needs to know of what stays the same during a call.
 struct Transport {
   const World& world;
   const LightTables& tables;
-  const RadianceGrid* grid = nullptr;     // light that stays, where a technique may use it
-  const LampsSeen* lamps = nullptr;       // what weighs the choice among few lamps, where known
-  const IlluminationMap* maps = nullptr;  // by which samples tell the diffuse light they find
+  const IlluminationMap* known = nullptr;  // on which walks end, where a technique may use it
+  const LampsSeen* lamps = nullptr;        // what weighs the choice among few lamps, where known
+  const IlluminationMap* maps = nullptr;   // by which samples tell the diffuse light they find
 };
 
 }  // namespace wellspring

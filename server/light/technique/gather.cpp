@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Technique `gather`: path tracing whose walks end where a wide ray meets light that is already
-// known (RadianceGrid). Static light and geometry make that light worth keeping; one gathering
-// bounce hides its cells. Without a grid it is `path`.
-#include "light/known/fill_radiance_grid.h"
-#include "light/known/lamps.h"
+// Technique `gather`: path tracing whose walks end where light is known (IlluminationMap). One
+// gathering bounce hides the map's nodes. Where nothing is known it is `path`.
+#include <optional>
+
+#include "light/bake/coarse_light.h"
 #include "light/sample/finish_samples.h"
+#include "light/sample/lamps_seen.h"
 #include "light/sample/light_tables.h"
-#include "light/sample/radiance_grid.h"
 #include "light/technique/technique_list.h"
 #include "light/walk/walk.h"
 
@@ -22,11 +22,11 @@ void trace_many_gather(const World& world, const Lights& lights, const Transport
                        std::span<const Request> requests, std::span<Sample> samples) {
   WalkRules rules;
   rules.max_depth = settings.max_depth;
-  if (lights.grid) rules.blunt = blunt;
+  if (lights.known) rules.blunt = blunt;
   rules.reads_maps = true;
-  const LampsSeen* lamps = lights.grid ? lights.grid->lamps.get() : nullptr;
-  trace_samples({world, *lights.tables, lights.grid.get(), lamps, lights.maps.get()}, rules,
-                requests, samples);
+  trace_samples(
+      {world, *lights.tables, lights.known.get(), lights.lamps_seen.get(), lights.maps.get()},
+      rules, requests, samples);
   finish_samples(lights, settings, samples);
 }
 
@@ -38,10 +38,13 @@ Sample trace_gather(const World& world, const Lights& lights, const TransportSet
 }
 
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {
-  if (!lights.tables->plan.uses(TransportPart::cached_radiance)) return;
-  std::vector<std::shared_ptr<const LightTables>> parts;
-  if (!world.scene().lamps.empty()) parts = make_lamp_tables(*lights.tables, world.scene());
-  lights.grid = make_radiance_grid({world, *lights.tables}, places, {}, parts);
+  if (!lights.tables->plan.uses(TransportPart::kept_light)) return;
+  lights.lamps_seen = learn_lamps_seen({world, *lights.tables}, places);
+  if (lights.known || places.empty()) return;
+  // What moves would leave its shadow in light that is kept.
+  std::optional<World> still;
+  if (size_t(world.instance_count()) > world.scene().instances.size()) still.emplace(world.scene());
+  lights.known = make_bake_scene(still ? *still : world, places).known;
 }
 
 }  // namespace wellspring

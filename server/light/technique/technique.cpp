@@ -24,7 +24,7 @@ constexpr Technique list[] = {
     {"direct", "emission, direct light and chains of perfect mirrors and glass", trace_direct,
      nullptr, nullptr, nullptr, trace_many_direct},
     {"gather",
-     "path to the first rough surface beyond the eye's, cached radiance from there: quick, "
+     "path to the first rough surface beyond the eye's, kept light from there: quick, "
      "a little biased",
      trace_gather, prepare_gather, nullptr, nullptr, trace_many_gather, true},
     {"instant_radiosity",

@@ -3,10 +3,15 @@
 
 #include <algorithm>
 
+#include "light/material/bsdf.h"
+#include "light/material/microfacet.h"
+#include "light/sample/light_tables.h"
+
 namespace wellspring {
 namespace {
 
 constexpr float near_radii = 2.5f;  // of the sphere around what moves: it takes a tenth of the sky
+constexpr float sharp_alpha = 0.09f;  // a roughness of 0.3
 
 // Whether the line from `a` to `b`, or on and on towards `b`, passes the sphere.
 bool passes(vec3 a, vec3 b, bool endless, vec3 centre, float radius) {
@@ -59,6 +64,31 @@ KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hi
   known.light *= eval_slope(slope, eval_mesh_normal(transport.world, hit, surface), surface.normal);
   known.unit = known_light(maps, known.light);
   return known;
+}
+
+bool find_kept_light(const Transport& transport, const Ray& ray, const Hit& hit, bool sharp,
+                     vec3& light) {
+  if (!transport.known) return false;
+  const IlluminationMap& map = *transport.known;
+  const uint32_t chart = find_chart(map, transport.world, ray, hit);
+  if (chart == no_chart) return false;
+  const vec3 place = ray.origin + hit.t * ray.direction;
+  if (sharp && may_be_shaded(transport, place)) return false;
+  light = eval_illumination(map, map.places->charts[chart], place);
+  return true;
+}
+
+// Gloss that is not followed reflects light that is as bright all around.
+vec3 reflect_kept_light(Bsdf& bsdf, bool& goes_on) {
+  goes_on = bsdf.alpha < sharp_alpha && has_specular(bsdf);
+  vec3 reflected = bsdf.diffuse * bsdf.coat_passes;
+  if (!goes_on)
+    reflected += bsdf.metallic * fresnel_schlick(bsdf.metal, bsdf.view.z) +
+                 vec3((1 - bsdf.metallic) * (1 - bsdf.coat_passes));
+  reflected *= bsdf.beneath;
+  bsdf.diffuse = vec3(0);
+  bsdf.diffuse_share = 0;
+  return reflected;
 }
 
 bool may_be_shaded(const Transport& transport, vec3 position) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A first surface's diffuse light, as an illumination map knows it.
+// Diffuse light of surfaces as an illumination map knows it: of a first surface, and of those on
+// which walks end.
 #pragma once
 #include "light/sample/illumination_map.h"
-#include "light/walk/walk.h"
+#include "light/material/bsdf_types.h"
+#include "light/sample.h"
+#include "light/sample/transport.h"
 
 namespace wellspring {
 
@@ -22,6 +25,14 @@ KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hi
 // The same as it falls on the surface's own normal, which a map of normals may have turned.
 KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
                             const Surface& surface);
+// Light on which a ray in air may end, as it falls on what that has met (irradiance over pi).
+// `sharp`: shadows of what moves would be seen. False: nothing is known there.
+bool find_kept_light(const Transport& transport, const Ray& ray, const Hit& hit, bool sharp,
+                     vec3& light);
+// What a surface sends back of such light, times that. A sharp gloss goes on: `bsdf` then keeps its
+// gloss alone.
+vec3 reflect_kept_light(Bsdf& bsdf, bool& goes_on);
+
 // Whether something that moves may change the light there by more than a little: it is near, or
 // close to the way from a punctual light.
 bool may_be_shaded(const Transport& transport, vec3 position);

@@ -9,7 +9,6 @@
 #include "light/walk/first_surface.h"
 #include "light/walk/known_light.h"
 #include "light/material/lambert_simd.h"
-#include "light/sample/radiance_grid.h"
 #include "light/random/sampler_simd.h"
 #include "world/packet_simd.h"
 #include "world/surface_simd.h"
@@ -265,18 +264,7 @@ bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, LambertWalks&
   const Hit& hit = walks.hits[i];
   if (!hit.valid() && !sky) return false;
   bool lambertian = hit.valid() && met_lambertian(transport, hit);
-  vec3 kept;
-  if (lambertian && transport.grid) {
-    Ray ray;
-    ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
-    ray.direction = walks.direction.at(i);
-    float footprint = hit.t / std::sqrt(walks.pdf[i]);
-    if (eval_grid(*transport.grid, transport.world, ray, hit, footprint, kept)) {
-      walks.smooth.set(i, walks.smooth.at(i) + walks.throughput.at(i) * kept);
-      return false;
-    }
-  }
-  if (lambertian)
+  if (lambertian && !transport.known)
     return walks.depth[i] <= batch.rules.scatterings && walks.depth[i] < batch.rules.max_depth;
   Sampler sampler = walks.samplers.at(i);
   sampler.seek(dimensions_of(walks.depth)[i]);

@@ -7,12 +7,13 @@
 #include "light/material/bsdf_frame.h"
 #include "light/material/bsdf_gloss.h"
 #include "light/walk/part_colors.h"
-#include "light/sample/radiance_grid.h"
+#include "light/walk/known_light.h"
 #include "light/random/warp.h"
 
 namespace wellspring {
 namespace {
 
+constexpr float wide = 1;           // density of rays among which shadows of what moves are lost
 constexpr int mirrored_depth = 12;  // chains of perfect mirrors and glass that are never cut short
 
 // Russian roulette: survivors carry the share of those that stop. False: this one stops.
@@ -200,6 +201,11 @@ void make_blunt(const WalkRules& rules, const Walk& walk, Surface& surface) {
   surface.clearcoat_roughness = std::max(surface.clearcoat_roughness, std::sqrt(alpha));
 }
 
+bool may_end(const Transport& transport, const Walk& walk, const Hit& hit, vec3& light) {
+  const bool sharp = walk.pdf <= 0 || walk.pdf > wide;
+  return walk.media.here.count == 0 && find_kept_light(transport, walk.ray, hit, sharp, light);
+}
+
 // One step of the walk at a Lambertian surface. False: it ends here.
 bool scatter_lambert(const Transport& transport, const WalkRules& rules, Walk& walk, const Hit& hit,
                      uint32_t base, Sampler& sampler, vec3& radiance) {
@@ -208,6 +214,10 @@ bool scatter_lambert(const Transport& transport, const WalkRules& rules, Walk& w
   LambertSurface surface = eval_lambert_surface(transport.world, walk.ray, hit);
   LambertLobe lobe = make_lambert(surface, walk.ray.direction);
   if (!(max_component(lobe.reflectance) > 0)) return false;
+  if (vec3 light; may_end(transport, walk, hit, light)) {
+    radiance += walk.throughput * lobe.reflectance * light;
+    return false;
+  }
   walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
   sampler.seek(base);
   radiance += walk.throughput * lobe.reflectance *
@@ -232,10 +242,6 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
   const uint32_t block = sampler.drawn;
   for (uint32_t base = block;; base += Dimensions::surface, hit = world.intersect(walk.ray)) {
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
-    vec3 kept;
-    if (transport.grid && walk.pdf > 0 && walk.media.here.count == 0 &&
-        eval_grid(*transport.grid, world, walk.ray, hit, hit.t / std::sqrt(walk.pdf), kept))
-      return radiance + walk.throughput * kept;
     if (met_lambertian(transport, hit)) {
       if (!scatter_lambert(transport, rules, walk, hit, base, sampler, radiance)) return radiance;
       continue;
@@ -260,6 +266,11 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     if (rules.blunt > 0) make_blunt(rules, walk, surface);
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
     if (last && !is_clear_solid(bsdf)) return radiance;
+    if (vec3 light; may_end(transport, walk, hit, light)) {
+      bool goes_on;
+      radiance += walk.throughput * reflect_kept_light(bsdf, goes_on) * light;
+      if (!goes_on) return radiance;
+    }
     std::optional<WavelengthSpread> spread;
     part_colors(transport, walk, surface, base, sampler, bsdf, spread);
     bool smooth = is_smooth(bsdf);

@@ -229,6 +229,9 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   if (seen) visitor.looks.seen = seen, visitor.looks.seen_at = job.time;
   // Else its keyframe has the colours.
   if (!job.keep) std::swap(show.renderer.work.picture, picture.image);
+  if (std::exchange(picture.fades_next, false) && job.keep && !picture.keyframe.empty() &&
+      picture.keyframe.view == show.renderer.work.keyframe.view)
+    begin_fade(picture.keyframe, show.time, picture.fade);
   std::swap(show.renderer.work.keyframe, picture.keyframe);
   picture.around.drawn = false;
   if (job.passing || job.dynamic.empty()) picture.surfaces = {}, picture.settled = {};

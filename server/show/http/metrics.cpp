@@ -95,7 +95,8 @@ std::string write_metrics(const ShowReport& report) {
   add_metric(out, "illumination_map_error",
              "Their estimated standard error over their mean light; 1: there are none",
              double(report.map_error));
-  add_metric(out, "bake_working", "Maps are being baked at the moment", report.bake.works);
+  add_metric(out, "bake_working", "Maps are being baked on all cores at the moment",
+             report.bake.works);
   add_metric(out, "bake_passes_total", "Passes over all texels so far", double(report.bake.passes));
   add_metric(out, "bake_error", "Estimated error of what is baked so far; 1: nothing is",
              double(report.bake.error));

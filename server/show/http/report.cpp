@@ -41,6 +41,7 @@ ShowReport make_report(const Show& show) {
     report.map_error = maps->error;
     report.map_texels = maps->nodes.light.size();
   }
+  report.light_problem = show.light_problem;
   if (show.baker) report.bake = show.baker->status();
   for (const Kiosk& kiosk : show.kiosks) {
     report.kiosks.push_back({kiosk.settings.name, kiosk.stage.now, kiosk.audience.guests.size(),

@@ -75,6 +75,7 @@ struct ShowReport {
   const char* display = "points";  // how visitors' pictures get their diffuse light
   float map_error = 1;             // of the illumination maps in use; 1: there are none
   size_t map_texels = 0;
+  std::string light_problem;  // of the package's own light; empty: none
   BakerStatus bake;
   bool voice_running = false;
   uint64_t voice_restarts = 0, voice_lines = 0, voice_waiting = 0, voice_failed = 0;

@@ -24,7 +24,7 @@ struct GivenUp {};
 
 StillRoom::StillRoom(const Show& show, std::function<double()> clock)
     : exhibit_(show.exhibit),
-      technique_(show.lights.grid ? show.technique : show.still_technique),
+      technique_(show.lights.known ? show.technique : show.still_technique),
       transport_(show.settings.transport),
       weights_(show.settings.weights),
       clock_(std::move(clock)) {
@@ -49,8 +49,10 @@ StillRoom::StillRoom(const Show& show, std::function<double()> clock)
       moving_lights.back().intensity *= brightness_of(levels[size_t(light.lamp)]);
   }
   lights_ = make_lights(*world_, moving_lights);
-  lights_.grid = show.lights.grid;
-  if (!lights_.grid) transport_.clamp = 0;  // it is the reference
+  lights_.lamps_seen = show.lights.lamps_seen;
+  const bool switched = !levels.empty() && show.switches.all.known;
+  lights_.known = switched ? relit(*show.switches.all.known, levels) : show.lights.known;
+  if (!lights_.known) transport_.clamp = 0;  // it is the reference
 }
 
 // One sample a pixel, and as many more as there is time for by what that took.

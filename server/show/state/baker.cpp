@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
+#include <oneapi/tbb/task_arena.h>
+#include <pthread.h>
 
 #include "base/cancel.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "light/bake/bake_file.h"
-#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 
@@ -20,6 +20,25 @@ namespace {
 constexpr double look_every = 0.05, save_every = 120, at_a_time = 1;  // seconds
 constexpr float worth_showing = 0.15f;  // error; above it points say more
 constexpr float better = 0.97f;         // of the last error
+constexpr uint32_t ahead = 16;          // passes, of what visitors look at
+
+// Does the work on all cores, or on a thread to which others leave what they do not need.
+template <class Work>
+void work_on(BakerCores cores, const Work& work) {
+  if (cores == BakerCores::all) return work();
+  std::exception_ptr failure;
+  std::thread([&, token = cancel_token()] {
+    const CancelScope scope(token);
+    const sched_param lowest{};
+    pthread_setschedparam(pthread_self(), SCHED_IDLE, &lowest);  // refused: only less polite
+    try {
+      tbb::task_arena(1).execute(work);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  }).join();
+  if (failure) std::rethrow_exception(failure);
+}
 
 }  // namespace
 
@@ -46,9 +65,24 @@ BakerStatus Baker::status() const {
 }
 
 bool Baker::wait_until_allowed(const std::stop_token& end) {
-  while (!allowed_ && !end.stop_requested())
+  while (cores_ == BakerCores::none && !end.stop_requested())
     std::this_thread::sleep_for(std::chrono::duration<double>(look_every));
   return !end.stop_requested();
+}
+
+void Baker::look(std::vector<Ray> rays) {
+  std::lock_guard lock(mutex_);
+  looks_ = std::move(rays);
+}
+
+// False: what visitors look at needs nothing before the rest.
+bool Baker::go_ahead_where_looked(const BakeScene& scene, Bake& bake) {
+  std::vector<Ray> rays;
+  {
+    std::lock_guard lock(mutex_);
+    rays = looks_;
+  }
+  return !rays.empty() && go_ahead(scene, bake, find_tiles(scene.world, bake, rays), ahead);
 }
 
 // Where it is better than what is shown.
@@ -64,13 +98,6 @@ void Baker::publish(const World& world, Bake& bake, uint64_t key, float& shown) 
 
 void Baker::live(const std::stop_token& end) {
   const World world(scene_);
-  std::optional<BakeScene> scene;
-  if (settings_.shown_error >= 1) {
-    // Nothing is known: coarse light is there in seconds, whoever needs the cores.
-    scene.emplace(make_bake_scene(world, settings_.places));
-    std::lock_guard lock(mutex_);
-    found_ = scene->known;
-  }
   if (!wait_until_allowed(end)) return;
   const uint64_t key = hash_scene(scene_);
   const std::string file = settings_.file + ".bake";
@@ -93,17 +120,22 @@ void Baker::live(const std::stop_token& end) {
   };
   tell(false);
   if (error <= settings_.least_error) return;
-  if (!scene) scene.emplace(make_bake_scene(world, settings_.places));
+  BakeScene scene = make_bake_scene_of_paths(world);
+  scene.known = settings_.known;
   while (wait_until_allowed(end) && error > settings_.least_error) {
-    tell(true);
     const double began = seconds_now();
-    go_on(*scene, bake,
-          [&] { return !allowed_ || end.stop_requested() || seconds_now() - began > at_a_time; });
-    if (!bake.pilot() && bake.passes > 1) error = bake_error(bake);
-    if (!bake.pilot() && bake.passes >= next) {
+    const BakerCores cores = cores_;
+    tell(cores == BakerCores::all);
+    auto stop = [&] {
+      return cores_ != cores || end.stop_requested() || seconds_now() - began > at_a_time;
+    };
+    work_on(cores, [&] {
+      if (cores == BakerCores::all || !go_ahead_where_looked(scene, bake)) go_on(scene, bake, stop);
+      if (!bake.pilot() && bake.passes > 1) error = bake_error(bake);
+      if (bake.pilot() || bake.passes < next) return;
       publish(world, bake, key, shown);
       next = 2 * bake.passes;
-    }
+    });
     if (seconds_now() - saved > save_every) {
       if (!save_bake(bake, file, key)) log::warn("{} cannot be written", file);
       saved = seconds_now();

@@ -16,7 +16,8 @@ const LightChange& change_between(Show& show, const LampLevels& before, const La
   for (const LightStep& step : switches.steps)
     if (step.before == before && step.after == after) return step.change;
   switches.steps.push_back(
-      {before, after, LightChange(show.exhibit.scene, switches.all, before, after)});
+      {before, after,
+       LightChange(show.exhibit.scene, switches.all, switches.cells, before, after)});
   return switches.steps.back().change;
 }
 
@@ -38,7 +39,6 @@ void switch_world(Show& show, const LampLevels& lamps) {
 }
 
 void look_anew(VisitorPicture& picture) {
-  picture.around.keyframe = {}, picture.fade = {};  // they show another light
   picture.rest = {};
   picture.stats.converged = 0;  // who rests looks again,
   picture.job.settled = false;  // and first at what is soon to be known
@@ -62,6 +62,7 @@ void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   }
   for (Visitor& visitor : show.visitors) {
     look_anew(visitor.picture);
+    visitor.picture.fades_next = true;
     if (!first) continue;
     // Points know their light by itself, not in multiples of what maps know.
     visitor.picture.cache.clear();
@@ -69,10 +70,18 @@ void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   }
 }
 
+void use_better_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
+  (show.exhibit.lamps.empty() ? show.lights : show.switches.all).known = maps;
+  use_maps(show, std::move(maps));
+}
+
 void begin_lamps(Show& show) {
   show.switches.wanted = first_lamps(show.exhibit);
   if (show.exhibit.lamps.empty()) return;
   show.switches.all = show.lights;
+  if (show.lights.known)
+    show.switches.cells =
+        std::make_shared<LampCells>(make_lamp_cells(*show.world, *show.lights.known));
   switch_world(show, first_levels(show.exhibit));
   show.lights = relit(show.switches.all, *show.world);
 }
@@ -142,6 +151,7 @@ void light_lamps(Show& show, Visitor& visitor) {
   lamps.lit_hour = hour_of(show, visitor);
   if (first) return;
   lamps.lit_at = show.time;
+  visitor.picture.around.keyframe = {}, visitor.picture.fade = {};  // they show another light
   look_anew(visitor.picture);
 }
 

@@ -18,8 +18,10 @@
 
 namespace wellspring {
 
-// Maps of the exhibit's scene, of all lamps, from now on. While nothing is drawn.
+// Pictures show maps of all lamps from now on. While nothing is drawn.
 void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
+// The same of maps of the scene as it is: walks end on them, too.
+void use_better_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
 // Puts the lamps as they are at first. show.lights were made, and are prepared, while all were
 // full.
 void begin_lamps(Show& show);

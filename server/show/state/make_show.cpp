@@ -8,10 +8,8 @@
 #include "light/bake/bake_file.h"
 #include "light/bake/map_file.h"
 #include "light/sample/light_tables.h"
-#include "light/known/radiance_grid_file.h"
 #include "show/moving/exhibit_scene.h"
 #include "show/exhibit/eye_places.h"
-#include "show/exhibit/fingerprint.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_world.h"
 
@@ -45,25 +43,6 @@ void change_storyteller(const Show& show, Teller& teller, size_t storyteller_ind
 
 namespace {
 
-// What techniques must know before the first sample: a radiance grid, if anything, which is the
-// same at every start.
-void prepare(Show& show) {
-  const std::string& cache = show.settings.cache;
-  const std::string file = cache + "/" + show.exhibit.id + ".grid";
-  uint64_t key = 0;
-  bool used = show.technique->prepare || show.still_technique->prepare;
-  if (!cache.empty() && used) {
-    key = exhibit_fingerprint(show.exhibit.folder);
-    show.lights.grid = load_radiance_grid(file, key);
-    if (show.lights.grid) return;
-  }
-  std::vector<vec3> places = eye_places(show.exhibit);
-  for (const Technique* technique : {show.technique, show.still_technique})
-    if (technique->prepare) technique->prepare(*show.world, places, show.lights);
-  if (!cache.empty() && show.lights.grid && !save_radiance_grid(*show.lights.grid, file, key))
-    log::warn("{} cannot be written: the next start takes as long as this one", file);
-}
-
 // Light that this machine has baked, or that the package carries, whichever is better; else that of
 // another scene, as far as its things stand where they stood.
 LoadedMap find_maps(const Show& show) {
@@ -78,22 +57,35 @@ LoadedMap find_maps(const Show& show) {
   return worth(own) < worth(shipped) ? own : shipped;
 }
 
-// Maps that were baked before, and who goes on with that.
-void begin_maps(Show& show) {
-  const ShowSettings& settings = show.settings;
-  bool used = settings.display != Display::points && show.technique->uses_maps &&
-              show.still_technique->uses_maps &&
-              show.lights.tables->plan.uses(TransportPart::cached_radiance);
-  if (!used) return;
-  BakerSettings baker;
-  if (LoadedMap loaded = find_maps(show); loaded.map) {
-    const bool fits = loaded.found == KeyedFile::read;
+// What techniques must know before the first sample: light that was baked before, or coarse light.
+// Returns what pictures show of it.
+std::shared_ptr<const IlluminationMap> prepare(Show& show) {
+  const bool keeps_light = show.lights.tables->plan.uses(TransportPart::kept_light);
+  LoadedMap loaded;
+  if (keeps_light && (show.technique->uses_maps || show.still_technique->uses_maps))
+    loaded = find_maps(show);
+  const bool fits = loaded.map && loaded.found == KeyedFile::read;
+  if (loaded.map)
     log::info("illumination maps: {} texels, error {:.1f} %{}", loaded.map->nodes.light.size(),
               100 * loaded.map->error,
               fits ? "" : "; of another scene, until there are better ones");
-    if (fits) baker.shown_error = loaded.map->error;
-    use_maps(show, std::move(loaded.map));
-  }
+  if (fits) show.lights.known = loaded.map;
+  const std::vector<vec3> places = eye_places(show.exhibit);
+  for (const Technique* technique : {show.technique, show.still_technique})
+    if (technique->prepare) technique->prepare(*show.world, places, show.lights);
+  return loaded.map ? loaded.map : show.lights.known;
+}
+
+// Pictures show `maps`; a baker finds better ones.
+void begin_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
+  const ShowSettings& settings = show.settings;
+  const bool used = settings.display != Display::points && show.technique->uses_maps &&
+                    show.still_technique->uses_maps;
+  if (!used || !maps) return;
+  BakerSettings baker;
+  baker.known = show.exhibit.lamps.empty() ? show.lights.known : show.switches.all.known;
+  if (maps == baker.known) baker.shown_error = maps->error;
+  use_maps(show, std::move(maps));
   if (settings.cache.empty() || !settings.bakes || !settings.background) return;
   baker.file = settings.cache + "/" + show.exhibit.id;
   baker.source = show.exhibit.folder;
@@ -140,9 +132,9 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   StillPass& pass = show->pass;
   if (show->settings.weights.empty()) pass.problem = "no folder of weights was named";
   else pass.denoiser = load_denoiser(NetSize::small, pass.problem, show->settings.weights);
-  prepare(*show);
+  auto maps = prepare(*show);
   begin_lamps(*show);
-  begin_maps(*show);
+  begin_maps(*show, std::move(maps));
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->exhibit.id,
             triangle_count(scene), show->exhibit.viewpoints.size(), scene.materials.size());
   return show;

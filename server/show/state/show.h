@@ -106,10 +106,12 @@ struct Show {
   Lights lights;
   Switches switches;
   // While there are lights.maps, of each object:
-  std::vector<char> mapped;                    // they know the light of some of it
-  std::vector<float> shining;                  // find_shining()
-  std::vector<char> known;                     // mapped and not shining: it needs no samples
-  std::unique_ptr<Baker> baker;                // null: maps are as they were at the start
+  std::vector<char> mapped;      // they know the light of some of it
+  std::vector<float> shining;    // find_shining()
+  std::vector<char> known;       // mapped and not shining: it needs no samples
+  std::string light_problem;     // of the package's own light; empty: none
+  std::unique_ptr<Baker> baker;  // null: maps are as they were at the start
+  BakerLooks baker_looks;
   std::unique_ptr<VisibilityPass> visibility;  // one picture at a time
   SkinLight skin;                              // on what moves, for all visitors
   const Technique* technique = nullptr;

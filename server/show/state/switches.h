@@ -28,6 +28,7 @@ struct Switches {
                              // switched it for themselves
   LampLevels lit;            // as the world is
   Lights all;                // made while all were full; empty where there are none
+  std::shared_ptr<const LampCells> cells;  // of all lamps' light; null: nobody keeps any
   // Of the other states in which somebody sees the world, while the world is in `lit`.
   std::map<LampLevels, KnownLight> others;
   // While visitors have yet to follow: of each pair of states, one for all.

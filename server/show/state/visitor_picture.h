@@ -66,6 +66,7 @@ struct VisitorPicture {
   Keyframe keyframe;  // what pictures are warped from until the next
   Surroundings around;
   Fade fade;                  // to the keyframe
+  bool fades_next = false;    // the next keyframe of the same view has better light: it fades in
   bool backdrop = false;      // the keyframe is without what moves (show/draw/moving.h)
   MovingPicture moving;       // that, to be laid over it; empty: nothing
   double posed_at = -1e9;     // show time of its job

@@ -339,6 +339,13 @@ std::vector<Finding> judge(const ShowReport& report, JudgeMemory& memory) {
                 .remedy = "What they kept is computed anew. If it happens again, have the disk "
                           "looked at. The next start forgets this."},
                {});
+  if (!report.light_problem.empty())
+    judge.tell({.about = "light",
+                .what = "The exhibit's own light is not of the exhibit as it is",
+                .why = report.light_problem,
+                .remedy = "Until then the server finds better light by itself while nobody needs "
+                          "the cores."},
+               {});
   if (report.exhibit_problems > 0)
     judge.tell(
         {.about = "exhibit",

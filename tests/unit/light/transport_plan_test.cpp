@@ -68,7 +68,7 @@ TEST(TransportPlan, ADiffuseSceneWithOneLampNeedsLittle) {
   TransportPlan plan = plan_with(diffuse(vec3(0.5f)));
   for (size_t i = 0; i < transport_parts; i++) {
     TransportPart part = TransportPart(i);
-    EXPECT_EQ(plan.uses(part), part == area_lights || part == cached_radiance)
+    EXPECT_EQ(plan.uses(part), part == area_lights || part == kept_light)
         << transport_part_name(part);
   }
 }
@@ -126,12 +126,12 @@ TEST(TransportPlan, CausticsNeedSomethingSharpSomethingRoughAndLight) {
   mirrors.environment.radiance = vec3(1);
   add_mesh(mirrors, sphere_mesh(add_material(mirrors, metal(vec3(0.9f), 0)), 1, 8), "ball");
   EXPECT_FALSE(make_transport_plan(mirrors).uses(caustics));  // nothing rough to see them on
-  EXPECT_FALSE(make_transport_plan(mirrors).uses(cached_radiance));
+  EXPECT_FALSE(make_transport_plan(mirrors).uses(kept_light));
   add_floor(mirrors, 0.5f);
   EXPECT_TRUE(make_transport_plan(mirrors).uses(caustics));
   mirrors.environment.radiance = vec3(0);
   EXPECT_FALSE(make_transport_plan(mirrors).uses(caustics));
-  EXPECT_FALSE(make_transport_plan(mirrors).uses(cached_radiance));
+  EXPECT_FALSE(make_transport_plan(mirrors).uses(kept_light));
 }
 
 TEST(TransportPlan, TexturesAreLookedAt) {
@@ -277,11 +277,11 @@ TEST(TransportPlan, KeptLightNeedsSomethingThatStandsStill) {
   scene.environment.radiance = vec3(1);
   Mesh figure = sphere_mesh(add_material(scene, diffuse(vec3(0.5f))), 1, 8);
   const Mesh* moving = &figure;
-  EXPECT_FALSE(make_transport_plan(scene, std::span(&moving, 1)).uses(cached_radiance));
+  EXPECT_FALSE(make_transport_plan(scene, std::span(&moving, 1)).uses(kept_light));
   add_floor(scene, 0.5f);
   TransportPlan plan = make_transport_plan(scene, std::span(&moving, 1));
-  EXPECT_TRUE(plan.uses(cached_radiance));
-  EXPECT_NE(plan.decisions[size_t(cached_radiance)].why.find("moving"), std::string::npos);
+  EXPECT_TRUE(plan.uses(kept_light));
+  EXPECT_NE(plan.decisions[size_t(kept_light)].why.find("moving"), std::string::npos);
 }
 
 TEST(TransportPlan, LightsThatMoveAreFoundAnewForEachPicture) {

@@ -286,5 +286,20 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
   for (uint32_t light : dark->nodes.light) EXPECT_EQ(unpack_rgb9e5(light), vec3(0));
 }
 
+// What visitors look at is taken some passes ahead of the rest, and no farther.
+TEST(Bake, GoesAheadWhereOneLooks) {
+  Baked baked(make_lit_floor());
+  const Ray down{.origin = {0.6f, 1, 0.6f}, .direction = {0, -1, 0}};
+  const std::vector<Ray> rays = {down, down, {.origin = {0, 1, 0}, .direction = {0, 1, 0}}};
+  const std::vector<uint32_t> tiles = find_tiles(baked.world, baked.bake, rays);
+  ASSERT_EQ(tiles.size(), 1u);
+  EXPECT_FALSE(go_ahead(baked.lit, baked.bake, tiles, 3)) << "not refined yet";
+  bake_passes(baked.lit, baked.bake, 1);
+  for (int i = 0; i < 3; i++) EXPECT_TRUE(go_ahead(baked.lit, baked.bake, tiles, 3)) << i;
+  EXPECT_FALSE(go_ahead(baked.lit, baked.bake, tiles, 3));
+  const uint32_t other = tiles[0] == 0 ? 1 : 0;
+  EXPECT_EQ(baked.bake.gather.asked[tiles[0]], 4 * baked.bake.gather.asked[other]);
+}
+
 }  // namespace
 }  // namespace wellspring

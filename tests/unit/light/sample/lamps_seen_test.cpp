@@ -41,7 +41,8 @@ struct Place {
   Lights lights = make_lights(world);
   vec3 eye{0.3f, 1, 0.2f};
   Transport transport{world, *lights.tables};
-  std::shared_ptr<const LampsSeen> seen = learn_lamps_seen(transport, std::span(&eye, 1), 0.5f);
+  std::shared_ptr<const LampsSeen> seen =
+      learn_lamps_seen(transport, std::span(&eye, 1), {.cell = 0.5f});
 };
 
 SurfacePlace on_floor(float x, float z) {
@@ -164,6 +165,6 @@ TEST(LampsSeen, TheSameEachTimeAndNoneWhereThereIsNoChoice) {
   one.lights.resize(1);
   World world(one);
   Lights lights = make_lights(world);
-  EXPECT_EQ(learn_lamps_seen({world, *lights.tables}, std::span(&p.eye, 1), 0.5f), nullptr);
-  EXPECT_EQ(learn_lamps_seen(p.transport, {}, 0.5f), nullptr);
+  EXPECT_EQ(learn_lamps_seen({world, *lights.tables}, std::span(&p.eye, 1)), nullptr);
+  EXPECT_EQ(learn_lamps_seen(p.transport, {}), nullptr);
 }

@@ -51,7 +51,7 @@ TEST(BenchScenes, TheCornellBoxIsTheOneInCode) {
   TransportPlan plan = make_transport_plan(file);
   for (size_t i = 0; i < transport_parts; i++)
     EXPECT_EQ(plan.uses(TransportPart(i)),
-              TransportPart(i) == area_lights || TransportPart(i) == cached_radiance)
+              TransportPart(i) == area_lights || TransportPart(i) == kept_light)
         << transport_part_name(TransportPart(i));
 }
 

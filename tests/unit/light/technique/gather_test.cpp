@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cached radiance: the technique `gather` against the reference and against a formula.
+// Walks that end on light that is known: the technique `gather` against the reference.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "light/known/fill_radiance_grid.h"
-#include "light/sample/radiance_grid.h"
+#include "light/walk/known_light.h"
+#include "light/bake/coarse_light.h"
 #include "light/technique/technique.h"
 #include "light/walk/walk.h"
 #include "light/random/warp.h"
@@ -30,27 +30,26 @@ struct Prepared {
   }
 };
 
-// In the Cornell box no surface emits what it keeps; the mean of a cell's light, weighted by its
-// samples, must be what a path tracer finds at the same places.
-TEST(Gather, CellsKnowWhatThePathTracerFinds) {
+// What walks end on is what a path tracer finds at the same places.
+TEST(Gather, KeptLightIsWhatThePathTracerFinds) {
   Prepared p(scenes::make_cornell_box(), vec3(0, 0.27f, 0.3f));
-  ASSERT_TRUE(p.lights.grid);
-  const RadianceGrid& grid = *p.lights.grid;
-  Transport transport{p.world, *p.lights.tables};
+  ASSERT_TRUE(p.lights.known);
+  const Transport keeps{p.world, *p.lights.tables, p.lights.known.get()};
+  const Transport transport{p.world, *p.lights.tables};
   double kept_sum = 0, traced_sum = 0;
   int asked = 0;
   Rng rng(5);
   for (int i = 0; i < 6000; i++) {
-    Ray ray;
-    ray.origin = vec3(0, 0.27f, -0.1f);
-    ray.direction = sample_sphere({rng.uniform(), rng.uniform()});
-    Hit hit = p.world.intersect(ray);
-    vec3 kept;
-    if (!hit.valid() || !eval_grid(grid, p.world, ray, hit, 10, kept)) continue;
-    asked++;
-    kept_sum += luminance(kept);
     Walk walk;
-    walk.ray = ray;
+    walk.ray.origin = vec3(0, 0.27f, -0.1f);
+    walk.ray.direction = sample_sphere({rng.uniform(), rng.uniform()});
+    walk.pdf = 1 / (4 * pi);
+    const Hit hit = p.world.intersect(walk.ray);
+    vec3 light;
+    if (!hit.valid() || !find_kept_light(keeps, walk.ray, hit, false, light)) continue;
+    if (max_component(p.world.material_of(hit.instance).emission) > 0) continue;
+    asked++;
+    kept_sum += luminance(vec3(p.world.material_of(hit.instance).base_color) * light);
     Sampler sampler(uint64_t(i) + 1000);
     traced_sum += luminance(follow(transport, WalkRules{.max_depth = 6}, walk, sampler));
   }
@@ -107,7 +106,7 @@ TEST(Gather, HighlightsMetByChanceAreNoSparks) {
   EXPECT_NEAR(gather_mean, 1, 0.04);
 }
 
-TEST(Gather, WithoutAGridItIsPathBitForBit) {
+TEST(Gather, WhereNothingIsKnownItIsPathBitForBit) {
   Scene scene = scenes::make_cornell_box();
   World world(scene);
   Lights lights = make_lights(world);
@@ -117,20 +116,6 @@ TEST(Gather, WithoutAGridItIsPathBitForBit) {
   Frame a = render_still(*find_technique("path"), world, lights, view, settings);
   Frame b = render_still(*find_technique("gather"), world, lights, view, settings);
   EXPECT_EQ(a.color, b.color);
-}
-
-TEST(Gather, TheGridIsTheSameEachTime) {
-  Scene scene = scenes::make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
-  vec3 place(0, 0.27f, 0.3f);
-  RadianceGridSettings settings;
-  settings.paths = 40000;
-  auto a = make_radiance_grid({world, *lights.tables}, std::span(&place, 1), settings);
-  auto b = make_radiance_grid({world, *lights.tables}, std::span(&place, 1), settings);
-  EXPECT_EQ(a->keys, b->keys);
-  EXPECT_EQ(a->light, b->light);
-  EXPECT_GT(std::count_if(a->count.begin(), a->count.end(), [](float n) { return n >= 12; }), 40);
 }
 
 TEST(Gather, NoPlacesNoGeometryNoHarm) {
@@ -147,24 +132,57 @@ TEST(Gather, NoPlacesNoGeometryNoHarm) {
   EXPECT_EQ(frame.color[0], vec3(0));
 }
 
-TEST(Gather, NarrowFootprintsLampsMirrorsAndMovingMeshesAreNotAsked) {
+TEST(Gather, MirrorsKeepNoLight) {
   Scene scene = scenes::make_cornell_box();
   int mirror = scenes::add_material(scene, scenes::metal(vec3(0.9f), 0.05f));
   scenes::add_quad(scene, mirror, {-0.27f, 0.3f, -0.1f}, {0, 0, -0.2f}, {0, 0.2f, 0}, "mirror");
   Prepared p(std::move(scene), vec3(0, 0.27f, 0.3f));
-  const RadianceGrid& grid = *p.lights.grid;
-  auto ask = [&](vec3 direction, float footprint) {
-    Ray ray;
-    ray.origin = vec3(0, 0.27f, 0.1f);
-    ray.direction = normalize(direction);
-    Hit hit = p.world.intersect(ray);
+  const Transport transport{p.world, *p.lights.tables, p.lights.known.get()};
+  auto ask = [&](vec3 direction) {
+    const Ray ray{.origin = {0, 0.27f, 0.1f}, .direction = normalize(direction)};
+    const Hit hit = p.world.intersect(ray);
     vec3 light;
-    return hit.valid() && eval_grid(grid, p.world, ray, hit, footprint, light);
+    return hit.valid() && find_kept_light(transport, ray, hit, false, light);
   };
-  EXPECT_TRUE(ask({1, 0.2f, -1}, 10));
-  EXPECT_FALSE(ask({1, 0.2f, -1}, grid.cell));
-  EXPECT_FALSE(ask({-0.27f, 0.13f, -0.3f}, 10));  // the mirror
-  EXPECT_FALSE(ask({0, 0.28f, -0.38f}, 10));      // the lamp
+  EXPECT_TRUE(ask({1, 0.2f, -1}));
+  EXPECT_FALSE(ask({-0.27f, 0.13f, -0.3f}));
+}
+
+// What stands before a wall shades it, which a mirror would show and a wide ray does not.
+TEST(Gather, WhereSomethingMovesOnlyWideRaysEnd) {
+  Scene scene = scenes::make_cornell_box();
+  Mesh ball = scenes::sphere_mesh(0, 0.05f);
+  for (vec3& at : ball.positions) at += vec3(0.2f, 0.2f, -0.2f);
+  const World still(scene), world(scene, {ball}, {0});
+  const Lights lights = make_lights(world);
+  const vec3 place(0, 0.27f, 0.3f);
+  const auto known = make_bake_scene(still, std::span(&place, 1), {.nodes = 2000}).known;
+  const Transport transport{world, *lights.tables, known.get()};
+  const Ray ray{.origin = {0, 0.3f, -0.2f}, .direction = {1, 0, 0}};
+  const Hit hit = world.intersect(ray);
+  vec3 light;
+  EXPECT_TRUE(find_kept_light(transport, ray, hit, false, light));
+  EXPECT_FALSE(find_kept_light(transport, ray, hit, true, light));
+}
+
+// A polished metal shows the wall behind the viewer, whose light is known: no noise.
+TEST(Gather, AMirrorShowsKeptLightWithoutNoise) {
+  Scene scene = scenes::make_cornell_box();
+  int mirror = scenes::add_material(scene, scenes::metal(vec3(0.9f), 0));
+  scenes::add_quad(scene, mirror, {-0.2f, 0.1f, -0.3f}, {0.4f, 0, 0}, {0, 0.3f, 0}, "mirror");
+  Prepared p(std::move(scene), vec3(0, 0.27f, 0.3f));
+  const Transport transport{p.world, *p.lights.tables, p.lights.known.get()};
+  WalkRules rules;
+  rules.reads_maps = true;
+  auto look = [&](uint64_t seed) {
+    Request request;
+    request.ray.origin = vec3(-0.2f, 0.25f, 0);
+    request.ray.direction = normalize(vec3(1, -0.08f, -1));
+    request.seed = seed;
+    return trace_sample(transport, rules, request).radiance();
+  };
+  EXPECT_GT(luminance(look(1)), 0);
+  EXPECT_EQ(look(1), look(2));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "unit/light/judge.h"
 #include "light/instant/instant_radiosity.h"
 #include "light/sample/light_tables.h"
-#include "light/sample/radiance_grid.h"
 #include "scenes/scenes.h"
 
 using namespace wellspring;
@@ -213,18 +212,17 @@ TEST(PlanSaves, ASkyThatIsBlack) {
   both.expect_same_bits();
 }
 
-TEST(PlanSaves, AGridOfLightThatNothingKeeps) {
+TEST(PlanSaves, LightThatNothingKeeps) {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(1);
   add_mesh(scene, sphere_mesh(add_material(scene, metal({0.9f, 0.8f, 0.7f}, 0)), 0.3f, 12), "ball");
   add_quad(scene, 1, {-2, -0.3f, 2}, {4, 0, 0}, {0, 0, -4}, "mirror floor");
-  BothWays both(scene, cached_radiance);
+  BothWays both(scene, kept_light);
   const Technique& gather = *find_technique("gather");
   vec3 eye = both.view(1, 1).position;
   gather.prepare(both.world, std::span(&eye, 1), both.planned);
   gather.prepare(both.world, std::span(&eye, 1), both.forced);
-  EXPECT_EQ(both.planned.grid, nullptr);
-  EXPECT_NE(both.forced.grid, nullptr);
+  EXPECT_EQ(both.planned.known, nullptr);
   Frame a = both.render(both.planned, "gather"), b = both.render(both.forced, "gather");
   EXPECT_EQ(std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(vec3)), 0);
 }

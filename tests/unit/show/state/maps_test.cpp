@@ -73,6 +73,14 @@ TEST_F(Maps, LightTheFirstPicture) {
   EXPECT_LT(dark, 96 * 64 / 100);
 }
 
+TEST_F(Maps, WithoutAnyFileCoarseLightIsThereFromTheStart) {
+  begin(std::move(exhibit), settings_for("gather", false));
+  ASSERT_TRUE(show->lights.maps);
+  EXPECT_EQ(show->lights.maps, show->lights.known);
+  EXPECT_EQ(show->lights.maps->error, 1) << "nobody knows how good it is";
+  EXPECT_GT(show->lights.maps->mean, 0.01f);
+}
+
 // Things stand where they stood, only a colour is another: better than nothing.
 TEST_F(Maps, ThoseOfAnotherSceneServeUntilThereAreBetterOnes) {
   keep_map();
@@ -120,8 +128,9 @@ TEST_F(Maps, DamagedOnesAreNotUsed) {
 
 TEST_F(Maps, WhoWantsPointsGetsThem) {
   keep_map();
-  open(Display::points);
+  open(Display::points, "gather");
   EXPECT_FALSE(show->lights.maps);
+  EXPECT_TRUE(show->lights.known) << "on which walks end";
   EXPECT_FALSE(show->baker);
 }
 
@@ -193,6 +202,22 @@ TEST_F(Maps, AreTakenOverWhileItRuns) {
   run(0.5);
   EXPECT_EQ(make_report(*show).bad_samples, 0u);
   EXPECT_GT(visitor().picture.cache.stats().points, 100);
+}
+
+// Who stands still sees better light fade in.
+TEST_F(Maps, BetterOnesFadeIn) {
+  keep_map();
+  ShowSettings settings = settings_for("path");
+  settings.cache = folder.path.string();
+  settings.bakes = false;
+  begin(std::move(exhibit), settings);
+  join(96, 64);
+  ASSERT_TRUE(step_until([&] { return !visitor().picture.keyframe.empty(); }));
+  ASSERT_TRUE(step_until([&] { return visitor().picture.fade.from.rgb.empty(); }));
+  World world(show->exhibit.scene);
+  use_better_maps(*show, test::paint_map(world, 0.5f, {lamplight}));
+  EXPECT_EQ(show->lights.known, show->lights.maps);
+  ASSERT_TRUE(step_until([&] { return !visitor().picture.fade.from.rgb.empty(); }));
 }
 
 // A ball of bronze before the visitor of the first viewpoint.

@@ -281,16 +281,24 @@ TEST_F(Judged, WhatIsMissingOrCannotBeWritten) {
 
 TEST_F(Judged, AFullDiskAndDamagedFilesAreToldAtOnce) {
   report.full_disks = {"/var/cache", "/var/sums"};
-  report.damaged_files = {"/var/cache/castle.grid"};
+  report.damaged_files = {"/var/cache/castle.bake"};
   wait(0.25);
   EXPECT_EQ(all(), "The disk is full\nFiles of the cache were damaged\n");
   EXPECT_TRUE(findings[0].grave);
   EXPECT_NE(findings[0].why.find("/var/cache, /var/sums"), std::string::npos);
-  EXPECT_EQ(findings[1].why, "/var/cache/castle.grid");
+  EXPECT_EQ(findings[1].why, "/var/cache/castle.bake");
   report.full_disks.clear();
   report.damaged_files.clear();
   wait(1);
   EXPECT_EQ(all(), "");
+}
+
+TEST_F(Judged, LightOfAnotherSceneIsTold) {
+  report.light_problem = "content/hall/light.maps: is stale";
+  wait(0.25);
+  EXPECT_EQ(all(), "The exhibit's own light is not of the exhibit as it is\n");
+  EXPECT_FALSE(findings[0].grave);
+  EXPECT_EQ(findings[0].why, report.light_problem);
 }
 
 TEST_F(Judged, WaitingVisitorsAreToldAfterAWhile) {

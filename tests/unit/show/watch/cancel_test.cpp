@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "light/bake/bake.h"
-#include "light/known/fill_radiance_grid.h"
+#include "light/bake/coarse_light.h"
 #include "show/exhibit/exhibit_light.h"
 #include "show/state/baker.h"
 #include "show/state/make_show.h"
@@ -45,8 +45,8 @@ TEST_F(CancelledShow, Rays) {
   expect_ends([&] { World another(exhibit.scene); });
 }
 
-TEST_F(CancelledShow, CachedRadiance) {
-  expect_ends([&] { make_radiance_grid({world, *lights.tables}, eyes, {.paths = 1000}); });
+TEST_F(CancelledShow, CoarseLight) {
+  expect_ends([&] { make_bake_scene(world, eyes, {.nodes = 300}); });
 }
 
 TEST_F(CancelledShow, Exposure) {
