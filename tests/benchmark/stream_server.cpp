@@ -15,6 +15,7 @@
 #include <unistd.h>
 #include <vector>
 
+#include "base/clock.h"
 #include "wire/json.h"
 
 extern char** environ;
@@ -41,6 +42,7 @@ ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exh
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  started = seconds_now();
   int failed = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(out[1]);
@@ -100,6 +102,7 @@ void join_visit(WsClient& client, uint16_t port, int width, int height) {
   hello.role = "visitor";
   hello.lang = "en";
   hello.width = width, hello.height = height;
+  hello.parts = true;
   client.send_text(write_message(hello));
 }
 

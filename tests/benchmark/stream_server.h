@@ -24,13 +24,14 @@ class ServerProcess {
   ServerProcess& operator=(const ServerProcess&) = delete;
   double resident() const;  // memory in bytes
   uint16_t port = 0;
+  double started = 0;  // seconds_now() when its process began
 
  private:
   pid_t pid_ = 0;
   std::optional<OwnFolder> cache_;
 };
 
-// Opens a visit there, of pictures of this size.
+// Opens a visit there, as a page does, of pictures of this size.
 void join_visit(WsClient& client, uint16_t port, int width = 1280, int height = 720);
 
 // The body of what it answers; empty where it does not. `path` begins with a slash.
