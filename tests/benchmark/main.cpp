@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
   app.add_option("--visit-spp", options.visit_spp, "cache: samples of half a converged picture")
       ->check(CLI::Range(1, 65536));
   app.add_option("--bake-seconds", options.bake_seconds,
-                 "how long illumination maps are baked where none are kept from an earlier run")
+                 "bake: how long illumination maps are baked")
       ->check(CLI::Range(1.0, 1e6));
   app.add_option("--visit-pictures", options.visit_pictures,
                  "cache: folder for the pictures judged");

@@ -130,7 +130,9 @@ ReportPage cache_visit_page() {
       "How much error has the picture that a walking visitor sees, at equal numbers of samples? "
       "Recorded visits of the castle, every method with the same samples a frame.",
       {"Mismatch: pixels over samples a frame. First: mean FLIP over the visits; lag counts.",
-       "cache: points as published; primary: the show's own way; the others are baselines."},
+       "primary: the show's own way, a picture a frame: answers a picture late, attention, the "
+       "light that the package carries; told of lamps. The others are baselines; cache: the render "
+       "cache as published."},
       {{.caption = "",
         .rows = {{"mismatch", "mismatch"}},
         .columns = {{"mean_flip", "FLIP"}},
