@@ -92,7 +92,7 @@ void save_judged(const BenchOptions& options, const std::string& name, const Fra
 void stand(BenchReport& report, const BenchOptions& options, const Stand& at,
            const std::string& name, double samples_a_second) {
   std::unique_ptr<VisitMethod> method =
-      name == "denoised" ? make_denoised() : make_visit_method(name);
+      name == "denoised" ? make_drawn({.denoises = true}) : make_visit_method(name);
   double pixels = double(at.view.width) * double(at.view.height), owed = 0, spent = 0;
   VisitPicture shown;
   VisitMoment moment;

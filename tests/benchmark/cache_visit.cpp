@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "base/load_error.h"
 #include "base/log.h"
@@ -161,16 +162,18 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
     if (i > 0)
       seen.motion = motion_vectors(seen.now, seen.before,
                                    [&](const Hit& hit) { return stage.moved_back(hit); });
+    Lights lights = stage.lights();
     VisitMoment moment;
     moment.world = &stage.world();
-    moment.lights = &stage.lights();
-    moment.maps = stage.maps();
+    moment.lights = &lights;
+    moment.maps = std::exchange(lights.maps, nullptr);
+    moment.change = stage.change();
     bool settled = time - moved_at > settled_after;
     moment.technique = settled ? &stage.still_technique() : &stage.moving_technique();
     moment.transport = show.transport;
     if (!settled) moment.transport.clamp = show.moving_clamp;
     moment.view = view;
-    moment.changed = moved || stage.switched() || sees_motion(seen.now) || sees_motion(seen.before);
+    moment.changed = moved || stage.change() || sees_motion(seen.now) || sees_motion(seen.before);
     moment.frame = i;
     moment.seed = mix64(uint64_t(i + 1) * 0x9e3779b9u + 1);
     parallel_for(int(runs.size()), [&](int r) {
@@ -178,7 +181,7 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
       oneapi::tbb::this_task_arena::isolate([&] { step(moment, seen, exposure, runs[size_t(r)]); });
     });
     if (std::find(judged.begin(), judged.end(), i) == judged.end()) continue;
-    Truth truth = find_truth(stage.world(), stage.lights(), view, truths);
+    Truth truth = find_truth(stage.world(), lights, view, truths);
     found += truth.kept;
     judge(settings, trace, time, exposure, truth, runs);
     add_noise(truth, exposure, noise, settings.instants);
@@ -195,9 +198,6 @@ VisitResult simulate_visits(const VisitSettings& settings) {
   std::vector<VisitTrace> traces = load_visit_traces(settings.traces);
   refuse_unknown_names(settings, traces);
   VisitStage stage(settings.exhibit, settings.technique);
-  if (std::any_of(settings.methods.begin(), settings.methods.end(),
-                  [](const std::string& name) { return name == "mapped" || name == "corrected"; }))
-    stage.use_maps(settings.truths, settings.bake_seconds);
   TruthSettings truths;
   truths.spp = settings.truth_spp;
   truths.max_depth = stage.settings().transport.max_depth;

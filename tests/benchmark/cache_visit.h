@@ -21,7 +21,6 @@ struct VisitSettings {
   std::string technique = "gather";
   std::string exhibit, traces, truths;  // folders: package, traces, kept converged pictures
   std::vector<std::string> methods;     // of these names; empty: all
-  double bake_seconds = 600;            // of the maps of `mapped`, where none are kept
   std::string only;                     // one trace's name; empty: all
   std::string pictures;                 // folder for what was judged, as PNG; empty: none
 };

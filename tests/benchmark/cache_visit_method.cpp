@@ -7,14 +7,8 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "cache/broker.h"
-#include "cache/predict.h"
-#include "picture/compose_drawn.h"
-#include "picture/still/plan_still.h"
-#include "picture/still/reconstruct_still.h"
-#include "picture/still/still_guides.h"
-#include "picture/compositor.h"
-#include "show/draw/sample_budget.h"
+#include "denoise/denoise.h"
+#include "light/visible/guides.h"
 
 namespace wellspring {
 namespace {
@@ -54,10 +48,6 @@ struct Batch {
   }
 };
 
-constexpr double displayed_rate = 60;    // frames a second
-constexpr float predicted_frames = 2;    // as show/draw/picture.cpp
-constexpr double predicted_share = 0.3;  // of the budget, at most
-
 class PublishedCache : public VisitMethod {
  public:
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
@@ -82,153 +72,6 @@ class PublishedCache : public VisitMethod {
   Frame frame_;  // pixels without points around stay
 };
 
-class Deferred : public VisitMethod {
- public:
-  explicit Deferred(Answers answers, bool denoises = false) : answers_(answers) {
-    std::string problem;
-    if (denoises) denoiser_ = load_denoiser(NetSize::small, problem);
-    if (!problem.empty()) throw std::runtime_error(problem);
-  }
-  // What shines is corrected.
-  void correct() { corrects_ = true; }
-  // Points of now on count in multiples of the light of these maps; null: by themselves.
-  void use_maps(std::shared_ptr<const IlluminationMap> maps) {
-    cache_.clear();
-    compositor_.set_maps(std::move(maps));
-  }
-  void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
-    if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
-    last_view_ = moment.view;
-    // As show/draw/picture.cpp draws what moves.
-    bool passing = moment.frame - moved_ < still_after;
-    double pixels = double(moment.view.width) * double(moment.view.height);
-    bool coarse = passing && !affords_fine_light(budget * displayed_rate / pixels, false);
-    const View view = coarse ? light_view(moment.view) : moment.view;
-    cache_.set_reference(moment.technique == find_technique("path"));
-    cache_.resize(moment.view.width, moment.view.height);
-    cache_.move_points(*moment.world);
-    uint64_t pose = uint64_t(moment.frame);
-    land(broker_.collect(), *moment.world, pose, cache_);
-    cache_.project(view);
-    cache_.attend();
-    Corrections& corrections = compositor_.corrections();
-    std::vector<Request> corrected;
-    if (corrects_ && passing) {
-      if (shining_.empty()) shining_ = find_shining(moment.world->scene());
-      corrections.begin(view, visibility(moment), shining_);
-      corrections.request({}, int(corrected_share * budget), moment.seed, corrected);
-    }
-    budget -= int(corrected.size());
-    ahead_.clear();
-    if (moment.frame > 0 && view != view_before_)
-      cache_.predict(extrapolate(view_before_, view, predicted_frames),
-                     int(predicted_share * budget), moment.seed, ahead_);
-    view_before_ = view;
-    bool learns = denoiser_ && !passing;
-    compositor_.set_reconstructed(learns);
-    double kept = learns ? mean_count(compositor_.samples()) : 0;
-    bool spread = kept >= spread_from;
-    int tested = spread ? int(tested_share * budget) : budget - int(ahead_.size());
-    cache_.plan(view, tested, moment.seed, batch_.requests);
-    if (!learns) asked_ = 0, passed_ = 0;
-    else if (spread) plan_still(view, asked_, budget - tested, still_seed, batch_.requests);
-    if (spread) asked_ += uint64_t(budget - tested);
-    batch_.requests.insert(batch_.requests.end(), ahead_.begin(), ahead_.end());
-    batch_.requests.insert(batch_.requests.end(), corrected.begin(), corrected.end());
-    if (answers_ == Answers::next_frame) {
-      broker_.ask(view, {moment.technique, moment.transport}, batch_.requests);
-      while (auto piece = broker_.take()) {
-        Answer answer{std::move(*piece), pose, {}};
-        answer.samples.resize(answer.piece.requests.size());
-        trace(*moment.technique, *moment.world, *moment.lights, moment.transport,
-              answer.piece.requests, answer.samples);
-        broker_.answer(std::move(answer));
-      }
-    } else {
-      batch_.trace(moment);
-      cache_.remember(view, batch_.requests, batch_.samples);
-      corrections.remember(view, batch_.requests, batch_.samples);
-      compositor_.follow_changes(cache_);
-      if (!passing) compositor_.add_samples(view, batch_.requests, batch_.samples);
-    }
-    if (passing) compositor_.draw(cache_, moment.view, visibility(moment), shown.frame);
-    else if (passed_ == 0)
-      compositor_.draw_still(cache_, moment.view, visibility(moment), shown.frame);
-    if (learns && !reconstruct(moment, shown.frame) && passed_ > 0) cache_.end_frame();
-    shown.stats = cache_.stats();
-    shown.empty = shown.stats.empty;
-    if (answers_ != Answers::waited_for) return;
-    if (moment.frame > 0) std::swap(shown, before_);
-    else before_ = shown;
-  }
-
- private:
-  static constexpr double corrected_share = 0.2;  // of samples
-  static constexpr int still_after = 15;          // frames
-  static constexpr int first_pass = 29;  // likewise; then at so many times as many samples:
-  static constexpr double growth = 1.3;
-  // As show/draw/picture.cpp spreads samples.
-  static constexpr double tested_share = 0.0625, spread_from = 0.8;
-  static constexpr uint64_t still_seed = 17;
-  bool reconstruct(const VisitMoment& moment, Frame& frame) {
-    double kept = mean_count(compositor_.samples());
-    if (moment.frame - moved_ < first_pass || kept < growth * passed_) return false;
-    passed_ = kept;
-    compositor_.draw_still(cache_, moment.view, visibility(moment), frame);
-    for (int place = 0; place < guide_places; place++)
-      add_still_guides(*moment.world, *moment.lights, visibility(moment), moment.view,
-                       RasterShows::all, place, work_.guides, work_.followed);
-    begin_reconstruction(compositor_.samples(), frame, *denoiser_, work_);
-    while (denoiser_->advance(1)) {}
-    finish_reconstruction(compositor_.samples(), *denoiser_, work_, frame);
-    return true;
-  }
-  const VisibilityPass& visibility(const VisitMoment& moment) {
-    if (!visibility_ || sees_ != moment.lights->tables)
-      visibility_ = std::make_unique<VisibilityPass>(*moment.world, *moment.lights);
-    sees_ = moment.lights->tables;
-    return *visibility_;
-  }
-  Answers answers_;
-  bool corrects_ = false;
-  std::vector<float> shining_;
-  std::unique_ptr<Denoiser> denoiser_;
-  StillReconstruction work_;
-  uint64_t asked_ = 0;  // samples spread over the view at rest
-  double passed_ = 0;   // samples a pixel in the last pass
-  View view_before_;
-  std::vector<Request> ahead_;
-  std::unique_ptr<VisibilityPass> visibility_;
-  std::shared_ptr<const LightTables> sees_;
-  RenderCache cache_;
-  Compositor compositor_;
-  View last_view_;
-  int moved_ = 0;
-  Batch batch_;
-  Broker broker_{
-      {.piece = 512, .most_waiting = 1 << 20, .most_traced = 1 << 20, .most_answered = 1 << 20}};
-  VisitPicture before_;
-};
-
-class Mapped : public VisitMethod {
- public:
-  explicit Mapped(bool corrects = false) {
-    if (corrects) drawn_.correct();
-  }
-  void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
-    if (moment.maps != maps_) drawn_.use_maps(maps_ = moment.maps);
-    Lights lights = *moment.lights;
-    lights.maps = maps_;
-    VisitMoment mapped = moment;
-    mapped.lights = &lights;
-    drawn_.show(mapped, budget, shown);
-  }
-
- private:
-  Deferred drawn_{Answers::at_once};
-  std::shared_ptr<const IlluminationMap> maps_;
-};
-
 // Each moving picture goes through the network, at a part of its resolution: what changes there
 // is multiplied with the full picture.
 class ReconstructedInMotion : public VisitMethod {
@@ -239,7 +82,7 @@ class ReconstructedInMotion : public VisitMethod {
     if (!denoiser_) throw std::runtime_error(problem);
   }
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
-    drawn_.show(moment, budget, shown);
+    drawn_->show(moment, budget, shown);
     View view = moment.view;
     view.width = (view.width + scale_ - 1) / scale_;
     view.height = (view.height + scale_ - 1) / scale_;
@@ -268,7 +111,7 @@ class ReconstructedInMotion : public VisitMethod {
   }
 
  private:
-  Deferred drawn_{Answers::at_once};
+  std::unique_ptr<VisitMethod> drawn_ = make_drawn({});
   int scale_;
   std::unique_ptr<Denoiser> denoiser_;
   Frame low_, change_;
@@ -408,20 +251,22 @@ class Frameless : public VisitMethod {
 };
 
 constexpr VisitMethodEntry list[] = {
-    {"cache", "render cache as published, points alone", false, make_published_cache},
-    {"primary", "shapes and reflectances drawn in the cache's light", false,
-     [] { return make_deferred(Answers::at_once); }},
-    {"mapped", "primary, with illumination maps", false, make_mapped, true},
-    {"corrected", "mapped, with corrective samples of what shines", false,
-     [] { return std::unique_ptr<VisitMethod>(std::make_unique<Mapped>(true)); }, true},
-    {"primary_late", "the same, answers a frame late", false,
-     [] { return make_deferred(Answers::next_frame); }},
-    {"primary_behind", "the same, pictures a frame late", false,
-     [] { return make_deferred(Answers::waited_for); }},
-    {"reconstructed", "primary, each picture through the small network", false,
+    {"primary", "the show's own way", false, [] { return make_drawn({}); }},
+    {"at_once", "the same, answers at once", false,
+     [] { return make_drawn({.answers = Answers::at_once}); }, true},
+    {"behind", "the same, pictures a frame late", false,
+     [] { return make_drawn({.answers = Answers::waited_for}); }, true},
+    {"unmapped", "the same, without illumination maps", false,
+     [] { return make_drawn({.uses_maps = false}); }, true},
+    {"unsteered", "the same, without attention", false,
+     [] { return make_drawn({.steers = false}); }, true},
+    {"corrected", "the same, with corrective samples of what shines", false,
+     [] { return make_drawn({.corrects = true}); }, true},
+    {"reconstructed", "the same, each picture through the small network", false,
      [] { return make_reconstructed(1); }, true},
     {"reconstructed_half", "the same at half the resolution", false,
      [] { return make_reconstructed(2); }, true},
+    {"cache", "render cache as published, points alone", true, make_published_cache},
     {"resolution_drop", "whole pictures, as coarse as the budget", true, make_resolution_drop},
     {"hold", "the last complete picture", true, make_hold},
     {"frameless", "random pixels replaced", true, make_frameless},
@@ -436,13 +281,6 @@ std::unique_ptr<VisitMethod> make_visit_method(const std::string& name) {
   return nullptr;
 }
 std::unique_ptr<VisitMethod> make_published_cache() { return std::make_unique<PublishedCache>(); }
-std::unique_ptr<VisitMethod> make_mapped() { return std::make_unique<Mapped>(); }
-std::unique_ptr<VisitMethod> make_deferred(Answers answers) {
-  return std::make_unique<Deferred>(answers);
-}
-std::unique_ptr<VisitMethod> make_denoised() {
-  return std::make_unique<Deferred>(Answers::at_once, true);
-}
 std::unique_ptr<VisitMethod> make_reconstructed(int scale) {
   return std::make_unique<ReconstructedInMotion>(scale);
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ways to keep a picture up with a moving visitor when the renderer answers only a few samples a
-// frame: the render cache, and what other streaming renderers do. Each gets the same samples of the
-// same technique; how it uses them is its own. Deterministic.
+// frame: the show's, the render cache as published, and what other streaming renderers do. Each
+// gets the same samples of the same technique; how it uses them is its own. Deterministic.
 #pragma once
 #include <memory>
 #include <span>
 #include <string>
 
 #include "cache/cache.h"
+#include "light/known/lamps.h"
 #include "light/technique/technique.h"
 
 namespace wellspring {
@@ -15,8 +16,9 @@ namespace wellspring {
 // One displayed frame's circumstances.
 struct VisitMoment {
   const World* world = nullptr;
-  const Lights* lights = nullptr;
+  const Lights* lights = nullptr;               // without maps
   std::shared_ptr<const IlluminationMap> maps;  // of the same lights; for who uses them
+  const LightChange* change = nullptr;  // of the light since the frame before, for who is told
   const Technique* technique = nullptr;
   TransportSettings transport;
   View view;            // wanted now
@@ -54,18 +56,21 @@ std::unique_ptr<VisitMethod> make_visit_method(const std::string& name);
 
 // The render cache as published: points alone, each picture of the frame's own answers.
 std::unique_ptr<VisitMethod> make_published_cache();
-// Pictures as show/draw/picture.cpp draws them. Answers are there for the picture that asked; or
-// they come through a broker for the next; or the picture waits for them and is shown a frame late.
-enum class Answers { at_once, next_frame, waited_for };
-std::unique_ptr<VisitMethod> make_deferred(Answers answers);
-// The first of these, in the light of illumination maps where there are some.
-std::unique_ptr<VisitMethod> make_mapped();
-// That pipeline, at rest with learned reconstruction. Throws std::runtime_error where there are no
-// weights.
-// make_deferred(at_once), each picture through the small network at 1 / scale of its resolution.
-// Throws std::runtime_error without its weights.
+// Pictures as show/draw/picture.cpp draws them (cache_visit_drawn.cpp), by default in all as the
+// show does. Answers to who walks come through a broker for the next picture, or are there for the
+// picture that asked, or the picture waits for them and is shown a frame late.
+enum class Answers { next_frame, at_once, waited_for };
+struct DrawnWay {
+  Answers answers = Answers::next_frame;
+  bool uses_maps = true;  // the moment's
+  bool steers = true;     // attention tells whose samples come first
+  bool corrects = false;  // what shines has samples of its own
+  bool denoises = false;  // at rest, by the network; throws std::runtime_error without its weights
+};
+std::unique_ptr<VisitMethod> make_drawn(const DrawnWay& way);
+// The show's own way, each picture through the small network at 1 / scale of its resolution. Throws
+// std::runtime_error without its weights.
 std::unique_ptr<VisitMethod> make_reconstructed(int scale);
-std::unique_ptr<VisitMethod> make_denoised();
 // The whole picture at the resolution the budget allows, bilinear; while nothing changes, samples
 // add up in pixels of their own.
 std::unique_ptr<VisitMethod> make_resolution_drop();

@@ -61,7 +61,6 @@ void bench_cache_visit(BenchReport& report, const BenchOptions& options) {
     settings.instants = 3;
     settings.truth_spp = 64;
   }
-  if (options.bake_seconds > 0) settings.bake_seconds = options.bake_seconds;
   if (options.visit_width > 0) settings.width = options.visit_width;
   if (options.visit_instants > 0) settings.instants = options.visit_instants;
   if (options.visit_spp > 0) settings.truth_spp = options.visit_spp;

@@ -1,102 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cache_visit_stage.h"
 
-#include "base/clock.h"
-#include "base/log.h"
+#include <algorithm>
+
 #include "base/parallel.h"
-#include "light/bake/bake_file.h"
-#include "light/bake/coarse_light.h"
-#include "light/bake/finish_bake.h"
-#include "light/bake/map_file.h"
-#include "show/exhibit/eye_places.h"
 #include "light/technique/technique.h"
-#include "show/exhibit/exhibit_load.h"
 #include "show/answer/events.h"
+#include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_load.h"
+#include "show/state/lamps.h"
 #include "show/state/make_show.h"
 
 namespace wellspring {
 namespace {
 
-std::unique_ptr<Show> open_show(const std::string& folder, const std::string& technique,
-                                bool lamps) {
-  Exhibit exhibit = load_exhibit(folder);
-  if (!lamps)
-    std::erase_if(exhibit.scene.lights, [](const PunctualLight& light) {
-      return light.type != PunctualType::directional;
-    });
+std::unique_ptr<Show> open_show(const std::string& folder, const std::string& technique) {
   ShowSettings settings;
   settings.technique = technique;
-  return make_show(std::move(exhibit), settings);
+  return make_show(load_exhibit(folder), settings);
 }
 
-std::shared_ptr<const IlluminationMap> find_baked(const Show& show, const std::string& file,
-                                                  double seconds) {
-  const Scene& scene = show.exhibit.scene;
-  const uint64_t key = hash_scene(scene);
-  const World world(scene);
-  if (LoadedMap kept = load_map(world, file, key); kept.found == KeyedFile::read) return kept.map;
-  const std::vector<vec3> places = eye_places(show.exhibit);
-  const BakeScene baked = make_bake_scene(world, places);
-  Bake bake = begin_bake(world, places);
-  const double began = seconds_now();
-  go_on(baked, bake, [&] { return seconds_now() - began > seconds && bake.passes > 0; });
-  auto maps = finish_map(world, all_eye_places(show.exhibit), bake);
-  log::info("{}: {} passes, error {:.1f} %", file, bake.passes, 100 * maps->error);
-  save_map(world, *maps, file, key);
-  return maps;
+// Without the lamps that have a place: daylight stays.
+LampLevels dark_levels(const Exhibit& exhibit) {
+  LampLevels levels = first_levels(exhibit);
+  for (size_t i = 0; i < levels.size(); i++) {
+    const auto is_placed = [&](int light) {
+      return exhibit.scene.lights[size_t(light)].type != PunctualType::directional;
+    };
+    const std::vector<int>& lights = exhibit.scene.lamps[i].lights;
+    if (!lights.empty() && std::ranges::all_of(lights, is_placed)) levels[i] = 0;
+  }
+  return levels;
 }
 
 }  // namespace
 
 VisitStage::VisitStage(const std::string& folder, const std::string& technique)
-    : folder_(folder), technique_(technique), lit_(open_show(folder, technique, true)) {
-  now_ = lit_.get();
-  mind_ = lit_->teller.mind;
-  pose_ = lit_->teller.pose;
-}
+    : show_(open_show(folder, technique)),
+      lit_(first_levels(exhibit())),
+      dark_(dark_levels(exhibit())),
+      mind_(show_->teller.mind),
+      pose_(show_->teller.pose) {}
 
-Show& VisitStage::dark() {
-  if (!dark_) dark_ = open_show(folder_, technique_, false);
-  return *dark_;
-}
-
-void VisitStage::use_maps(const std::string& folder, double seconds) {
-  maps_folder_ = folder;
-  bake_seconds_ = seconds;
-}
-
-std::shared_ptr<const IlluminationMap> VisitStage::maps() {
-  if (maps_folder_.empty()) return nullptr;
-  const bool lit = now_ == lit_.get();
-  auto& maps = lit ? lit_maps_ : dark_maps_;
-  if (!maps)
-    maps = find_baked(*now_, maps_folder_ + (lit ? "/lit.maps" : "/dark.maps"), bake_seconds_);
-  return maps;
+void VisitStage::light(bool on) {
+  change_.reset();
+  const LampLevels before = show_->switches.lit, &after = on ? lit_ : dark_;
+  if (before == after) return;
+  change_.emplace(exhibit().scene, show_->switches.all, before, after);
+  light_world(*show_, after);
 }
 
 void VisitStage::begin(const VisitTrace& trace) {
-  now_ = lamps_on(trace, 0) ? lit_.get() : &dark();
-  now_->teller.mind = mind_;
-  now_->teller.pose = pose_;
-  now_->teller.voice = Voice{};
+  light(lamps_on(trace, 0));
+  show_->teller.mind = mind_;
+  show_->teller.pose = pose_;
+  show_->teller.voice = Voice{};
   if (trace.telling && !exhibit().stories.empty())
-    tell(now_->teller.voice, exhibit().stories.front());
+    tell(show_->teller.voice, exhibit().stories.front());
 }
 
 void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
-  Show* before = now_;
-  now_ = lamps_on(trace, time) ? lit_.get() : &dark();
-  switched_ = now_ != before;
-  if (switched_) {
-    now_->teller.mind = before->teller.mind;
-    now_->teller.pose = before->teller.pose;
-    now_->teller.voice = before->teller.voice;
-  }
-  int first = int(exhibit().scene.instances.size()), count = before->world->instance_count();
+  light(lamps_on(trace, time));
+  const World& world = *show_->world;
+  int first = int(exhibit().scene.instances.size()), count = world.instance_count();
   before_.resize(size_t(count - first));
   for (int i = first; i < count; i++)
-    before_[size_t(i - first)] = before->world->mesh_of(uint32_t(i)).positions;
-  Show& show = *now_;
+    before_[size_t(i - first)] = world.mesh_of(uint32_t(i)).positions;
+  Show& show = *show_;
   if (show.figures.empty()) return;
   // As show/tick.cpp behaves and animates for one visitor.
   StorytellerInput input;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exhibit during a simulated visit: its storyteller moves by a clock of its own, its lamps can
-// be switched, and rays tell exactly what a view shows.
+// The exhibit during a simulated visit: its storyteller moves by a clock of its own, its lamps, all
+// but daylight, can be switched, and rays tell exactly what a view shows.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,23 +18,20 @@ class VisitStage {
   // Loads the exhibit (throws ExhibitError); technique `gather`'s preparation takes seconds.
   VisitStage(const std::string& folder, const std::string& technique);
 
-  const Exhibit& exhibit() const { return lit_->exhibit; }
-  const ShowSettings& settings() const { return lit_->settings; }
-  const Technique& moving_technique() const { return *lit_->technique; }
-  const Technique& still_technique() const { return *lit_->still_technique; }
+  const Exhibit& exhibit() const { return show_->exhibit; }
+  const ShowSettings& settings() const { return show_->settings; }
+  const Technique& moving_technique() const { return *show_->technique; }
+  const Technique& still_technique() const { return *show_->still_technique; }
 
   // Back to the beginning of a visit: the storyteller as it first stands.
   void begin(const VisitTrace& trace);
   // The next frame, `dt` after the last. Times must be visited in order.
   void advance(const VisitTrace& trace, double time, float dt);
 
-  const World& world() const { return *now_->world; }
-  const Lights& lights() const { return now_->lights; }
-  // maps() are those of `folder` from now on, baked for so long where it keeps none.
-  void use_maps(const std::string& folder, double seconds);
-  // Of the lights there are; null without use_maps().
-  std::shared_ptr<const IlluminationMap> maps();
-  bool switched() const { return switched_; }  // the lamps, in the last advance
+  const World& world() const { return *show_->world; }
+  const Lights& lights() const { return show_->lights; }
+  // What became of the light when the lamps were switched in the last advance; null: they were not.
+  const LightChange* change() const { return change_ ? &*change_ : nullptr; }
   View view(const VisitTrace& trace, double time, int width, int height) const;
 
   void see(const View& view, TrueView& seen) const;
@@ -41,14 +39,10 @@ class VisitStage {
   vec3 moved_back(const Hit& hit) const;
 
  private:
-  Show& dark();
-  std::string folder_, technique_;
-  std::unique_ptr<Show> lit_, dark_;
-  std::string maps_folder_;
-  double bake_seconds_ = 0;
-  Show* now_ = nullptr;
-  bool switched_ = false;
-  std::shared_ptr<const IlluminationMap> lit_maps_, dark_maps_;
+  void light(bool on);
+  std::unique_ptr<Show> show_;
+  LampLevels lit_, dark_;
+  std::optional<LightChange> change_;
   StorytellerState mind_;  // at a visit's beginning
   Pose pose_;
   std::vector<std::vector<vec3>> before_;  // vertices of the moving meshes, a frame ago

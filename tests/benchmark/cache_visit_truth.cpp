@@ -39,6 +39,7 @@ uint64_t key_of(const World& world, const Lights& lights, const View& view,
   hash.add(uint64_t(settings.max_depth));
   for (vec3 v : {view.position, view.right, view.up, view.forward}) hash.add(v);
   hash.add(view.tan_half_fov);
+  hash.add(view.middle.x), hash.add(view.middle.y);
   hash.add(uint64_t(view.width) << 32 | uint64_t(view.height));
   View probe = view;
   probe.width = probe_width;

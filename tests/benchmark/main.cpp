@@ -83,9 +83,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--content", options.content, "folder of exhibit packages")->capture_default_str();
   app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
-  app.add_option(
-      "--server-option", options.server_words,
-      "stream: a further word of the server's command line, as --server-option=--workers=4");
+  app.add_option("--server-option", options.server_words,
+                 "stream, load, show: a further word of the server's command line, as "
+                 "--server-option=--cache=FOLDER, which has an empty cache of its own without");
   app.add_option("--cycles-case", options.cycles_case,
                  "light.cycles: compare with Cycles in this case only");
   app.add_option("--visit-trace", options.visit_trace, "cache: simulate this visit only");
@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
   app.add_option("--visit-spp", options.visit_spp, "cache: samples of half a converged picture")
       ->check(CLI::Range(1, 65536));
   app.add_option("--bake-seconds", options.bake_seconds,
-                 "how long illumination maps are baked where none are kept from an earlier run")
+                 "bake: how long illumination maps are baked")
       ->check(CLI::Range(1.0, 1e6));
   app.add_option("--visit-pictures", options.visit_pictures,
                  "cache: folder for the pictures judged");

@@ -61,6 +61,7 @@ void bench_stream(BenchReport& report, const BenchOptions& options);
 void bench_load_visitors(BenchReport& report, const BenchOptions& options);
 void bench_show_rest(BenchReport& report, const BenchOptions& options);
 void bench_show_storyteller(BenchReport& report, const BenchOptions& options);
+void bench_show_walk(BenchReport& report, const BenchOptions& options);
 void bench_show_load(BenchReport& report, const BenchOptions& options);
 void bench_cache_display(BenchReport& report, const BenchOptions& options);
 void bench_cache_warp(BenchReport& report, const BenchOptions& options);

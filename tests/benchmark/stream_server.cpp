@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <algorithm>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <spawn.h>
@@ -14,6 +15,7 @@
 #include <unistd.h>
 #include <vector>
 
+#include "base/clock.h"
 #include "wire/json.h"
 
 extern char** environ;
@@ -21,6 +23,10 @@ extern char** environ;
 namespace wellspring {
 
 ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exhibit) {
+  const std::vector<std::string>& more = options.server_words;
+  const bool is_given =
+      std::ranges::any_of(more, [](const auto& word) { return word.starts_with("--cache="); });
+  if (!is_given) cache_.emplace();
   int out[2];
   if (pipe(out) != 0) throw std::runtime_error("pipe failed");
   posix_spawn_file_actions_t actions;
@@ -31,10 +37,12 @@ ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exh
   std::string program = options.programs + "/wellspring_server";
   std::vector<std::string> words = {program,     "--port",        "0",     "--exhibit", exhibit,
                                     "--content", options.content, "--web", options.web};
-  words.insert(words.end(), options.server_words.begin(), options.server_words.end());
+  if (cache_) words.insert(words.end(), {"--cache", cache_->path()});
+  words.insert(words.end(), more.begin(), more.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  started = seconds_now();
   int failed = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(out[1]);
@@ -94,6 +102,7 @@ void join_visit(WsClient& client, uint16_t port, int width, int height) {
   hello.role = "visitor";
   hello.lang = "en";
   hello.width = width, hello.height = height;
+  hello.parts = true;
   client.send_text(write_message(hello));
 }
 

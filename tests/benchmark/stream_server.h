@@ -2,15 +2,19 @@
 // A server process for benchmarks of the whole way, and what it says of itself over HTTP.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <sys/types.h>
 
+#include "own_folder.h"
 #include "report.h"
 #include "stream/ws_client.h"
 
 namespace wellspring {
 
-// A server of its own on a free port, ended with this value. Throws std::runtime_error if it cannot
+// A server of its own on a free port, as `./wellspring run` starts one, ended with this value. What
+// it finds out is kept in a folder of its own, empty at first and removed in the end, unless
+// BenchOptions::server_words name another by --cache=FOLDER. Throws std::runtime_error if it cannot
 // be started.
 class ServerProcess {
  public:
@@ -20,12 +24,14 @@ class ServerProcess {
   ServerProcess& operator=(const ServerProcess&) = delete;
   double resident() const;  // memory in bytes
   uint16_t port = 0;
+  double started = 0;  // seconds_now() when its process began
 
  private:
   pid_t pid_ = 0;
+  std::optional<OwnFolder> cache_;
 };
 
-// Opens a visit there, of pictures of this size.
+// Opens a visit there, as a page does, of pictures of this size.
 void join_visit(WsClient& client, uint16_t port, int width = 1280, int height = 720);
 
 // The body of what it answers; empty where it does not. `path` begins with a slash.

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page of a visitor shows of the pictures that it is sent (web/picture.js).
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "frame/frame.h"
+
+namespace wellspring {
+
+class Screen {
+ public:
+  Screen(int width, int height);  // black
+  // Takes a binary message. False: it is no picture. Throws LoadError where a JPEG is damaged.
+  bool receive(std::span<const uint8_t> message);
+  // As large as the screen: pictures of other sizes are scaled, as the page scales its canvas.
+  Image8 picture() const;
+
+ private:
+  int width_, height_;
+  Image8 canvas_;
+};
+
+// Bilinear between the middles of pixels; bytes are mixed as they are, as browsers do.
+Image8 scale_picture(const Image8& picture, int width, int height);
+
+}  // namespace wellspring
