@@ -66,12 +66,19 @@ static uint32_t find_known_chart(const BakeScene& scene, const Walk& walk, const
   return find_chart(*scene.known, scene.world, walk.ray, hit);
 }
 
-static void add_known_light(const BakeScene& scene, uint32_t chart, vec3 place, vec3 weight,
-                            std::span<vec3> light) {
+static void add_known_light(const BakeScene& scene, uint32_t number, const Ray& ray, const Hit& hit,
+                            const Surface& surface, vec3 weight, std::span<vec3> light) {
   const IlluminationMap& map = *scene.known;
-  const IlluminationTaps taps = find_taps(map, map.places->charts[chart], place);
-  for (size_t p = 0; p < light.size(); p++)
-    light[p] += weight * eval_illumination((*map.layers)[p], taps);
+  const IlluminationChart& chart = map.places->charts[number];
+  const IlluminationTaps taps = find_taps(map, chart, surface.position);
+  const vec3 mesh = chart.sloped ? eval_mesh_normal(scene.world, ray, hit) : surface.normal;
+  for (size_t p = 0; p < light.size(); p++) {
+    const IlluminationNodes& nodes = (*map.layers)[p];
+    const vec3 found = eval_illumination(nodes, taps);
+    if (found == vec3(0)) continue;
+    light[p] +=
+        eval_illumination_turn(map, nodes, chart, taps, mesh, surface.normal) * weight * found;
+  }
 }
 
 void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span<vec3> light,
@@ -106,8 +113,8 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
     Lobes goes_on = Lobes::all;
     if (const uint32_t chart = find_known_chart(scene, walk, hit); chart != no_chart) {
       const bool sharp = bsdf.alpha < sharp_gloss_alpha && has_specular(bsdf);
-      add_known_light(scene, chart, surface.position, walk.throughput * reflectance_of(bsdf, sharp),
-                      light);
+      add_known_light(scene, chart, walk.ray, hit, surface,
+                      walk.throughput * reflectance_of(bsdf, sharp), light);
       if (!sharp) return;
       goes_on = Lobes::specular;
     } else if (!is_smooth(bsdf)) {
