@@ -19,7 +19,6 @@ constexpr uint32_t first_samples = 4;  // of a direct node, in its first pass
 // Places held out of the bake, and samples of their halves a pass: a small part of its own.
 constexpr size_t nodes_a_held_out = 64, least_held_out = 64, most_held_out = 4096;
 constexpr int held_out_samples = 8;
-constexpr uint32_t probed_samples = 8;  // of a direct node, that ask whether it is within something
 constexpr int refine_rounds = 3;
 constexpr int gathers_a_pass = 8;  // samples of a gathering node for one of a direct node
 constexpr int tiles_a_step = 64;
@@ -85,35 +84,36 @@ void for_each_place(const BakeScene& scene, const Bake& bake, uint32_t tile, Bak
   }
 }
 
-// One more sample of each node of a tile: visit(node, place, number of the sample, sampler).
+// One more sample of each node of a tile: visit(node, place, sampler).
 template <class Visit>
 void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, BakeField& field,
                      const Visit& visit) {
   const int which = &field == &bake.gather;
-  const uint32_t number = field.asked[tile]++;
   for_each_place(
-      scene, bake, tile, field, number, [&](uint32_t i) { return node_seed(bake, which, tile, i); },
-      [&](size_t node, const LitPlace& lit, Sampler& sampler) {
-        visit(node, lit, number, sampler);
-      });
+      scene, bake, tile, field, field.asked[tile]++,
+      [&](uint32_t i) { return node_seed(bake, which, tile, i); }, visit);
 }
 
 void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.direct;
-  auto sample = [&](size_t node, const LitPlace& lit, uint32_t number, Sampler& sampler) {
-    Walk probe;
-    bool probes = number < probed_samples || field.hidden[node] > 0;
-    if (probes && leave(lit, sampler, probe) &&
-        is_inside(scene.world, probe, scene.world.intersect(probe.ray))) {
+  auto sample = [&](size_t node, const LitPlace& lit, Sampler& sampler) {
+    std::fill(found.light.begin(), found.light.end(), vec3(0));
+    std::fill(found.slope.begin(), found.slope.end(), vec3(0));
+    Walk walk;
+    bool inside = false;
+    if (leave(lit, sampler, walk)) add_met_light(scene, walk, sampler, found.light, inside);
+    if (inside) {
       field.hidden[node] += 1;
       return;
     }
+    for (size_t p = 0; p < found.light.size() && !field.slope.empty(); p++)
+      if (const float l = luminance(found.light[p]); l > 0)
+        found.slope[p] = l * slope_of(walk.ray.direction, lit.surface.normal);
     for (size_t p = 0; p < found.light.size(); p++) {
       sampler.seek(Dimensions::first_surface);
       DirectLight direct =
           sample_direct_light(scene.parts[p], Walk{}, lit.surface, lit.bsdf, true, sampler);
-      found.light[p] = direct.area_diffuse + direct.punctual_diffuse;
-      found.slope[p] = vec3(0);
+      found.light[p] += direct.area_diffuse + direct.punctual_diffuse;
       auto add_slope = [&](vec3 light, vec3 direction) {
         if (float l = luminance(light); l > 0)
           found.slope[p] += l * slope_of(direction, lit.surface.normal);
@@ -129,7 +129,7 @@ void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
 
 void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.gather;
-  auto sample = [&](size_t node, const LitPlace& lit, uint32_t, Sampler& sampler) {
+  auto sample = [&](size_t node, const LitPlace& lit, Sampler& sampler) {
     Walk walk;
     std::fill(found.light.begin(), found.light.end(), vec3(0));
     std::fill(found.slope.begin(), found.slope.end(), vec3(0));
@@ -171,20 +171,23 @@ PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
       std::clamp(pilots_a_tile / grid.nodes(), least_pilot_samples, most_pilot_samples);
   std::vector<float> light(size_t(grid.nodes()) * samples, -1);  // node by node; below 0: no light
   const uint64_t seed = mix64(bake.settings.seed + mix64(~uint64_t(tile)));
+  std::vector<vec3> met(size_t(scene.layers()));
   double sum = 0, count = 0;
   for (uint32_t number = 0; number < samples; number++)
     for_each_place(
         scene, bake, tile, field, number, [&](uint32_t) { return seed; },
         [&](size_t node, const LitPlace& lit, Sampler& sampler) {
-          Walk probe;
-          if (leave(lit, sampler, probe) &&
-              is_inside(scene.world, probe, scene.world.intersect(probe.ray)))
-            return;
+          std::fill(met.begin(), met.end(), vec3(0));
+          Walk walk;
+          bool inside = false;
+          if (leave(lit, sampler, walk)) add_met_light(scene, walk, sampler, met, inside);
+          if (inside) return;
           sampler.seek(Dimensions::first_surface);
           const DirectLight direct =
               sample_direct_light(all, Walk{}, lit.surface, lit.bsdf, true, sampler);
-          const float found =
-              lit.uncoated * luminance(direct.area_diffuse + direct.punctual_diffuse);
+          vec3 arrived = direct.area_diffuse + direct.punctual_diffuse;
+          for (vec3 layer : met) arrived += layer;
+          const float found = lit.uncoated * luminance(arrived);
           if (!std::isfinite(found)) return;
           light[(node - grid.first) * samples + number] = found;
           sum += double(found), count++;

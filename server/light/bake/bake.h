@@ -4,9 +4,10 @@
 // Two fields of nodes. Light that has scattered before is smooth: few nodes gather it, each sample
 // a ray over the cosine that ends in coarse light (light/bake/coarse_light.h), or goes on as a
 // path. Light straight from its sources has shadows with edges: its nodes become finer where
-// neighbours differ, which a few samples with the same random numbers at all nodes of a tile tell,
-// and each sample is next-event estimation. The parts of the light that belong
-// to each lamp are kept apart.
+// neighbours differ, which a few samples with the same random numbers at all nodes of a tile tell.
+// Each of their samples is next-event estimation and a ray over the cosine, weighed against each
+// other (multiple importance sampling). The parts of the light that belong to each lamp are kept
+// apart.
 //
 // A sample is a function of its node, its number and the seed, so a bake that was interrupted goes
 // on to the same bits, and shards, each with every n-th tile, add up to those of one run of as many

@@ -78,6 +78,8 @@ float sample_place(const BakeScene& scene, const HeldOutPlace& place, Sampler& s
   Walk walk;
   bool inside = false;
   if (leave(lit, sampler, walk)) {
+    add_met_light(scene, walk, sampler, gathered, inside);
+    for (vec3& layer : gathered) light += layer, layer = vec3(0);
     gather_light(scene, walk, sampler, gathered, inside);
     cut_off(scene, gathered);
   }
