@@ -301,12 +301,15 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   return surface;
 }
 
-vec3 eval_mesh_normal(const World& world, const Hit& hit, const Surface& surface) {
+vec3 eval_mesh_normal(const World& world, const Ray& ray, const Hit& hit) {
   const PlacedMesh& placed = world.placed(hit.instance);
-  vec3 winding = surface.front ? surface.geometric_normal : -surface.geometric_normal;
+  Face own;
+  const Face& face = face_of(placed, hit.triangle, own);
   Corners at = corners_of(*placed.mesh, hit.triangle, hit.barycentric);
-  return turned_to_viewer(shading_normal(placed, at, winding), surface.geometric_normal,
-                          surface.front);
+  SurfacePlace place;
+  const Side side = locate(face, hit.barycentric, ray, place);
+  return turned_to_viewer(shading_normal(placed, at, side.winding), place.geometric_normal,
+                          side.front);
 }
 
 bool is_behind(const PlacedMesh& placed, uint32_t triangle, vec3 direction) {

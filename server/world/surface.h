@@ -52,7 +52,7 @@ bool is_lambertian(const Material& material);
 // `hit` must be valid().
 Surface eval_surface(const World& world, const Ray& ray, const Hit& hit);
 // Surface::normal of that hit as it were without a map of normals.
-vec3 eval_mesh_normal(const World& world, const Hit& hit, const Surface& surface);
+vec3 eval_mesh_normal(const World& world, const Ray& ray, const Hit& hit);
 // The same values in less time, where the material is_lambertian.
 LambertSurface eval_lambert_surface(const World& world, const Ray& ray, const Hit& hit);
 // Whether a ray of that direction meets the triangle from the side that its winding does not face.

@@ -8,23 +8,26 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "light/material/bsdf.h"
+#include "light/bake/lit_place.h"
 
 namespace wellspring {
 namespace {
 
-constexpr int pilot_samples = 8;  // of a node, by which its tile is refined or not
+// Pilot samples of a tile, by which its nodes become finer or not, and of each node.
+constexpr uint32_t pilots_a_tile = 256, least_pilot_samples = 8, most_pilot_samples = 64;
+constexpr uint32_t first_samples = 4;  // of a direct node, in its first pass
+// Places held out of the bake, and samples of their halves a pass: a small part of its own.
+constexpr size_t nodes_a_held_out = 64, least_held_out = 64, most_held_out = 4096;
+constexpr int held_out_samples = 8;
 constexpr int refine_rounds = 3;
 constexpr int gathers_a_pass = 8;  // samples of a gathering node for one of a direct node
 constexpr int tiles_a_step = 64;
-constexpr double tile_nodes = 64;      // of a tile, on average, before refinement
-constexpr float most_brightness = 25;  // of a gathered sample, times the mean light
+constexpr double tile_nodes = 64;  // of a tile, on average, before refinement
 // A thing that lies nearer than either covers a place: shares of the widths of a cell and a tile.
 constexpr float cell_covering = 0.3f, tile_covering = 0.03f;
-// Neighbouring nodes that differ by that share of their light, of which a share of the scene's mean
-// counts as there everywhere.
-constexpr float rough_contrast = 0.15f, contrast_floor = 0.25f;
-constexpr float sure_deviations = 4;  // by which they must differ beyond chance
+// Neighbouring nodes that differ by that share of their light, root mean square, of which a share
+// of the scene's mean counts as there everywhere.
+constexpr float rough_contrast = 0.05f, contrast_floor = 1;
 
 uint64_t node_seed(const Bake& bake, int field, uint32_t tile, uint32_t node) {
   return mix64(bake.settings.seed + mix64(uint64_t(tile) << 32 | node << 1 | uint32_t(field)));
@@ -48,44 +51,6 @@ void add_light(BakeField& field, size_t node, const LayerLight& found, float sca
   field.count[node] += 1;
 }
 
-// A light that one walk in thousands comes upon (the sun in a brass knob) would stay a spark on the
-// wall for hours.
-void cut_off(float most, std::span<vec3> light) {
-  vec3 sum(0);
-  for (vec3 l : light) sum += l;
-  if (!(luminance(sum) > most)) return;
-  for (vec3& l : light) l *= most / luminance(sum);
-}
-
-// A place around a node, ready to be lit: a white Lambertian surface but for its coat.
-struct LitPlace {
-  Surface surface;
-  Bsdf bsdf;
-  float uncoated = 1;  // what undoes the coat's darkening towards the viewer
-};
-
-LitPlace light_place(const BakeScene& scene, const NodePlace& place) {
-  LitPlace lit;
-  lit.surface = eval_surface(scene.world, place.ray, place.hit);
-  // What a map of normals adds is finer than nodes.
-  lit.surface.normal = eval_mesh_normal(scene.world, place.hit, lit.surface);
-  const Material& material = scene.world.material_of(place.hit.instance);
-  lit.bsdf = make_bsdf_in(scene.parts.front(), Media{}, lit.surface, material, place.ray.direction);
-  lit.bsdf.diffuse = vec3(1);
-  float passes = lit.bsdf.coat_passes * lit.bsdf.beneath;
-  lit.uncoated = passes > 0.05f ? 1 / passes : 1;
-  return lit;
-}
-
-// The ray over the cosine that leaves the place. False: none does.
-bool leave(const LitPlace& lit, Sampler& sampler, Walk& walk) {
-  sampler.seek(Dimensions::first_surface + Dimensions::scatter);
-  BsdfSample scattered = sample_bsdf(lit.bsdf, Lobes::diffuse, sampler);
-  if (!advance(walk, lit.surface, scattered)) return false;
-  walk.from_normal = lit.surface.geometric_normal;
-  return true;
-}
-
 // Something lies upon the surface there, or closely before it: no eye comes between, and the dark
 // there must not bleed into what is seen.
 bool is_covered(const World& world, const SurfacePlace& place, float distance) {
@@ -96,46 +61,59 @@ bool is_covered(const World& world, const SurfacePlace& place, float distance) {
   return world.occluded(up);
 }
 
-// One more sample of each node of a tile: visit(node, place, number of the sample, sampler).
-template <class Visit>
-void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, BakeField& field,
-                     const Visit& visit) {
+// A place of each node of a tile that is not covered: visit(node, place, sampler). `seed_of` gives
+// each node's seed.
+template <class Seed, class Visit>
+void for_each_place(const BakeScene& scene, const Bake& bake, uint32_t tile, BakeField& field,
+                    uint32_t number, const Seed& seed_of, const Visit& visit) {
   const IlluminationTile& grid = field.tiles[tile];
-  const int which = &field == &bake.gather;
-  const uint32_t number = field.asked[tile]++;
   const IlluminationChart& chart = bake.charts.places->charts[bake.places[tile].chart];
   const float cell = 1 / std::max(length(chart.along_u) * float(grid.columns),
                                   length(chart.along_v) * float(grid.rows)),
               covering = std::min(cell_covering * cell, tile_covering * bake.tile);
   for (uint32_t i = 0; i < grid.nodes(); i++) {
-    Sampler sampler(node_seed(bake, which, tile, i), number);
+    Sampler sampler(seed_of(i), number);
     float choice = sampler.next();
     NodePlace place = sample_node(scene.world, bake.charts, field, bake.places[tile], tile, i,
                                   choice, sampler.next2());
     if (!place.valid) continue;
-    const LitPlace lit = light_place(scene, place);
     const size_t node = size_t(grid.first) + i;
+    const LitPlace lit = light_node_place(scene, place.ray, place.hit, field.normal_of(node));
     if (is_covered(scene.world, lit.surface, covering)) field.hidden[node] += 1;
-    else visit(node, lit, number, sampler);
+    else visit(node, lit, sampler);
   }
+}
+
+// One more sample of each node of a tile: visit(node, place, sampler).
+template <class Visit>
+void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, BakeField& field,
+                     const Visit& visit) {
+  const int which = &field == &bake.gather;
+  for_each_place(
+      scene, bake, tile, field, field.asked[tile]++,
+      [&](uint32_t i) { return node_seed(bake, which, tile, i); }, visit);
 }
 
 void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.direct;
-  auto sample = [&](size_t node, const LitPlace& lit, uint32_t number, Sampler& sampler) {
-    Walk probe;
-    bool probes = number < pilot_samples || field.hidden[node] > 0;
-    if (probes && leave(lit, sampler, probe) &&
-        is_inside(scene.world, probe, scene.world.intersect(probe.ray))) {
+  auto sample = [&](size_t node, const LitPlace& lit, Sampler& sampler) {
+    std::fill(found.light.begin(), found.light.end(), vec3(0));
+    std::fill(found.slope.begin(), found.slope.end(), vec3(0));
+    Walk walk;
+    bool inside = false;
+    if (leave(lit, sampler, walk)) add_met_light(scene, walk, sampler, found.light, inside);
+    if (inside) {
       field.hidden[node] += 1;
       return;
     }
+    for (size_t p = 0; p < found.light.size() && !field.slope.empty(); p++)
+      if (const float l = luminance(found.light[p]); l > 0)
+        found.slope[p] = l * slope_of(walk.ray.direction, lit.surface.normal);
     for (size_t p = 0; p < found.light.size(); p++) {
       sampler.seek(Dimensions::first_surface);
       DirectLight direct =
           sample_direct_light(scene.parts[p], Walk{}, lit.surface, lit.bsdf, true, sampler);
-      found.light[p] = direct.area_diffuse + direct.punctual_diffuse;
-      found.slope[p] = vec3(0);
+      found.light[p] += direct.area_diffuse + direct.punctual_diffuse;
       auto add_slope = [&](vec3 light, vec3 direction) {
         if (float l = luminance(light); l > 0)
           found.slope[p] += l * slope_of(direction, lit.surface.normal);
@@ -151,7 +129,7 @@ void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
 
 void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.gather;
-  auto sample = [&](size_t node, const LitPlace& lit, uint32_t, Sampler& sampler) {
+  auto sample = [&](size_t node, const LitPlace& lit, Sampler& sampler) {
     Walk walk;
     std::fill(found.light.begin(), found.light.end(), vec3(0));
     std::fill(found.slope.begin(), found.slope.end(), vec3(0));
@@ -159,8 +137,7 @@ void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
     if (leave(lit, sampler, walk)) {
       gather_light(scene, walk, sampler, found.light, inside);
       // Coarse light knows its mean only when it is whole.
-      if (scene.known && bake.refined > 0)
-        cut_off(most_brightness * scene.known->mean, found.light);
+      if (bake.refined > 0) cut_off(scene, found.light);
       if (!field.slope.empty()) {
         const vec3 slope = slope_of(walk.ray.direction, lit.surface.normal);
         for (size_t p = 0; p < found.light.size(); p++)
@@ -173,38 +150,70 @@ void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
   for_each_sample(scene, bake, tile, field, sample);
 }
 
-// How much a tile's neighbouring nodes differ, beyond what chance explains.
-float contrast_of(const BakeField& field, const IlluminationTile& tile, float floor) {
-  // Few samples do not tell each node's noise: that of the whole tile does.
-  double squares = 0, variances = 0;
-  for (uint32_t i = 0; i < tile.nodes(); i++) {
-    const size_t node = tile.first + i;
-    if (field.count[node] < 2) continue;
-    const double mean = field.mean_of(node);
-    squares += mean * mean, variances += field.variance_of(node) / double(field.count[node]);
-  }
-  const float noise = squares > 0 ? float(variances / squares) : 0;
-  float most = 0;
-  auto compare = [&](uint32_t a, uint32_t b) {
-    if (field.count[tile.first + a] < 2 || field.count[tile.first + b] < 2) return;
-    float ma = float(field.mean_of(tile.first + a)), mb = float(field.mean_of(tile.first + b));
-    float differ = std::abs(ma - mb) - sure_deviations * std::sqrt(noise * (ma * ma + mb * mb));
-    most = std::max(most, differ / (0.5f * (ma + mb) + floor));
-  };
+// Calls visit(a, b) for nodes of a tile side by side.
+template <class Visit>
+void for_each_pair(const IlluminationTile& tile, const Visit& visit) {
   const uint32_t stride = tile.columns + 1u;
   for (uint32_t j = 0; j <= tile.rows; j++)
     for (uint32_t i = 0; i <= tile.columns; i++) {
-      if (i < tile.columns) compare(j * stride + i, j * stride + i + 1);
-      if (j < tile.rows) compare(j * stride + i, (j + 1) * stride + i);
+      if (i < tile.columns) visit(j * stride + i, j * stride + i + 1);
+      if (j < tile.rows) visit(j * stride + i, (j + 1) * stride + i);
     }
-  return most;
 }
 
-float mean_light(const BakeField& field) {
+// Looks at a tile with the same random numbers at all its nodes, so that what differs between them
+// is their places' and not chance's.
+PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
+  BakeField& field = bake.direct;
+  const IlluminationTile& grid = field.tiles[tile];
+  const Transport all{scene.world, *scene.lights.tables};
+  // Small tiles have few pairs to learn from.
+  const uint32_t samples =
+      std::clamp(pilots_a_tile / grid.nodes(), least_pilot_samples, most_pilot_samples);
+  std::vector<float> light(size_t(grid.nodes()) * samples, -1);  // node by node; below 0: no light
+  const uint64_t seed = mix64(bake.settings.seed + mix64(~uint64_t(tile)));
+  std::vector<vec3> met(size_t(scene.layers()));
   double sum = 0, count = 0;
-  for (size_t i = 0; i < field.nodes(); i++) {
-    if (!(field.count[i] > 0)) continue;
-    sum += field.mean_of(i), count++;
+  for (uint32_t number = 0; number < samples; number++)
+    for_each_place(
+        scene, bake, tile, field, number, [&](uint32_t) { return seed; },
+        [&](size_t node, const LitPlace& lit, Sampler& sampler) {
+          std::fill(met.begin(), met.end(), vec3(0));
+          Walk walk;
+          bool inside = false;
+          if (leave(lit, sampler, walk)) add_met_light(scene, walk, sampler, met, inside);
+          if (inside) return;
+          sampler.seek(Dimensions::first_surface);
+          const DirectLight direct =
+              sample_direct_light(all, Walk{}, lit.surface, lit.bsdf, true, sampler);
+          vec3 arrived = direct.area_diffuse + direct.punctual_diffuse;
+          for (vec3 layer : met) arrived += layer;
+          const float found = lit.uncoated * luminance(arrived);
+          if (!std::isfinite(found)) return;
+          light[(node - grid.first) * samples + number] = found;
+          sum += double(found), count++;
+        });
+  double unlike = 0, pairs = 0;
+  for_each_pair(grid, [&](uint32_t a, uint32_t b) {
+    double differ = 0, squares = 0, n = 0;
+    for (uint32_t k = 0; k < samples; k++) {
+      const float la = light[size_t(a) * samples + k], lb = light[size_t(b) * samples + k];
+      if (la < 0 || lb < 0) continue;
+      const double d = double(la) - double(lb);
+      differ += d, squares += d * d, n++;
+    }
+    if (n < 2) return;
+    // The square of the mean, without what chance adds to it.
+    unlike += (differ * differ - squares) / (n * (n - 1)), pairs++;
+  });
+  return {count > 0 ? float(sum / count) : 0, pairs > 0 ? float(std::max(unlike, 0.0) / pairs) : 0};
+}
+
+float mean_light(const Bake& bake) {
+  double sum = 0, count = 0;
+  for (size_t t = 0; t < bake.pilots.size(); t++) {
+    const double nodes = double(bake.direct.tiles[t].nodes());
+    sum += nodes * double(bake.pilots[t].light), count += nodes;
   }
   return count > 0 ? float(sum / count) : 0;
 }
@@ -213,17 +222,21 @@ float mean_light(const BakeField& field) {
 // more to be had; what their coarser nodes have found is given up.
 void refine(const BakeScene& scene, Bake& bake) {
   const BakeField& old = bake.direct;
-  std::vector<float> contrast(old.tiles.size(), 0);
-  const float floor = contrast_floor * mean_light(old);
-  parallel_for(int(contrast.size()), [&](int t) {
-    if (old.tiles[size_t(t)].first != no_tile)
-      contrast[size_t(t)] = contrast_of(old, old.tiles[size_t(t)], floor);
-  });
+  const float floor = contrast_floor * mean_light(bake);
+  std::vector<float> worth(old.tiles.size(), 0);
   std::vector<uint32_t> order;
-  for (uint32_t t = 0; t < contrast.size(); t++)
-    if (contrast[t] > rough_contrast) order.push_back(t);
+  for (uint32_t t = 0; t < worth.size(); t++) {
+    const PilotTile& pilot = bake.pilots[t];
+    const IlluminationTile &now = old.tiles[t], &first = bake.gather.tiles[t];
+    const float light = pilot.light + floor;
+    if (!(pilot.unlike > rough_contrast * rough_contrast * light * light)) continue;
+    // Smaller cells have less to gain.
+    worth[t] = pilot.unlike / (light * light) * float(first.columns * first.rows) /
+               float(now.columns * now.rows);
+    order.push_back(t);
+  }
   std::stable_sort(order.begin(), order.end(),
-                   [&](uint32_t a, uint32_t b) { return contrast[a] > contrast[b]; });
+                   [&](uint32_t a, uint32_t b) { return worth[a] > worth[b]; });
   std::vector<TileCells> cells = cells_of(old);
   size_t nodes = old.nodes();
   for (uint32_t t : order) {
@@ -235,7 +248,7 @@ void refine(const BakeScene& scene, Bake& bake) {
     nodes += more;
     c = finer;
   }
-  BakeField field = make_field(scene.world, bake.charts, cells, old.layers, !old.slope.empty());
+  BakeField field = make_field(scene.world, bake.charts, cells, old.layers);
   for (uint32_t t = 0; t < cells.size(); t++) {
     const IlluminationTile &from = old.tiles[t], &to = field.tiles[t];
     if (from.nodes() != to.nodes() || from.columns != to.columns) continue;
@@ -246,7 +259,8 @@ void refine(const BakeScene& scene, Bake& bake) {
 
 void pass_tile(const BakeScene& scene, Bake& bake, uint32_t tile) {
   LayerLight light(scene.layers());
-  sample_direct(scene, bake, tile, light);
+  do sample_direct(scene, bake, tile, light);
+  while (bake.direct.asked[tile] < first_samples);
   for (int k = 0; k < gathers_a_pass; k++) sample_gather(scene, bake, tile, light);
 }
 
@@ -260,9 +274,8 @@ uint32_t do_step(const BakeScene& scene, Bake& bake) {
   parallel_for(int(end - first), [&](int i) {
     const uint32_t tile = first + uint32_t(i);
     if (tile % shards != shard || bake.gather.tiles[tile].first == no_tile) return;
-    if (!pilot) return pass_tile(scene, bake, tile);
-    LayerLight light(scene.layers());
-    while (bake.direct.asked[tile] < pilot_samples) sample_direct(scene, bake, tile, light);
+    if (!pilot) pass_tile(scene, bake, tile);
+    else if (bake.direct.asked[tile]++ == 0) bake.pilots[tile] = look_ahead(scene, bake, tile);
   });
   return end;
 }
@@ -273,7 +286,8 @@ bool Bake::pilot() const { return refined <= refine_rounds; }
 
 size_t memory_bytes(const Bake& bake) {
   return memory_bytes(bake.direct) + memory_bytes(bake.gather) + bytes_of(bake.places) +
-         bytes_of(bake.charts.triangles) + bytes_of(bake.charts.places->chart_of);
+         bytes_of(bake.held_out.places) + bytes_of(bake.charts.triangles) +
+         bytes_of(bake.charts.places->chart_of);
 }
 
 size_t vertex_bytes(const Bake& bake) {
@@ -293,9 +307,13 @@ Bake begin_bake(const World& world, std::span<const vec3> places, const BakeSett
   bake.places = tile_places(bake.charts);
   std::vector<TileCells> cells = choose_cells(world, bake.charts, places, settings.gather_nodes);
   check_cancelled();
-  bake.gather = make_field(world, bake.charts, cells, int(layer_count(world.scene())),
-                           has_mapped_normals(world.scene()));
+  bake.gather = make_field(world, bake.charts, cells, int(layer_count(world.scene())));
   bake.direct = bake.gather;
+  bake.pilots.resize(bake.charts.tiles);
+  bake.held_out =
+      hold_out(world, bake.charts, places,
+               std::clamp(settings.gather_nodes / nodes_a_held_out, least_held_out, most_held_out),
+               settings.seed);
   return bake;
 }
 
@@ -305,8 +323,15 @@ void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop
     bake.cursor = do_step(scene, bake);
     if (bake.cursor < bake.charts.tiles) continue;
     bake.cursor = 0;
-    if (!bake.pilot()) bake.passes++;
-    else if (bake.refined++ < refine_rounds) refine(scene, bake);
+    if (!bake.pilot()) {
+      bake.passes++;
+      sample_held_out(scene, held_out_samples, bake.held_out);
+    } else if (bake.refined++ < refine_rounds) {
+      refine(scene, bake);
+    } else {
+      clear_samples(bake.direct);
+      std::fill(bake.direct.asked.begin(), bake.direct.asked.end(), 0);
+    }
   } while (!stop());
 }
 

@@ -4,8 +4,10 @@
 // Two fields of nodes. Light that has scattered before is smooth: few nodes gather it, each sample
 // a ray over the cosine that ends in coarse light (light/bake/coarse_light.h), or goes on as a
 // path. Light straight from its sources has shadows with edges: its nodes become finer where
-// neighbours differ, and each sample is next-event estimation. The parts of the light that belong
-// to each lamp are kept apart.
+// neighbours differ, which a few samples with the same random numbers at all nodes of a tile tell.
+// Each of their samples is next-event estimation and a ray over the cosine, weighed against each
+// other (multiple importance sampling). The parts of the light that belong to each lamp are kept
+// apart.
 //
 // A sample is a function of its node, its number and the seed, so a bake that was interrupted goes
 // on to the same bits, and shards, each with every n-th tile, add up to those of one run of as many
@@ -17,6 +19,7 @@
 
 #include "light/bake/bake_field.h"
 #include "light/bake/bake_scene.h"
+#include "light/bake/held_out.h"
 
 namespace wellspring {
 
@@ -26,12 +29,20 @@ struct BakeSettings {
   int shard = 0, shards = 1;
 };
 
+// What pilot samples say of a tile's direct light: its mean luminance, and the mean square of what
+// neighbouring nodes differ by.
+struct PilotTile {
+  float light = 0, unlike = 0;
+};
+
 struct Bake {
   BakeSettings settings;
   std::string source;  // the exhibit's folder, for who merges
   BakeCharts charts;
   std::vector<TilePlace> places;  // of each tile
   BakeField direct, gather;
+  std::vector<PilotTile> pilots;  // of each tile, while its nodes may become finer
+  HeldOut held_out;
   std::vector<int> shards_done;  // whose tiles are here: those merged, and its own
   float tile = 0;                // as of make_charts()
   std::vector<uint8_t> direct_sight, gather_sight;  // NodeSight (light/bake/unseen.h), as far as

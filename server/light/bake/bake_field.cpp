@@ -106,7 +106,7 @@ void for_each_tile(const IlluminationChart& chart, const vec2* corners, float ma
     }
 }
 
-// Calls visit(chart, triangle, corners) for all of them, charts in parallel.
+// Calls visit(number of the chart, triangle, corners) for all of them, charts in parallel.
 template <class Visit>
 void for_each_triangle(const World& world, const BakeCharts& charts, const Visit& visit) {
   parallel_ranges(int(charts.surfaces.size()), 16, [&](int begin, int end) {
@@ -117,26 +117,72 @@ void for_each_triangle(const World& world, const BakeCharts& charts, const Visit
         uint32_t triangle = charts.triangles[surface.first + i];
         vec2 corners[3];
         project(world, chart, surface.instance, triangle, corners);
-        visit(chart, triangle, corners);
+        visit(uint32_t(c), triangle, corners);
       }
     }
   });
 }
 
-// Calls visit(node, area in cells) for the tile's nodes that the triangle is a part of.
+vec2 centroid_of(const Polygon& p) {
+  vec2 sum(0);
+  float areas = 0;
+  for (int i = 2; i < p.count; i++) {
+    const float area = cross(p.corner[i - 1] - p.corner[0], p.corner[i] - p.corner[0]);
+    sum += area * (p.corner[0] + p.corner[i - 1] + p.corner[i]) / 3.0f, areas += area;
+  }
+  return areas != 0 ? sum / areas : p.corner[0];
+}
+
+// Weights of a triangle's second and third corner at a place of its plane; false: it has no area.
+bool find_barycentric(const vec2* corners, vec2 place, vec2& weights) {
+  const vec2 p = place - corners[0], a = corners[1] - corners[0], b = corners[2] - corners[0];
+  const float whole = cross(a, b);
+  if (!(std::abs(whole) > 1e-12f)) return false;
+  weights = clamp(vec2(cross(p, b) / whole, cross(a, p) / whole), vec2(0), vec2(1));
+  if (float both = weights.x + weights.y; both > 1) weights /= both;
+  return true;
+}
+
+// A ray towards that place of a triangle, from the side that the chart shows.
+Ray look_at(const World& world, const ChartSurface& surface, const Hit& hit) {
+  const vec3 normal = eval_face(world, hit.instance, hit.triangle);
+  Ray ray;
+  ray.direction = surface.back ? normal : -normal;
+  ray.origin = eval_position(world, hit.instance, hit.triangle, hit.barycentric) - ray.direction;
+  return ray;
+}
+
+// Calls visit(node, its part of the triangle, area, both in cells of the tile) for the tile's nodes
+// that the triangle is a part of; `scaled` are the triangle's corners in cells.
 template <class Visit>
-void for_each_node(const IlluminationTile& tile, const vec2* local, const Visit& visit) {
-  vec2 cells(float(tile.columns), float(tile.rows)), scaled[3];
-  for (int k = 0; k < 3; k++) scaled[k] = local[k] * cells;
+void for_each_node(const IlluminationTile& tile, const vec2* scaled, const Visit& visit) {
+  const vec2 cells(float(tile.columns), float(tile.rows));
   Box box = box_of(scaled);
   ivec2 low = max(ivec2(ceil(max(box.low, vec2(-1)) - 0.5f)), ivec2(0));
   ivec2 high = min(ivec2(floor(min(box.high, cells + 1.0f) + 0.5f)), ivec2(cells));
   for (int j = low.y; j <= high.y; j++)
     for (int i = low.x; i <= high.x; i++) {
       vec2 at{float(i), float(j)};
-      float area = area_of(clip_to_box(scaled, at - 0.5f, at + 0.5f));
-      if (area > least_area) visit(uint32_t(j) * (tile.columns + 1u) + uint32_t(i), area);
+      const Polygon part = clip_to_box(scaled, at - 0.5f, at + 0.5f);
+      const float area = area_of(part);
+      if (area > least_area) visit(uint32_t(j) * (tile.columns + 1u) + uint32_t(i), part, area);
     }
+}
+
+// Calls visit(node, the triangle's corners in cells of the node's tile, its part of the triangle,
+// area) for all nodes of a chart that the triangle is a part of.
+template <class Visit>
+void for_each_part(const IlluminationChart& chart, std::span<const IlluminationTile> tiles,
+                   const vec2* corners, const Visit& visit) {
+  for_each_tile(chart, corners, 0.5f, [&](uint32_t t, const vec2* local) {
+    const IlluminationTile& tile = tiles[t];
+    if (tile.first == no_tile) return;
+    vec2 scaled[3];
+    for (int k = 0; k < 3; k++) scaled[k] = local[k] * vec2(float(tile.columns), float(tile.rows));
+    for_each_node(tile, scaled, [&](uint32_t node, const Polygon& part, float area) {
+      visit(tile.first + node, scaled, part, area);
+    });
+  });
 }
 
 uint8_t cell_count(float side, float spacing) {
@@ -179,8 +225,8 @@ void clear_samples(BakeField& field) {
 
 size_t memory_bytes(const BakeField& f) {
   return bytes_of(f.tiles) + bytes_of(f.first_support) + bytes_of(f.supports) + bytes_of(f.light) +
-         bytes_of(f.slope) + bytes_of(f.squares) + bytes_of(f.count) + bytes_of(f.hidden) +
-         bytes_of(f.asked);
+         bytes_of(f.slope) + bytes_of(f.normal) + bytes_of(f.squares) + bytes_of(f.count) +
+         bytes_of(f.hidden) + bytes_of(f.asked);
 }
 
 std::vector<TilePlace> tile_places(const BakeCharts& charts) {
@@ -196,12 +242,13 @@ std::vector<TilePlace> tile_places(const BakeCharts& charts) {
 
 std::vector<TileCells> find_occupied(const World& world, const BakeCharts& charts) {
   std::vector<TileCells> cells(charts.tiles);
-  for_each_triangle(world, charts, [&](const IlluminationChart& chart, uint32_t, const vec2* at) {
-    for_each_tile(chart, at, occupied_margin, [&](uint32_t tile, const vec2* local) {
-      if (cells[tile].columns > 0) return;
-      vec2 margin(occupied_margin);
-      if (clip_to_box(local, -margin, 1.0f + margin).count >= 3) cells[tile] = {1, 1};
-    });
+  for_each_triangle(world, charts, [&](uint32_t c, uint32_t, const vec2* at) {
+    for_each_tile(charts.places->charts[c], at, occupied_margin,
+                  [&](uint32_t tile, const vec2* local) {
+                    if (cells[tile].columns > 0) return;
+                    vec2 margin(occupied_margin);
+                    if (clip_to_box(local, -margin, 1.0f + margin).count >= 3) cells[tile] = {1, 1};
+                  });
   });
   return cells;
 }
@@ -254,8 +301,30 @@ std::vector<TileCells> choose_cells(const World& world, const BakeCharts& charts
   return chosen;
 }
 
+std::vector<uint32_t> node_normals(const World& world, const BakeCharts& charts,
+                                   std::span<const IlluminationTile> tiles, size_t nodes) {
+  std::vector<vec3> sums(nodes, vec3(0));
+  for_each_triangle(world, charts, [&](uint32_t c, uint32_t triangle, const vec2* at) {
+    const IlluminationChart& chart = charts.places->charts[c];
+    if (!chart.bent) return;
+    auto add = [&](uint32_t node, const vec2* corners, const Polygon& part, float area) {
+      Hit hit;
+      hit.instance = charts.surfaces[c].instance, hit.triangle = triangle;
+      if (!find_barycentric(corners, centroid_of(part), hit.barycentric)) return;
+      sums[node] += area * eval_mesh_normal(world, look_at(world, charts.surfaces[c], hit), hit);
+    };
+    for_each_part(chart, tiles, at, add);
+  });
+  std::vector<uint32_t> normals(nodes);
+  for (size_t i = 0; i < nodes; i++) {
+    const float length2 = dot(sums[i], sums[i]);
+    normals[i] = length2 > 0 ? pack_node_normal(sums[i] / std::sqrt(length2)) : no_normal;
+  }
+  return normals;
+}
+
 BakeField make_field(const World& world, const BakeCharts& charts, std::span<const TileCells> cells,
-                     int layers, bool sloped) {
+                     int layers) {
   BakeField field;
   field.layers = layers;
   field.tiles.resize(cells.size());
@@ -268,15 +337,12 @@ BakeField make_field(const World& world, const BakeCharts& charts, std::span<con
   // A chart's nodes are its own, so charts may be counted and filled side by side.
   std::vector<uint32_t> counts(nodes + size_t(1), 0);
   auto for_each_support = [&](const auto& visit) {
-    for_each_triangle(world, charts,
-                      [&](const IlluminationChart& chart, uint32_t triangle, const vec2* at) {
-                        for_each_tile(chart, at, 0.5f, [&](uint32_t tile, const vec2* local) {
-                          if (field.tiles[tile].first == no_tile) return;
-                          for_each_node(field.tiles[tile], local, [&](uint32_t node, float area) {
-                            visit(field.tiles[tile].first + node, triangle, area);
-                          });
-                        });
-                      });
+    for_each_triangle(world, charts, [&](uint32_t c, uint32_t triangle, const vec2* at) {
+      for_each_part(charts.places->charts[c], field.tiles, at,
+                    [&](uint32_t node, const vec2*, const Polygon&, float area) {
+                      visit(node, triangle, area);
+                    });
+    });
   };
   for_each_support([&](uint32_t node, uint32_t, float) { counts[node]++; });
   field.first_support.resize(nodes + size_t(1));
@@ -291,7 +357,10 @@ BakeField make_field(const World& world, const BakeCharts& charts, std::span<con
     field.supports[counts[node]++] = {triangle, area};
   });
   field.light.assign(size_t(nodes) * size_t(layers), vec3(0));
-  if (sloped) field.slope = field.light;
+  if (charts.sloped) {
+    field.slope = field.light;
+    field.normal = node_normals(world, charts, field.tiles, nodes);
+  }
   field.squares.assign(nodes, 0);
   field.count.assign(nodes, 0);
   field.hidden.assign(nodes, 0);
@@ -321,22 +390,12 @@ NodePlace sample_node(const World& world, const BakeCharts& charts, const BakeFi
   vec2 middle{float(node_of_tile % (grid.columns + 1u)), float(node_of_tile / (grid.columns + 1u))};
   Polygon part = clip_to_box(corners, middle - 0.5f, middle + 0.5f);
   if (part.count < 3) return place;
-  vec2 p = sample_polygon(part, u) - corners[0];
-  vec2 a = corners[1] - corners[0], b = corners[2] - corners[0];
-  float whole = cross(a, b);
-  if (!(std::abs(whole) > 1e-12f)) return place;
-  vec2 weights(cross(p, b) / whole, cross(a, p) / whole);
-  weights = clamp(weights, vec2(0), vec2(1));
-  if (float both = weights.x + weights.y; both > 1) weights /= both;
-  place.valid = true;
   place.hit.instance = surface.instance;
   place.hit.triangle = picked->triangle;
-  place.hit.barycentric = weights;
   place.hit.t = 1;
-  vec3 normal = eval_face(world, surface.instance, picked->triangle);
-  place.ray.direction = surface.back ? normal : -normal;
-  place.ray.origin =
-      eval_position(world, surface.instance, picked->triangle, weights) - place.ray.direction;
+  if (!find_barycentric(corners, sample_polygon(part, u), place.hit.barycentric)) return place;
+  place.valid = true;
+  place.ray = look_at(world, surface, place.hit);
   return place;
 }
 

@@ -15,6 +15,8 @@ struct NodeSupport {
   float area = 0;         // in cells
 };
 
+inline constexpr uint32_t no_normal = 0;  // which pack_node_normal() never gives
+
 struct BakeField {
   std::vector<IlluminationTile> tiles;
   std::vector<uint32_t> first_support;  // of each node, and the end
@@ -22,6 +24,7 @@ struct BakeField {
   int layers = 1;
   std::vector<vec3> light;           // sums: of each node, each layer's
   std::vector<vec3> slope;           // likewise, luminance times slope_of(); empty: not wanted
+  std::vector<uint32_t> normal;      // of each node: node_normals(); empty where slopes are
   std::vector<float> squares;        // of each node: of the luminance of all layers
   std::vector<float> count, hidden;  // samples that count, and those within something solid
   std::vector<uint32_t> asked;       // of each tile: samples of each of its nodes
@@ -30,6 +33,12 @@ struct BakeField {
   // variance of one sample.
   double mean_of(size_t node) const;
   double variance_of(size_t node) const;
+  // Unit; 0 where each place has its own.
+  vec3 normal_of(size_t node) const {
+    return normal.empty() || normal[node] == no_normal
+               ? vec3(0)
+               : normalize(unpack_node_normal(normal[node]));
+  }
   vec3* slope_of(size_t node) { return slope.empty() ? nullptr : &slope[node * size_t(layers)]; }
   vec3* light_of(size_t node) { return &light[node * size_t(layers)]; }
   const vec3* light_of(size_t node) const { return &light[node * size_t(layers)]; }
@@ -57,7 +66,11 @@ size_t node_count(std::span<const TileCells> cells);
 std::vector<TileCells> cells_of(const BakeField& field);
 
 BakeField make_field(const World& world, const BakeCharts& charts, std::span<const TileCells> cells,
-                     int layers, bool sloped);
+                     int layers);
+// The mean of the mesh's normals over what each node stands for, pack_node_normal(), on the side
+// that the chart shows; no_normal of nodes that stand for nothing, and where a chart is not bent.
+std::vector<uint32_t> node_normals(const World& world, const BakeCharts& charts,
+                                   std::span<const IlluminationTile> tiles, size_t nodes);
 
 // The chart of each tile, and where it is in it.
 struct TilePlace {

@@ -6,7 +6,7 @@
 namespace wellspring {
 namespace {
 
-constexpr uint64_t format = 0x324b414257535701;  // changes with what is written, and with charts
+constexpr uint64_t format = 0x334b414257535701;  // changes with what is written, and with charts
 
 struct FieldBytes {
   std::vector<TileCells> cells;
@@ -30,6 +30,9 @@ void list_fields(auto& to, auto& settings, auto& bake, auto& source, auto& direc
     to.array(field->sums.light);
     to.array(field->sums.slope);
   }
+  to.array(bake.pilots);
+  to.array(bake.held_out.places);
+  to.value(bake.held_out.samples);
 }
 
 bool take_field(const World& world, const BakeCharts& charts, int layers, FieldBytes& bytes,
@@ -43,9 +46,8 @@ bool take_field(const World& world, const BakeCharts& charts, int layers, FieldB
   if (sums.count.size() != nodes || sums.hidden.size() != nodes || sums.squares.size() != nodes ||
       sums.light.size() != nodes * size_t(layers))
     return false;
-  const bool sloped = has_mapped_normals(world.scene());
-  if (sums.slope.size() != (sloped ? sums.light.size() : 0)) return false;
-  field = make_field(world, charts, bytes.cells, layers, sloped);
+  if (sums.slope.size() != (charts.sloped ? sums.light.size() : 0)) return false;
+  field = make_field(world, charts, bytes.cells, layers);
   field.asked = std::move(sums.asked);
   field.count = std::move(sums.count);
   field.hidden = std::move(sums.hidden);
@@ -89,6 +91,8 @@ KeyedFile load_bake(const World& world, const std::string& file, uint64_t key, B
   loaded.charts = make_charts(world, loaded.tile);
   loaded.places = tile_places(loaded.charts);
   if (loaded.cursor >= std::max(loaded.charts.tiles, 1u) ||
+      loaded.pilots.size() != loaded.charts.tiles ||
+      !restore(world, *loaded.charts.places, loaded.held_out) ||
       !take_field(world, loaded.charts, layers, direct, loaded.direct) ||
       !take_field(world, loaded.charts, layers, gather, loaded.gather))
     return KeyedFile::damaged;

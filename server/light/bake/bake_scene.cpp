@@ -66,27 +66,68 @@ static uint32_t find_known_chart(const BakeScene& scene, const Walk& walk, const
   return find_chart(*scene.known, scene.world, walk.ray, hit);
 }
 
-static void add_known_light(const BakeScene& scene, uint32_t chart, vec3 place, vec3 weight,
-                            std::span<vec3> light) {
+static void add_known_light(const BakeScene& scene, uint32_t number, const Ray& ray, const Hit& hit,
+                            const Surface& surface, vec3 weight, std::span<vec3> light) {
   const IlluminationMap& map = *scene.known;
-  const IlluminationTaps taps = find_taps(map, map.places->charts[chart], place);
-  for (size_t p = 0; p < light.size(); p++)
-    light[p] += weight * eval_illumination((*map.layers)[p], taps);
+  const IlluminationChart& chart = map.places->charts[number];
+  const IlluminationTaps taps = find_taps(map, chart, surface.position);
+  const vec3 mesh = chart.sloped ? eval_mesh_normal(scene.world, ray, hit) : surface.normal;
+  for (size_t p = 0; p < light.size(); p++) {
+    const IlluminationNodes& nodes = (*map.layers)[p];
+    const vec3 found = eval_illumination(nodes, taps);
+    if (found == vec3(0)) continue;
+    light[p] +=
+        eval_illumination_turn(map, nodes, chart, taps, mesh, surface.normal) * weight * found;
+  }
+}
+
+void add_met_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span<vec3> light,
+                   bool& inside) {
+  const World& world = scene.world;
+  const Transport& any = scene.parts.front();
+  auto weigh_for = [&](size_t part) {
+    walk.area_share = scene.parts[part].tables.area_share > 0 ? 1.0f : 0.0f;
+  };
+  for (int step = 0; step < most_steps; step++) {
+    Hit hit = world.intersect(walk.ray);
+    if (!hit.valid()) {
+      weigh_for(0);
+      light[0] += walk.throughput * walk_met_sky(any, walk);
+      return;
+    }
+    if (step == 0 && is_inside(world, walk, hit)) {
+      inside = true;
+      return;
+    }
+    const Material& material = world.material_of(hit.instance);
+    if (material.emission == vec3(0) && material.transmission == 0) return;
+    const Surface surface = meet_surface(any, walk.ray, hit, walk.media);
+    walk.throughput *= eval_absorption(any, walk.media.here.innermost(), hit.t);
+    const size_t own = scene.part_of[size_t(world.mesh_of(hit.instance).material)];
+    weigh_for(own);
+    light[own] += walk.throughput * walk_met_emission(scene.parts[own], walk, surface, material);
+    if (material.unlit || material.transmission == 0) return;
+    const Bsdf bsdf = make_bsdf_in(any, walk.media, surface, material, walk.ray.direction);
+    sampler.seek(Dimensions::walk + uint32_t(step) * Dimensions::surface + Dimensions::scatter);
+    const BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
+    if (scattered.bounce != Bounce::pass || !advance(walk, surface, scattered)) return;
+  }
 }
 
 void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span<vec3> light,
                   bool& inside) {
   const World& world = scene.world;
   const Transport& any = scene.parts.front();
-  bool sampled = true, apart = true;  // area light, where the ray left
+  // What is met before anything scatters the light is add_met_light()'s.
+  bool sampled = true, scattered_once = false;
   auto weigh_for = [&](size_t part) {
-    float share = scene.parts[part].tables.area_share;
-    walk.area_share = !sampled ? 0 : apart && share > 0 ? 1 : share;
+    walk.area_share = sampled ? scene.parts[part].tables.area_share : 0;
   };
   for (int step = 0; step < most_steps; step++) {
     const uint32_t base = Dimensions::walk + uint32_t(step) * Dimensions::surface;
     Hit hit = world.intersect(walk.ray);
     if (!hit.valid()) {
+      if (!scattered_once) return;
       weigh_for(0);
       light[0] += walk.throughput * walk_met_sky(any, walk);
       return;
@@ -99,15 +140,17 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
     const Material& material = world.material_of(hit.instance);
     walk.throughput *= eval_absorption(any, walk.media.here.innermost(), hit.t);
     const size_t own = scene.part_of[size_t(world.mesh_of(hit.instance).material)];
-    weigh_for(own);
-    light[own] += walk.throughput * walk_met_emission(scene.parts[own], walk, surface, material);
+    if (scattered_once) {
+      weigh_for(own);
+      light[own] += walk.throughput * walk_met_emission(scene.parts[own], walk, surface, material);
+    }
     if (material.unlit || walk.depth >= most_depth) return;
     Bsdf bsdf = make_bsdf_in(any, walk.media, surface, material, walk.ray.direction);
     Lobes goes_on = Lobes::all;
     if (const uint32_t chart = find_known_chart(scene, walk, hit); chart != no_chart) {
       const bool sharp = bsdf.alpha < sharp_gloss_alpha && has_specular(bsdf);
-      add_known_light(scene, chart, surface.position, walk.throughput * reflectance_of(bsdf, sharp),
-                      light);
+      add_known_light(scene, chart, walk.ray, hit, surface,
+                      walk.throughput * reflectance_of(bsdf, sharp), light);
       if (!sharp) return;
       goes_on = Lobes::specular;
     } else if (!is_smooth(bsdf)) {
@@ -122,7 +165,7 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
     if (!advance(walk, surface, scattered)) return;
     if (scattered.bounce != Bounce::pass) {
       sampled = scattered.pdf > 0 && goes_on == Lobes::all;
-      apart = false;
+      scattered_once = true;
       walk.from_normal = lit_side(surface, bsdf);
     }
     if (scattered.bounce == Bounce::refract) walk.density *= bsdf.eta * bsdf.eta;

@@ -30,9 +30,13 @@ BakeScene make_bake_scene_of_paths(const World& world);
 // Whether the walk's next ray, which leaves a node, shows that it is within something solid.
 bool is_inside(const World& world, const Walk& walk, const Hit& hit);
 
-// Light that arrives along the walk's next ray, which left a node scattered by Lambert's law:
-// added to `light`, a value for each part. `inside`: the node is within something solid, where
-// nothing is added.
+// Light straight from the sources that the walk's next ray meets, which left a node scattered by
+// Lambert's law: added to `light`, a value for each part, weighed against sample_direct_light() at
+// the node (multiple importance sampling), whose part of the same light it completes. `inside`: the
+// node is within something solid, where nothing is added.
+void add_met_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span<vec3> light,
+                   bool& inside);
+// Light that has scattered and arrives along that ray, likewise.
 void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span<vec3> light,
                   bool& inside);
 

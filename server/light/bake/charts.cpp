@@ -14,6 +14,7 @@ namespace {
 
 constexpr float least_facing = 0.766f;  // cosine of 40 degrees, to the chart's normal
 constexpr float smooth_edge = 0.9f;     // cosine between the mesh's normals on its two sides
+constexpr float one_normal = 0.9998f;   // cosine of a degree: normals that count as the same
 constexpr float most_tiles = 1 << 20;   // of a chart, however thin what it holds
 
 struct Triangle {
@@ -126,6 +127,20 @@ IlluminationChart lay_out(const std::vector<Triangle>& triangles,
   return chart;
 }
 
+// Whether the mesh's normals differ at the corners of those triangles.
+bool is_bent(const PlacedMesh& placed, std::span<const uint32_t> of_chart) {
+  const Mesh& mesh = *placed.mesh;
+  vec3 first(0);
+  for (uint32_t t : of_chart)
+    for (int k = 0; k < 3; k++) {
+      vec3 normal = placed.normal_to_world * mesh.normals[mesh.triangles[t][k]];
+      normal /= std::max(length(normal), 1e-30f);
+      if (first == vec3(0)) first = normal;
+      if (!(dot(normal, first) > one_normal)) return true;
+    }
+  return false;
+}
+
 // The mesh's normal at that corner of a triangle; not unit.
 vec3 corner_normal(const PlacedMesh& placed, uint32_t triangle, vec3 place) {
   const Mesh& mesh = *placed.mesh;
@@ -139,8 +154,9 @@ vec3 corner_normal(const PlacedMesh& placed, uint32_t triangle, vec3 place) {
   return placed.normal_to_world * nearest;
 }
 
-void find_seams(const World& world, uint32_t instance, const std::vector<Triangle>& triangles,
-                const std::vector<uint32_t>& chart_of, std::vector<ChartSeam>& seams) {
+void find_seams(const World& world, uint32_t instance, bool back,
+                const std::vector<Triangle>& triangles, const std::vector<uint32_t>& chart_of,
+                std::vector<ChartSeam>& seams) {
   const PlacedMesh& placed = world.placed(instance);
   for (uint32_t t = 0; t < triangles.size(); t++)
     for (int side = 0; side < 3; side++) {
@@ -149,12 +165,16 @@ void find_seams(const World& world, uint32_t instance, const std::vector<Triangl
       const Face& f = triangles[t].face;
       vec3 corners[3] = {f.corner, f.corner + f.edge1, f.corner + f.edge2};
       vec3 from = corners[side], to = corners[(side + 1) % 3];
+      ChartSeam seam{{chart_of[t], chart_of[beside]}, from, to, {}};
       bool smooth = true;
-      for (vec3 end : {from, to}) {
-        vec3 a = corner_normal(placed, t, end), b = corner_normal(placed, beside, end);
+      for (int end = 0; end < 2; end++) {
+        vec3 place = end == 0 ? from : to;
+        vec3 a = corner_normal(placed, t, place), b = corner_normal(placed, beside, place);
         smooth = smooth && dot(a, b) > smooth_edge * std::sqrt(dot(a, a) * dot(b, b));
+        a += b;
+        seam.normal[end] = (back ? -a : a) / std::max(length(a), 1e-30f);
       }
-      if (smooth) seams.push_back({{chart_of[t], chart_of[beside]}, from, to});
+      if (smooth) seams.push_back(seam);
     }
 }
 
@@ -168,15 +188,9 @@ std::vector<char> kept_materials(const Scene& scene) {
 }  // namespace
 
 bool keeps_illumination(const Material& m, TextureRanges& ranges) {
-  if (m.unlit || m.transmission > 0 || m.alpha_mode == AlphaMode::blend || m.repaints) return false;
+  if (m.unlit || m.transmission > 0 || m.repaints) return false;
+  if (!(max_component(vec3(m.base_color)) > 0)) return false;
   return m.metallic * ranges.of(m.metallic_roughness_texture).low.z < all_metal;
-}
-
-bool has_mapped_normals(const Scene& scene) {
-  TextureRanges ranges(scene);
-  for (const Material& m : scene.materials)
-    if (m.normal_texture.texture >= 0 && keeps_illumination(m, ranges)) return true;
-  return false;
 }
 
 double charted_area(const World& world) {
@@ -212,6 +226,7 @@ BakeCharts make_charts(const World& world, float tile) {
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return triangles[a].area > triangles[b].area; });
     const bool both = scene.materials[size_t(mesh.material)].double_sided;
+    const bool mapped = scene.materials[size_t(mesh.material)].normal_texture.texture >= 0;
     charts.vertices += mesh.positions.size() * (both ? 2 : 1);
     for (int back = 0; back < (both ? 2 : 1); back++) {
       std::fill(chart_of.begin(), chart_of.end(), no_chart);
@@ -223,6 +238,9 @@ BakeCharts make_charts(const World& world, float tile) {
                                         charts.triangles.size() - first);
         IlluminationChart chart = lay_out(triangles, grown, tile);
         chart.first_tile = charts.tiles;
+        chart.bent = is_bent(world.placed(i), grown);
+        chart.sloped = chart.bent || mapped;
+        charts.sloped |= chart.sloped;
         charts.tiles += uint32_t(chart.columns) * uint32_t(chart.rows);
         vec3 normal = triangles[seed].face.normal;
         charts.surfaces.push_back(
@@ -230,7 +248,7 @@ BakeCharts make_charts(const World& world, float tile) {
         for (uint32_t t : grown) charts.area += double(triangles[t].area);
         places.charts.push_back(chart);
       }
-      find_seams(world, i, triangles, chart_of, charts.seams);
+      find_seams(world, i, back == 1, triangles, chart_of, charts.seams);
       places.first_triangle[size_t(i) * 2 + size_t(back)] = uint32_t(places.chart_of.size());
       places.chart_of.insert(places.chart_of.end(), chart_of.begin(), chart_of.end());
     }

@@ -24,6 +24,7 @@ struct ChartSurface {
 struct ChartSeam {
   uint32_t chart[2] = {0, 0};
   vec3 from{0}, to{0};
+  vec3 normal[2] = {vec3(0), vec3(0)};  // of the mesh at both ends, unit, on the charts' side
 };
 
 struct BakeCharts {
@@ -32,15 +33,14 @@ struct BakeCharts {
   std::vector<uint32_t> triangles;     // chart after chart
   std::vector<ChartSeam> seams;
   uint32_t tiles = 0;   // of all charts
+  bool sloped = false;  // some chart is
   double area = 0;      // square metres of all their triangles
   size_t vertices = 0;  // that storage at vertices would have, for comparison
 };
 
-// Whether a material's light is kept: it is opaque but for its alpha, and not a metal all over.
+// Whether a material's light is kept: it is opaque but for its alpha, and some of it scatters
+// diffusely: it is neither black nor a metal all over.
 bool keeps_illumination(const Material& material, TextureRanges& ranges);
-
-// Whether something whose light is kept has a map of normals.
-bool has_mapped_normals(const Scene& scene);
 
 // `tile`: metres; the sides of a chart are cut into equal parts of at most that. Two-sided
 // materials have charts for either side. A function of the scene alone.

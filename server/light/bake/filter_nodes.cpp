@@ -13,9 +13,6 @@ namespace {
 constexpr float most_passed = 1.0f / 9;  // to each neighbour: all nine nodes become equal
 constexpr float edge_deviations = 2;  // by which nodes differ between which a third as much passes
 constexpr float edge_share = 0.02f;   // of their light, which is never known to be evener
-// Error of bilinear light over the difference of a node from the mean of those beside it: 0.41 at a
-// step, 0.18 of a smooth bend.
-constexpr float error_of_bend = 0.35f;
 
 struct Noisy {
   std::vector<float> light, variance;  // of each node; variance below 0: nothing is known
@@ -95,24 +92,6 @@ void diffuse_noise(const IlluminationTile& tile, std::span<const std::array<uint
       to.variance[node] = std::max(to.variance[node], 0.04f * from.variance[node]);
 }
 
-// The nodes' grid does not hold that much of the light at a node; below 0: nobody knows.
-float bend_of(const IlluminationTile& tile, uint32_t i, const Noisy& nodes) {
-  const uint32_t stride = tile.columns + 1u, x = i % stride, y = i / stride;
-  const size_t node = tile.first + i;
-  float sum = 0;
-  bool known = nodes.variance[node] >= 0;
-  auto add = [&](bool inside, uint32_t step) {
-    if (!inside || nodes.variance[node - step] < 0 || nodes.variance[node + step] < 0) return;
-    const float bend =
-        nodes.light[node] - 0.5f * (nodes.light[node - step] + nodes.light[node + step]);
-    const float noise =
-        nodes.variance[node] + 0.25f * (nodes.variance[node - step] + nodes.variance[node + step]);
-    sum += std::max(bend * bend - noise, 0.0f);
-  };
-  if (known) add(x > 0 && x < tile.columns, 1), add(y > 0 && y < tile.rows, stride);
-  return known ? sum : -1;
-}
-
 }  // namespace
 
 NodeFilter make_node_filter(const BakeField& field, std::span<const uint8_t> leaks) {
@@ -133,18 +112,6 @@ NodeFilter make_node_filter(const BakeField& field, std::span<const uint8_t> lea
       diffuse_noise(tile, passes, nodes, next);
     });
     nodes = next;
-  }
-  double count = 0, bends = 0;
-  for (const IlluminationTile& tile : field.tiles)
-    for (uint32_t i = 0; i < tile.nodes(); i++) {
-      const size_t node = tile.first + i;
-      if (nodes.variance[node] < 0) continue;
-      filter.variance += double(nodes.variance[node]), filter.light += double(nodes.light[node]);
-      bends += double(std::max(bend_of(tile, i, nodes), 0.0f)), count++;
-    }
-  if (count > 0) {
-    filter.variance /= count, filter.light /= count;
-    filter.roughness = double(error_of_bend * error_of_bend) * bends / count;
   }
   return filter;
 }

@@ -19,10 +19,6 @@ struct NodeFilter {
   // Each round and node lists the four neighbours that come later in the tile: the next one, and
   // the three of the next row. 255 is as much as may pass.
   std::array<std::vector<std::array<uint8_t, 4>>, rounds> passes;
-  double variance = 0;  // of the filtered luminance, mean over the nodes
-  double roughness =
-      0;             // mean square of what no grid of this width holds, as far as it is not noise
-  double light = 0;  // mean luminance
 };
 // `leaks`: nodes that do not count (light/bake/unseen.h).
 NodeFilter make_node_filter(const BakeField& field, std::span<const uint8_t> leaks);

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int seam_sweeps = 3, border_rounds = 2;
 constexpr int most_places_a_seam = 64;
+constexpr float least_squares = 1e-3f;  // of a seam's weights: places that light does not reach
 
 // Nodes that are not known take the mean of their known neighbours, ring by ring.
 void fill_holes(const IlluminationTile& tile, std::vector<uint8_t>& known,
@@ -65,6 +66,13 @@ vec3 read(const NodeTaps& taps, std::span<const vec3> light) {
   return sum;
 }
 
+// Times as much light as the nodes have falls on a mesh of that normal.
+float turn_of(const IlluminationChart& chart, const NodeTaps& taps, vec3 normal,
+              const NodeTurns& turns) {
+  if (!chart.bent || turns.slope.empty()) return 1;
+  return eval_slope(read(taps, turns.slope), read(taps, turns.normal), normal);
+}
+
 // Two rows of nodes that lie on one line.
 struct Border {
   uint32_t first, step, cells;
@@ -107,13 +115,20 @@ std::vector<vec3> layer_means(const BakeField& field, const std::vector<vec3>& o
 }
 
 void add_coarser(std::span<const IlluminationTile> coarse_tiles, std::span<const vec3> coarse,
-                 std::span<const IlluminationTile> tiles, std::vector<vec3>& fine) {
+                 std::span<const IlluminationTile> tiles, std::vector<vec3>& fine,
+                 const NodeTurns& coarse_turns, std::span<const vec3> fine_normals) {
   parallel_for(int(tiles.size()), [&](int t) {
     const IlluminationTile& tile = tiles[size_t(t)];
     for (uint32_t i = 0; i < tile.nodes(); i++) {
+      const size_t node = tile.first + i;
       float u = float(i % (tile.columns + 1u)) / float(tile.columns),
             v = float(i / (tile.columns + 1u)) / float(tile.rows);
-      fine[tile.first + i] += read(taps_in(coarse_tiles[size_t(t)], u, v), coarse);
+      const NodeTaps taps = taps_in(coarse_tiles[size_t(t)], u, v);
+      float turn = 1;
+      if (!coarse_turns.slope.empty())
+        turn = eval_slope(read(taps, coarse_turns.slope), read(taps, coarse_turns.normal),
+                          fine_normals[node]);
+      fine[node] += turn * read(taps, coarse);
     }
   });
 }
@@ -147,7 +162,7 @@ void match_borders(const BakeCharts& charts, std::span<const IlluminationTile> t
 }
 
 void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
-                 std::vector<vec3>& light) {
+                 std::vector<vec3>& light, const NodeTurns& turns) {
   for (int sweep = 0; sweep < seam_sweeps; sweep++)
     for (const ChartSeam& seam : charts.seams) {
       const IlluminationChart &a = charts.places->charts[seam.chart[0]],
@@ -155,21 +170,66 @@ void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> til
       float nodes = std::max(nodes_along(a, tiles, seam), nodes_along(b, tiles, seam));
       int places = int(std::clamp(nodes, 2.0f, float(most_places_a_seam)));
       for (int i = 0; i < places; i++) {
-        vec3 place = mix(seam.from, seam.to, (float(i) + 0.5f) / float(places));
+        const float along = (float(i) + 0.5f) / float(places);
+        const vec3 place = mix(seam.from, seam.to, along);
         PlaceInTile at[2] = {find_tile(a, tiles, place), find_tile(b, tiles, place)};
         if (!at[0].tile || !at[1].tile) continue;
         NodeTaps taps[2] = {taps_in(*at[0].tile, at[0].u, at[0].v),
                             taps_in(*at[1].tile, at[1].u, at[1].v)};
+        const vec3 normal = normalize(mix(seam.normal[0], seam.normal[1], along));
+        const float turn[2] = {turn_of(a, taps[0], normal, turns),
+                               turn_of(b, taps[1], normal, turns)};
         float squares = 0;
-        for (const NodeTaps& t : taps)
-          for (float w : t.weight) squares += w * w;
-        vec3 step = (read(taps[0], light) - read(taps[1], light)) / squares;
+        for (int side = 0; side < 2; side++)
+          for (float w : taps[side].weight) squares += w * w * turn[side] * turn[side];
+        if (!(squares > least_squares)) continue;
+        const vec3 step =
+            (turn[0] * read(taps[0], light) - turn[1] * read(taps[1], light)) / squares;
         for (int k = 0; k < 4; k++) {
-          light[taps[0].node[k]] -= taps[0].weight[k] * step;
-          light[taps[1].node[k]] += taps[1].weight[k] * step;
+          light[taps[0].node[k]] -= taps[0].weight[k] * turn[0] * step;
+          light[taps[1].node[k]] += taps[1].weight[k] * turn[1] * step;
         }
       }
     }
+}
+
+std::vector<vec3> unpack_normals(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
+                                 std::span<const uint32_t> packed) {
+  std::vector<vec3> normals(packed.size(), vec3(0));
+  if (packed.empty()) return normals;
+  std::vector<uint8_t> known(packed.size(), 0);
+  for (size_t i = 0; i < packed.size(); i++)
+    if (packed[i] != no_normal) normals[i] = unpack_node_normal(packed[i]), known[i] = 1;
+  parallel_for(int(tiles.size()), [&](int t) {
+    if (tiles[size_t(t)].nodes() > 0) fill_holes(tiles[size_t(t)], known, normals);
+  });
+  match_borders(charts, tiles, normals);
+  return normals;
+}
+
+std::shared_ptr<const std::vector<uint32_t>> pack_normals(std::span<const vec3> normals) {
+  auto packed = std::make_shared<std::vector<uint32_t>>(normals.size());
+  for (size_t i = 0; i < normals.size(); i++) (*packed)[i] = pack_node_normal(normals[i]);
+  return packed;
+}
+
+// Calls visit(tile) for the tiles of charts that keep slopes.
+template <class Visit>
+static void for_each_sloped(const Bake& bake, const Visit& visit) {
+  for (size_t t = 0; t < bake.places.size(); t++)
+    if (bake.charts.places->charts[bake.places[t].chart].sloped) visit(bake.direct.tiles[t]);
+}
+
+// Slopes of sums, for each unit of their light.
+static std::vector<vec3> relative_slopes(std::span<const vec3> light, std::span<const vec3> sums) {
+  std::vector<vec3> slopes(sums.size());
+  for (size_t i = 0; i < sums.size(); i++) {
+    const float l = luminance(light[i]);
+    const vec3 slope = l > 0 ? sums[i] / l : vec3(0);
+    const float longest = max_component(glm::abs(slope));
+    slopes[i] = longest > most_slope ? slope * (most_slope / longest) : slope;
+  }
+  return slopes;
 }
 
 static std::shared_ptr<const IlluminationMap> finish(const Bake& bake,
@@ -187,40 +247,49 @@ static std::shared_ptr<const IlluminationMap> finish(const Bake& bake,
   }
   auto if_filtered = [&](const NodeFilter& filter) { return filtered ? &filter : nullptr; };
   auto layers = std::make_shared<std::vector<IlluminationNodes>>(size_t(bake.direct.layers));
-  auto finish_sums = [&](const std::vector<vec3>& fine, const std::vector<vec3>& coarse,
-                         int layer) {
-    std::vector<vec3> sums =
-        layer_means(bake.direct, fine, layer, direct_leaks, if_filtered(direct));
-    add_coarser(bake.gather.tiles,
-                layer_means(bake.gather, coarse, layer, gather_leaks, if_filtered(gather)),
-                map->tiles, sums);
+  // Means of a layer's light, or of its slopes.
+  auto means_of = [&](const BakeField& field, bool slopes, int layer) {
+    const bool fine = &field == &bake.direct;
+    return layer_means(field, slopes ? field.slope : field.light, layer,
+                       fine ? direct_leaks : gather_leaks, if_filtered(fine ? direct : gather));
+  };
+  auto match = [&](std::vector<vec3>& sums, const NodeTurns& turns) {
     for (int round = 0; round < border_rounds; round++) {
-      match_seams(bake.charts, map->tiles, sums);
+      match_seams(bake.charts, map->tiles, sums, turns);
       match_borders(bake.charts, map->tiles, sums);
     }
-    return sums;
   };
+  const bool sloped = !bake.direct.slope.empty();
+  const std::vector<vec3> normals = unpack_normals(bake.charts, map->tiles, bake.direct.normal),
+                          coarse_normals =
+                              unpack_normals(bake.charts, bake.gather.tiles, bake.gather.normal);
   parallel_each(bake.direct.layers, [&](int layer) {
-    const std::vector<vec3> light = finish_sums(bake.direct.light, bake.gather.light, layer);
     IlluminationNodes& packed = (*layers)[size_t(layer)];
-    packed.light.resize(nodes);
-    for (size_t i = 0; i < nodes; i++) packed.light[i] = pack_rgb9e5(light[i]);
-    if (bake.direct.slope.empty()) return;
-    const std::vector<vec3> slope = finish_sums(bake.direct.slope, bake.gather.slope, layer);
-    packed.slope.resize(nodes);
-    for (size_t i = 0; i < nodes; i++) {
-      const float l = luminance(light[i]);
-      packed.slope[i] = pack_slope(l > 0 ? slope[i] / l : vec3(0));
+    std::vector<vec3> light = means_of(bake.direct, false, layer), slope;
+    const std::vector<vec3> coarse = means_of(bake.gather, false, layer);
+    if (sloped) {
+      slope = means_of(bake.direct, true, layer);
+      const std::vector<vec3> coarse_slope = means_of(bake.gather, true, layer);
+      const std::vector<vec3> turns = relative_slopes(coarse, coarse_slope);
+      add_coarser(bake.gather.tiles, coarse, map->tiles, light, {turns, coarse_normals}, normals);
+      add_coarser(bake.gather.tiles, coarse_slope, map->tiles, slope);
+      match(slope, {});
+      slope = relative_slopes(light, slope);
+    } else {
+      add_coarser(bake.gather.tiles, coarse, map->tiles, light);
     }
+    match(light, {slope, normals});
+    packed.light.resize(nodes), packed.slope.resize(slope.size(), pack_slope(vec3(0)));
+    for (size_t i = 0; i < nodes; i++) packed.light[i] = pack_rgb9e5(light[i]);
+    for_each_sloped(bake, [&](const IlluminationTile& tile) {
+      for (size_t i = tile.first; i < size_t(tile.first) + tile.nodes(); i++)
+        packed.slope[i] = pack_slope(slope[i]);
+    });
   });
+  if (sloped) map->normals = pack_normals(normals);
   map->layers = layers;
   map = std::make_shared<IlluminationMap>(sum_of_layers(std::move(*map)));
-  const double light = direct.light + gather.light;
-  map->error = !filtered   ? 1
-               : light > 0 ? float(std::sqrt(direct.variance + direct.roughness + gather.variance +
-                                             gather.roughness) /
-                                   light)
-                           : 0;
+  map->error = filtered ? held_out_error(bake.held_out, *map) : 1;
   return map;
 }
 

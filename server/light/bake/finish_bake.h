@@ -29,15 +29,27 @@ std::shared_ptr<const IlluminationMap> finish_fields(const Bake& bake);
 std::vector<vec3> layer_means(const BakeField& field, const std::vector<vec3>& of, int layer,
                               std::span<const uint8_t> leaks = {},
                               const NodeFilter* filter = nullptr);
-// `coarse` read at the nodes of finer tiles of the same charts, and added to `fine`.
+// How light at the nodes turns with the normal (light/material/light_slope.h): slopes, and normals
+// of unpack_normals(). Empty: it does not.
+struct NodeTurns {
+  std::span<const vec3> slope, normal;
+};
+// `coarse` read at the nodes of finer tiles of the same charts, turned to their normals, and added
+// to `fine`.
 void add_coarser(std::span<const IlluminationTile> coarse_tiles, std::span<const vec3> coarse,
-                 std::span<const IlluminationTile> tiles, std::vector<vec3>& fine);
+                 std::span<const IlluminationTile> tiles, std::vector<vec3>& fine,
+                 const NodeTurns& coarse_turns = {}, std::span<const vec3> fine_normals = {});
 // Tiles of one chart are made to agree at their common borders: the finer one follows the coarser.
 void match_borders(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
                    std::vector<vec3>& light);
 // Charts are made to agree at their seams as far as their grids allow, by Kaczmarz's iteration
 // (least change of the nodes).
 void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
-                 std::vector<vec3>& light);
+                 std::vector<vec3>& light, const NodeTurns& turns = {});
+// node_normals() as maps interpolate them: holes are filled, and tiles agree at their borders.
+std::vector<vec3> unpack_normals(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
+                                 std::span<const uint32_t> packed);
+// IlluminationMap::normals of those.
+std::shared_ptr<const std::vector<uint32_t>> pack_normals(std::span<const vec3> normals);
 
 }  // namespace wellspring

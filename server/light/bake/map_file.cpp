@@ -11,11 +11,12 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "light/bake/bake_field.h"
+#include "light/bake/finish_bake.h"
 
 namespace wellspring {
 namespace {
 
-constexpr uint64_t format = 0x32504d4c57535701;  // changes with what is written, and with charts
+constexpr uint64_t format = 0x33504d4c57535701;  // changes with what is written, and with charts
 constexpr int zstd_level = 19;
 constexpr float light_steps = 24;                   // of the light's logarithm to base 2
 constexpr float least_share = 1e-3f;                // of the mean light, below which steps are even
@@ -321,6 +322,9 @@ LoadedMap load_map(const World& world, const std::string& file, uint64_t key) {
   else if (things != ours) return refuse();
   else map->places = charts.places;
   map->layers = layers;
+  if (head.sloped)
+    map->normals = pack_normals(
+        unpack_normals(charts, map->tiles, node_normals(world, charts, map->tiles, nodes)));
   *map = sum_of_layers(std::move(*map));
   loaded.map = map;
   return loaded;

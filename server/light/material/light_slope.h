@@ -42,7 +42,15 @@ inline void unpack_slope(const LaneBits& code, Lanes& x, Lanes& y, Lanes& z) {
   z = (to_float(code >> 20 & 1023u) - 512.0f) * unit;
 }
 
-// Times as much light as at the mesh's normal.
+// Unit normals likewise; what comes back is unit but for rounding.
+inline uint32_t pack_node_normal(vec3 normal) { return pack_slope(most_slope * normal); }
+inline vec3 unpack_node_normal(uint32_t code) { return unpack_slope(code) * (1 / most_slope); }
+inline void unpack_node_normal(const LaneBits& code, Lanes& x, Lanes& y, Lanes& z) {
+  unpack_slope(code, x, y, z);
+  x *= 1 / most_slope, y *= 1 / most_slope, z *= 1 / most_slope;
+}
+
+// Times as much light as at the normal that the slope is relative to.
 inline float eval_slope(vec3 slope, vec3 normal, vec3 seen) {
   return std::max(1 + dot(slope, seen - normal), 0.0f);
 }

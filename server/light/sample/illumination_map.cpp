@@ -13,8 +13,9 @@ size_t memory_bytes(const IlluminationMap& map) {
   auto bytes = [](const IlluminationNodes& nodes) {
     return bytes_of(nodes.light) + bytes_of(nodes.slope);
   };
-  size_t sum = bytes_of(map.tiles) + bytes(map.nodes) + bytes_of(map.places->chart_of) +
-               bytes_of(map.places->first_triangle) + bytes_of(map.places->charts);
+  size_t sum = (map.normals ? bytes_of(*map.normals) : 0) + bytes_of(map.tiles) + bytes(map.nodes) +
+               bytes_of(map.places->chart_of) + bytes_of(map.places->first_triangle) +
+               bytes_of(map.places->charts);
   for (const IlluminationNodes& layer : *map.layers) sum += bytes(layer);
   return sum;
 }
@@ -116,13 +117,25 @@ vec3 eval_illumination_slope(const IlluminationNodes& nodes, const IlluminationT
   return nodes.slope.empty() ? vec3(0) : mix_nodes(nodes.slope, taps, unpack_slope);
 }
 
-vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at) {
-  return eval_illumination(map.nodes, taps_at(map, chart, at));
+static bool keeps_normals(const IlluminationMap& map, const IlluminationChart& chart) {
+  return chart.bent && map.normals;
 }
 
-vec3 eval_illumination_slope(const IlluminationMap& map, const IlluminationChart& chart,
-                             vec3 place) {
-  return eval_illumination_slope(map.nodes, find_taps(map, chart, place));
+vec3 eval_illumination_normal(const IlluminationMap& map, const IlluminationChart& chart,
+                              const IlluminationTaps& taps, vec3 mesh) {
+  return keeps_normals(map, chart) ? mix_nodes(*map.normals, taps, unpack_node_normal) : mesh;
+}
+
+float eval_illumination_turn(const IlluminationMap& map, const IlluminationNodes& nodes,
+                             const IlluminationChart& chart, const IlluminationTaps& taps,
+                             vec3 mesh, vec3 seen) {
+  if (nodes.slope.empty() || !chart.sloped) return 1;
+  return eval_slope(eval_illumination_slope(nodes, taps),
+                    eval_illumination_normal(map, chart, taps, mesh), seen);
+}
+
+vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at) {
+  return eval_illumination(map.nodes, taps_at(map, chart, at));
 }
 
 // from[at[i]] in lane i.
@@ -138,7 +151,7 @@ static LaneBits gather_words(const uint32_t* from, const LaneBits& at) {
 
 // Of places in one tile.
 static IlluminationLanes eval_tile(const IlluminationMap& map, const IlluminationTile& tile,
-                                   Lanes u, Lanes v, bool sloped) {
+                                   Lanes u, Lanes v, bool sloped, bool bent) {
   const Lanes zero{};
   u = lanes_min(lanes_max(u, zero), all_lanes(1)) * float(tile.columns);
   v = lanes_min(lanes_max(v, zero), all_lanes(1)) * float(tile.rows);
@@ -159,6 +172,9 @@ static IlluminationLanes eval_tile(const IlluminationMap& map, const Illuminatio
     if (!sloped) continue;
     unpack_slope(gather_words(map.nodes.slope.data(), corners[k]), r, g, b);
     at.x += weights[k] * r, at.y += weights[k] * g, at.z += weights[k] * b;
+    if (!bent) continue;
+    unpack_node_normal(gather_words(map.normals->data(), corners[k]), r, g, b);
+    at.own_x += weights[k] * r, at.own_y += weights[k] * g, at.own_z += weights[k] * b;
   }
   at.spread = most - least;
   return at;
@@ -167,6 +183,7 @@ static IlluminationLanes eval_tile(const IlluminationMap& map, const Illuminatio
 IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
                                     Lanes u, Lanes v, LaneMask asked, bool sloped) {
   sloped = sloped && !map.nodes.slope.empty();
+  const bool bent = sloped && keeps_normals(map, chart);
   const Lanes zero{};
   u = lanes_min(lanes_max(u, zero), all_lanes(float(chart.columns)));
   v = lanes_min(lanes_max(v, zero), all_lanes(float(chart.rows)));
@@ -182,12 +199,13 @@ IlluminationLanes eval_illumination(const IlluminationMap& map, const Illuminati
     left &= ~negative_lanes(here);
     const IlluminationTile& at = map.tiles[chart.first_tile + first];
     if (at.first == no_tile) continue;
-    const IlluminationLanes one = eval_tile(map, at, u, v, sloped);
+    const IlluminationLanes one = eval_tile(map, at, u, v, sloped, bent);
     if (negative_lanes(same) == 0xff) return one;
     auto take = [&](Lanes& to, const Lanes& from) { to = here ? from : to; };
     take(light.red, one.red), take(light.green, one.green), take(light.blue, one.blue);
     take(light.spread, one.spread);
     take(light.x, one.x), take(light.y, one.y), take(light.z, one.z);
+    take(light.own_x, one.own_x), take(light.own_y, one.own_y), take(light.own_z, one.own_z);
   }
   return light;
 }

@@ -26,6 +26,9 @@ struct IlluminationChart {
   vec3 origin{0}, along_u{0}, along_v{0};
   uint32_t first_tile = 0;  // row by row
   int columns = 1, rows = 1;
+  // Its mesh's normals differ: light and slope of a node are relative to the node's own normal.
+  bool bent = false;
+  bool sloped = false;  // bent, or its material has a map of normals: slopes are kept
 };
 
 // A grid of (columns + 1) x (rows + 1) nodes, row by row.
@@ -59,6 +62,9 @@ struct IlluminationMap {
   std::shared_ptr<const IlluminationCharts> places;
   std::vector<IlluminationTile> tiles;
   IlluminationNodes nodes;  // of the lamps as they are
+  // The mean of the mesh's normals around each node, pack_node_normal(); null where no slopes are
+  // kept.
+  std::shared_ptr<const std::vector<uint32_t>> normals;
   // The light of what belongs to no lamp, then of each lamp alone. Copies share them.
   std::shared_ptr<const std::vector<IlluminationNodes>> layers;
   float error = 1;  // estimated: standard error of the nodes over their mean light
@@ -105,21 +111,28 @@ struct IlluminationTaps {
 IlluminationTaps find_taps(const IlluminationMap& map, const IlluminationChart& chart, vec3 place);
 vec3 eval_illumination(const IlluminationNodes& nodes, const IlluminationTaps& taps);
 vec3 eval_illumination_slope(const IlluminationNodes& nodes, const IlluminationTaps& taps);
+// The normal that both are relative to, not quite unit: the nodes' own where the chart is bent,
+// else `mesh`, the mesh's normal at the place.
+vec3 eval_illumination_normal(const IlluminationMap& map, const IlluminationChart& chart,
+                              const IlluminationTaps& taps, vec3 mesh);
+// Times as much light as `nodes` have at a place of the chart falls on a surface there that faces
+// along `seen`, of a mesh whose normal is `mesh`; both unit.
+float eval_illumination_turn(const IlluminationMap& map, const IlluminationNodes& nodes,
+                             const IlluminationChart& chart, const IlluminationTaps& taps,
+                             vec3 mesh, vec3 seen);
 
-// The light at a place of a chart: scene coordinates, or in tiles as IlluminationChart has them.
+// The nodes' light at a place of a chart: scene coordinates, or in tiles as IlluminationChart has
+// them.
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec3 place);
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at);
-// How it changes with the direction that the surface faces (light/material/light_slope.h); 0 where
-// the map keeps no slopes.
-vec3 eval_illumination_slope(const IlluminationMap& map, const IlluminationChart& chart,
-                             vec3 place);
 
 // The same of eight places (counted in tiles, as IlluminationChart has it); those that are not
 // `asked` give anything finite. Slopes are read where `sloped`.
 struct IlluminationLanes {
   Lanes red, green, blue;
-  Lanes spread;   // of the sum of the three, among the nodes around
-  Lanes x, y, z;  // the slope
+  Lanes spread;               // of the sum of the three, among the nodes around
+  Lanes x, y, z;              // the slope
+  Lanes own_x, own_y, own_z;  // the nodes' normal, where the chart is bent and slopes are read
 };
 IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
                                     Lanes u, Lanes v, LaneMask asked, bool sloped = false);

@@ -75,25 +75,12 @@ bool place_light(const IlluminationCharts& charts, Facet& f) {
 
 }  // namespace
 
-// Times as much light as on the mesh falls on eight pixels' mapped normals.
-Lanes VisibleRun::Impl::read_relief(const Facet& f, const IlluminationLanes& light, int i,
-                                    int end) const {
+// Times as much light as the nodes have falls on eight pixels: on their mapped normals where the
+// facet has `relief`, else on the mesh's.
+Lanes VisibleRun::Impl::read_turn(const Facet& f, const IlluminationLanes& light, bool relief,
+                                  bool bent, int i, int end) const {
   const Material& m = *f.material;
   const Lanes a = load_lanes(run->u + i), b = load_lanes(run->v + i);
-  PicturePlaces places;
-  places.put(f.relief, a, b, i);
-  const int middle = std::min(i + lane_count / 2, end - 1);
-  const float texels =
-      pixel_width(f, run->depth[middle], direction(middle), blurred_angle) * f.relief.texels;
-  Lanes map[3];
-  if (!read_lanes(places, m.normal_texture, texels, i, end, map))
-    return all_lanes(1);  // floats, or read by the nearest texel
-  const Lanes x = map[0] * 2.0f - 1.0f, y = map[1] * 2.0f - 1.0f, z = map[2] * 2.0f - 1.0f;
-  const float scale = m.normal_scale;
-  // As steep as the scale says, and as short as the mean over the pixel is.
-  const Lanes flat = x * x + y * y,
-              shrink = lanes_sqrt((flat + z * z) /
-                                  lanes_max(scale * scale * flat + z * z, all_lanes(1e-12f)));
   vec3 n = f.normal[0];
   Lanes nx = all_lanes(n.x), ny = all_lanes(n.y), nz = all_lanes(n.z);
   if (!f.one_normal) {
@@ -101,11 +88,30 @@ Lanes VisibleRun::Impl::read_relief(const Facet& f, const IlluminationLanes& lig
     nx += p.x * a + q.x * b, ny += p.y * a + q.y * b, nz += p.z * a + q.z * b;
   }
   const Lanes unit = 1.0f / lanes_sqrt(lanes_max(nx * nx + ny * ny + nz * nz, all_lanes(1e-30f)));
-  auto along = [&](vec3 way) { return light.x * way.x + light.y * way.y + light.z * way.z; };
+  // How far the slope goes along the mesh's normal, and along that which light is relative to.
+  const float side = f.front ? 1.0f : -1.0f;
   const Lanes up = (light.x * nx + light.y * ny + light.z * nz) * unit;
-  const Lanes more =
-      scale * shrink * (x * along(f.tangent) + y * along(f.bitangent)) + (z * shrink - 1.0f) * up;
-  return positive_lanes(1.0f + (f.front ? 1.0f : -1.0f) * more);
+  const Lanes own =
+      bent ? light.x * light.own_x + light.y * light.own_y + light.z * light.own_z : side * up;
+  if (!relief) return positive_lanes(1.0f + side * up - own);
+  PicturePlaces places;
+  places.put(f.relief, a, b, i);
+  const int middle = std::min(i + lane_count / 2, end - 1);
+  const float texels =
+      pixel_width(f, run->depth[middle], direction(middle), blurred_angle) * f.relief.texels;
+  Lanes map[3];
+  if (!read_lanes(places, m.normal_texture, texels, i, end, map))
+    return positive_lanes(1.0f + side * up - own);  // floats, or read by the nearest texel
+  const Lanes x = map[0] * 2.0f - 1.0f, y = map[1] * 2.0f - 1.0f, z = map[2] * 2.0f - 1.0f;
+  const float scale = m.normal_scale;
+  // As steep as the scale says, and as short as the mean over the pixel is.
+  const Lanes flat = x * x + y * y,
+              shrink = lanes_sqrt((flat + z * z) /
+                                  lanes_max(scale * scale * flat + z * z, all_lanes(1e-12f)));
+  auto along = [&](vec3 way) { return light.x * way.x + light.y * way.y + light.z * way.z; };
+  const Lanes seen =
+      scale * shrink * (x * along(f.tangent) + y * along(f.bitangent)) + z * shrink * up;
+  return positive_lanes(1.0f + side * seen - own);
 }
 
 uint64_t VisibleRun::known(const IlluminationMap& map, const RunSurface& surface,
@@ -120,7 +126,8 @@ uint64_t VisibleRun::known(const IlluminationMap& map, const RunSurface& surface
     if (f.placed->moving || !place_light(*map.places, f)) continue;
     const IlluminationChart& chart = map.places->charts[f.chart];
     const Lanes more = all_lanes(map.least_known());
-    const bool relief = f.relief.known && !map.nodes.slope.empty();
+    const bool relief = f.relief.known && !map.nodes.slope.empty(),
+               bent = chart.bent && map.normals;
     const bool plain = impl_->visibility.plain[size_t(f.placed->mesh->material)] != 0;
     const GlossFactors gloss = gloss_factors(*f.material);
     for (int i = begin; i < r.end[p]; i += lane_count) {
@@ -129,8 +136,9 @@ uint64_t VisibleRun::known(const IlluminationMap& map, const RunSurface& surface
       const Lanes a = load_lanes(r.u + i), b = load_lanes(r.v + i);
       IlluminationLanes light = eval_illumination(
           map, chart, f.light_corner.x + f.light_edge1.x * a + f.light_edge2.x * b,
-          f.light_corner.y + f.light_edge1.y * a + f.light_edge2.y * b, here, relief);
-      const Lanes factor = relief ? impl_->read_relief(f, light, i, r.end[p]) : all_lanes(1);
+          f.light_corner.y + f.light_edge1.y * a + f.light_edge2.y * b, here, relief || bent);
+      const Lanes factor =
+          relief || bent ? impl_->read_turn(f, light, relief, bent, i, r.end[p]) : all_lanes(1);
       store_lanes(to.red + i, light.red * factor + more);
       store_lanes(to.green + i, light.green * factor + more);
       store_lanes(to.blue + i, light.blue * factor + more);

@@ -76,7 +76,8 @@ struct VisibleRun::Impl {
   }
   PrimaryHit see(int i) const;
   Lanes read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness, Lanes share) const;
-  Lanes read_relief(const Facet& f, const IlluminationLanes& light, int i, int end) const;
+  Lanes read_turn(const Facet& f, const IlluminationLanes& light, bool relief, bool bent, int i,
+                  int end) const;
   void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
   vec3 scale_of(const Material& m, int index) const {
     return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * visibility.scale[size_t(index)].factor;

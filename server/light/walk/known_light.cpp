@@ -41,29 +41,34 @@ bool has_known_light(const Transport& transport, const Ray& ray, const Hit& hit)
   return find_chart(transport, ray, hit) != no_chart;
 }
 
-KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
-                            vec3 position) {
+// `seen`: the normal that the surface faces along; null: its mesh's.
+static KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
+                                   vec3 position, const vec3* seen) {
   KnownLight known;
-  const uint32_t chart = find_chart(transport, ray, hit);
-  if (chart == no_chart) return known;
+  const uint32_t at = find_chart(transport, ray, hit);
+  if (at == no_chart) return known;
+  const IlluminationMap& maps = *transport.maps;
+  const IlluminationChart& chart = maps.places->charts[at];
+  const IlluminationTaps taps = find_taps(maps, chart, position);
   known.known = true;
-  known.light = eval_illumination(*transport.maps, transport.maps->places->charts[chart], position);
-  known.unit = known_light(*transport.maps, known.light);
-  known.raised = transport.maps->least_known();
+  known.light = eval_illumination(maps.nodes, taps);
+  if (chart.bent || (chart.sloped && seen)) {
+    const vec3 mesh = eval_mesh_normal(transport.world, ray, hit);
+    known.light *= eval_illumination_turn(maps, maps.nodes, chart, taps, mesh, seen ? *seen : mesh);
+  }
+  known.unit = known_light(maps, known.light);
+  known.raised = maps.least_known();
   return known;
 }
 
 KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
+                            vec3 position) {
+  return find_known_light(transport, ray, hit, position, nullptr);
+}
+
+KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
                             const Surface& surface) {
-  KnownLight known = find_known_light(transport, ray, hit, surface.position);
-  if (!known.known || transport.world.material_of(hit.instance).normal_texture.texture < 0)
-    return known;
-  const IlluminationMap& maps = *transport.maps;
-  const vec3 slope = eval_illumination_slope(
-      maps, maps.places->charts[find_chart(transport, ray, hit)], surface.position);
-  known.light *= eval_slope(slope, eval_mesh_normal(transport.world, hit, surface), surface.normal);
-  known.unit = known_light(maps, known.light);
-  return known;
+  return find_known_light(transport, ray, hit, surface.position, &surface.normal);
 }
 
 bool find_kept_light(const Transport& transport, const Ray& ray, const Hit& hit, bool sharp,

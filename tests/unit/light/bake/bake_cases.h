@@ -111,7 +111,7 @@ inline std::shared_ptr<const IlluminationMap> paint_map(const World& world, floa
     if (c.columns > 0) c = {4, 4};
   auto map = std::make_shared<IlluminationMap>();
   map->places = charts.places;
-  map->tiles = make_field(world, charts, cells, 1, false).tiles;
+  map->tiles = make_field(world, charts, cells, 1).tiles;
   IlluminationNodes dark;
   dark.light.resize(node_count(cells));
   auto parts = std::make_shared<std::vector<IlluminationNodes>>(layers.size(), dark);

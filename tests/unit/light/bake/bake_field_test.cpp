@@ -28,7 +28,7 @@ struct Field {
     std::vector<TileCells> chosen = find_occupied(world, charts);
     for (TileCells& c : chosen)
       if (c.columns > 0) c = {cells, cells};
-    field = make_field(world, charts, chosen, 1, false);
+    field = make_field(world, charts, chosen, 1);
     places = tile_places(charts);
   }
   float support(size_t node) const {

@@ -61,5 +61,36 @@ TEST(BakeLeaks, TheRoomBesideALitOneIsDarkBehindThinWalls) {
   }
 }
 
+// A lit room of paper, without thickness, in a dark one.
+TEST(BakeLeaks, OutsideALitRoomOfPaperItIsDark) {
+  Scene scene = empty_scene();
+  const int white = add_material(scene, diffuse(vec3(0.7f)));
+  Material paper = diffuse(vec3(0.7f));
+  paper.double_sided = true;
+  add_mesh(scene, box_mesh(white, vec3(4), true), "room");
+  add_mesh(scene, box_mesh(add_material(scene, paper), vec3(2)), "paper");
+  scene.lights.push_back(test::point_light({0.2f, 0.1f, -0.3f}, vec3(5)));
+  test::Baked baked(scene, {.gather_nodes = 3000, .direct_nodes = 6000});
+  auto map = baked.map(4);
+  ASSERT_TRUE(map);
+  double lit = 0;
+  int dark = 0;
+  for (uint32_t t = 0; t < baked.bake.charts.tiles; t++) {
+    const ChartSurface& surface = baked.bake.charts.surfaces[baked.bake.places[t].chart];
+    const IlluminationTile& tile = map->tiles[t];
+    for (uint32_t i = 0; i < tile.nodes(); i++) {
+      const float light = luminance(unpack_rgb9e5(map->nodes.light[tile.first + i]));
+      if (surface.back) {
+        lit = std::max(lit, double(light));
+        continue;
+      }
+      dark++;
+      EXPECT_EQ(light, 0);
+    }
+  }
+  EXPECT_GT(lit, 1);
+  EXPECT_GT(dark, 500);
+}
+
 }  // namespace
 }  // namespace wellspring

@@ -151,15 +151,19 @@ TEST(Bake, WithoutLightTheMapIsBlackAndSure) {
 }
 
 TEST(Bake, WhereNothingIsDiffuseThereIsNothingToDo) {
-  Scene scene = empty_scene();
-  add_mesh(scene, box_mesh(add_material(scene, metal(vec3(0.9f), 0.3f)), vec3(1)), "box");
-  scene.environment.radiance = vec3(1);
-  Baked baked(scene);
-  EXPECT_EQ(baked.bake.charts.tiles, 0u);
-  bake_passes(baked.lit, baked.bake, 3);
-  EXPECT_EQ(baked.bake.direct.nodes(), 0u);
-  EXPECT_EQ(bake_error(baked.bake), 0);
-  EXPECT_FALSE(finish_map(baked.bake));
+  for (const Material& material : {metal(vec3(0.9f), 0.3f), glass(1.5f, 0, 1)}) {
+    Scene scene = empty_scene();
+    add_mesh(scene, box_mesh(add_material(scene, material), vec3(1)), "box");
+    scene.environment.radiance = vec3(1);
+    Baked baked(scene);
+    EXPECT_EQ(baked.bake.charts.tiles, 0u);
+    bake_passes(baked.lit, baked.bake, 3);
+    EXPECT_EQ(baked.bake.direct.nodes(), 0u);
+    EXPECT_EQ(bake_error(baked.bake), 0);
+    EXPECT_FALSE(finish_map(baked.bake));
+    const vec3 eye(0, 0, 3);
+    EXPECT_FALSE(make_bake_scene(baked.world, std::span(&eye, 1)).known);
+  }
 }
 
 TEST(Bake, ThereIsNoMapBeforeTheFirstPass) {

@@ -135,12 +135,11 @@ TEST(Charts, TrianglesWithoutAreaHaveNone) {
 }
 
 TEST(Charts, WhatScattersNothingDiffuselyHasNone) {
-  Material unlit = diffuse(vec3(0.5f)), blend = diffuse(vec3(0.5f)), repaints = diffuse(vec3(0.5f));
+  Material unlit = diffuse(vec3(0.5f)), black = diffuse(vec3(0)), repaints = diffuse(vec3(0.5f));
   unlit.unlit = true;
-  blend.alpha_mode = AlphaMode::blend;
   repaints.repaints = true;
   for (const Material& material :
-       {unlit, blend, repaints, glass(1.5f, 0, 0), glass(1.5f, 0, 1), metal(vec3(0.9f), 0.3f)}) {
+       {unlit, black, repaints, glass(1.5f, 0, 0), glass(1.5f, 0, 1), metal(vec3(0.9f), 0.3f)}) {
     Scene scene = empty_scene();
     add_quad(scene, add_material(scene, material), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     World world(scene);
@@ -149,6 +148,43 @@ TEST(Charts, WhatScattersNothingDiffuselyHasNone) {
     EXPECT_EQ(charts.tiles, 0u);
     EXPECT_EQ(charted_area(world), 0);
     for (bool front : {true, false}) EXPECT_EQ(charts.places->find(0, 0, front), no_chart);
+  }
+}
+
+TEST(Charts, LeavesAndClothHaveThemOnBothSides) {
+  for (AlphaMode alpha : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
+    Material leaf = diffuse(vec3(0.5f));
+    leaf.double_sided = true, leaf.alpha_mode = alpha;
+    Scene scene = empty_scene();
+    add_quad(scene, add_material(scene, leaf), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    World world(scene);
+    BakeCharts charts = make_charts(world, 1);
+    for (bool front : {true, false})
+      for (uint32_t t : {0u, 1u}) EXPECT_NE(charts.places->find(0, t, front), no_chart);
+    EXPECT_NE(charts.places->find(0, 0, true), charts.places->find(0, 0, false));
+  }
+}
+
+// A flat fan, one with a map of normals, a box and a tube.
+TEST(Charts, SlopesAreKeptWhereNormalsDiffer) {
+  Scene scene = empty_scene();
+  const int plain = add_material(scene, diffuse(vec3(0.5f)));
+  test::add_fan(scene, plain, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_mesh(scene, box_mesh(plain, vec3(1)), "box", at({3, 0, 0}));
+  World flat(scene);
+  EXPECT_FALSE(make_charts(flat, 0.3f).sloped);
+  Material mapped = diffuse(vec3(0.5f));
+  mapped.normal_texture.texture = 0;
+  scene.textures.emplace_back();
+  test::add_fan(scene, add_material(scene, mapped), {6, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_mesh(scene, test::tube_mesh(plain, 1, 2, 24), "tube", at({9, 0, 0}));
+  World world(scene);
+  BakeCharts charts = make_charts(world, 0.3f);
+  EXPECT_TRUE(charts.sloped);
+  for (size_t c = 0; c < charts.surfaces.size(); c++) {
+    const uint32_t instance = charts.surfaces[c].instance;
+    EXPECT_EQ(charts.places->charts[c].bent, instance == 3) << instance;
+    EXPECT_EQ(charts.places->charts[c].sloped, instance >= 2) << instance;
   }
 }
 

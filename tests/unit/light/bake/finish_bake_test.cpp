@@ -26,7 +26,7 @@ struct Tiles {
     std::vector<TileCells> cells = find_occupied(world, charts);
     for (uint32_t t = 0; t < cells.size(); t++)
       if (cells[t].columns > 0) cells[t] = choose(t);
-    tiles = make_field(world, charts, cells, 1, false).tiles;
+    tiles = make_field(world, charts, cells, 1).tiles;
     light.resize(node_count(cells));
     for (size_t i = 0; i < light.size(); i++)
       light[i] = vec3(float(mix64(i) >> 40) * (1.0f / (1 << 24)));
@@ -151,7 +151,7 @@ TEST(FinishBake, CreasesAreLeftAlone) {
 TEST(FinishBake, HolesAreFilledFromTheirNeighbours) {
   Tiles t(make_square(), 0.5f, [](uint32_t) { return TileCells{8, 8}; });
   std::vector<TileCells> cells(4, TileCells{8, 8});
-  BakeField field = make_field(t.world, t.charts, cells, 2, false);
+  BakeField field = make_field(t.world, t.charts, cells, 2);
   for (size_t i = 0; i < field.nodes(); i++) {
     uint32_t column = uint32_t(i % 9), row = uint32_t(i % 81 / 9);
     bool hole = (column > 1 && column < 6 && row > 2) || i >= 3 * 81;

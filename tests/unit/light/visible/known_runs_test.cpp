@@ -143,5 +143,48 @@ TEST(KnownRuns, OnMapsOfNormalsAreLitAsSamplesAre) {
       }
 }
 
+// A ball whose light turns with its normals, from outside and from within.
+TEST(KnownRuns, OnBentMeshesAreLitAsSamplesAre) {
+  for (double away : {2.5, 0.0}) {
+    Scene scene = empty_scene();
+    Material sheet = diffuse(vec3(0.5f));
+    sheet.double_sided = true;
+    add_mesh(scene, sphere_mesh(add_material(scene, sheet), 1, 24), "ball");
+    scene.lights.push_back(
+        test::point_light(away > 0 ? vec3(2, 2, 3) : vec3(0.4f, 0.3f, 0), vec3(9)));
+    test::Baked baked(scene, {.gather_nodes = 300, .direct_nodes = 300});
+    const auto map = baked.map(4);
+    ASSERT_TRUE(map && map->normals);
+    const Lights lights = make_lights(baked.world);
+    const VisibilityPass visibility(baked.world, lights);
+    Transport transport{baked.world, *lights.tables};
+    transport.maps = map.get();
+    const View view = make_view(baked.scene, {0, 0, away}, 0, 0, 0.7f, width, height);
+    std::atomic<int> judged = 0, differ = 0, turned = 0;
+    visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
+      RunSurface surface;
+      run.describe(~uint64_t(0) >> (64 - run.count), surface);
+      RunKnown told;
+      const uint64_t bits = run.known(*map, surface, told);
+      for (int i = 0; i < run.count; i++) {
+        const Ray ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
+        const Hit hit = baked.world.intersect(ray);
+        if (!(bits >> i & 1) || !hit.valid()) continue;
+        const Surface at = eval_surface(baked.world, ray, hit);
+        const vec3 wanted = find_known_light(transport, ray, hit, at).unit;
+        const vec3 off = vec3(told.red[i], told.green[i], told.blue[i]) - wanted;
+        const bool front = dot(eval_face(baked.world, 0, hit.triangle), ray.direction) < 0;
+        const uint32_t chart = map->places->find(0, hit.triangle, front);
+        const vec3 flat = eval_illumination(*map, map->places->charts[chart], at.position);
+        judged++, differ += !(length(off) < 0.02f * length(wanted));
+        turned += length(flat + vec3(map->least_known()) - wanted) > 0.05f * length(wanted);
+      }
+    });
+    EXPECT_GT(judged, 2000);
+    EXPECT_GT(turned, judged / 20) << "the normals make a difference";
+    EXPECT_LE(differ, judged / 100) << away;
+  }
+}
+
 }  // namespace
 }  // namespace wellspring

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/bake/held_out.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "light/bake/lit_place.h"
+#include "light/walk/known_light.h"
+
+namespace wellspring {
+namespace {
+
+constexpr float most_rise = 0.577f;  // tangent of 30 degrees: pictures of eyes that look level
+constexpr size_t most_tries = 4;     // of a place, until some surface has a chart there
+constexpr uint64_t places_seed = 0x68656c64, samples_seed = 0x6f7574;
+
+// False: no chart is there.
+bool describe(const World& world, const IlluminationCharts& charts, HeldOutPlace& place) {
+  const bool front =
+      dot(eval_face(world, place.hit.instance, place.hit.triangle), place.ray.direction) < 0;
+  place.chart = charts.find(place.hit.instance, place.hit.triangle, front);
+  if (place.chart == no_chart) return false;
+  const Surface surface = eval_surface(world, place.ray, place.hit);
+  place.position = surface.position;
+  place.mesh = eval_mesh_normal(world, place.ray, place.hit), place.seen = surface.normal;
+  return true;
+}
+
+Ray look_about(vec3 eye, Sampler& sampler) {
+  const vec2 u = sampler.next2();
+  const float turn = 2 * pi * u.x;
+  Ray ray;
+  ray.origin = eye;
+  ray.direction = normalize(vec3(std::cos(turn), most_rise * (2 * u.y - 1), std::sin(turn)));
+  return ray;
+}
+
+// Areas of all charts' triangles, added up.
+std::vector<double> sum_areas(const World& world, const BakeCharts& charts) {
+  std::vector<double> sums;
+  double sum = 0;
+  for (const ChartSurface& surface : charts.surfaces)
+    for (uint32_t i = 0; i < surface.count; i++) {
+      float area = 0;
+      eval_face(world, surface.instance, charts.triangles[surface.first + i], &area);
+      sums.push_back(sum += double(area));
+    }
+  return sums;
+}
+
+// A place of a chart's triangle, seen squarely.
+void look_at(const World& world, const BakeCharts& charts, size_t triangle, vec2 u,
+             HeldOutPlace& place) {
+  const auto surface = std::upper_bound(
+      charts.surfaces.begin(), charts.surfaces.end(), triangle,
+      [](size_t at, const ChartSurface& s) { return at < size_t(s.first) + s.count; });
+  const float root = std::sqrt(u.x);
+  place.hit.instance = surface->instance, place.hit.triangle = charts.triangles[triangle];
+  place.hit.barycentric = {root * (1 - u.y), root * u.y};
+  place.hit.t = 1;
+  const vec3 normal = eval_face(world, place.hit.instance, place.hit.triangle);
+  place.ray.direction = surface->back ? normal : -normal;
+  place.ray.origin =
+      eval_position(world, place.hit.instance, place.hit.triangle, place.hit.barycentric) -
+      place.ray.direction;
+}
+
+float sample_place(const BakeScene& scene, const HeldOutPlace& place, Sampler& sampler,
+                   std::vector<vec3>& gathered) {
+  const LitPlace lit = light_seen_place(scene, place.ray, place.hit);
+  const Transport all{scene.world, *scene.lights.tables};
+  sampler.seek(Dimensions::first_surface);
+  const DirectLight direct = sample_direct_light(all, Walk{}, lit.surface, lit.bsdf, true, sampler);
+  vec3 light = direct.area_diffuse + direct.punctual_diffuse;
+  std::fill(gathered.begin(), gathered.end(), vec3(0));
+  Walk walk;
+  bool inside = false;
+  if (leave(lit, sampler, walk)) {
+    add_met_light(scene, walk, sampler, gathered, inside);
+    for (vec3& layer : gathered) light += layer, layer = vec3(0);
+    gather_light(scene, walk, sampler, gathered, inside);
+    cut_off(scene, gathered);
+  }
+  for (vec3 layer : gathered) light += layer;
+  const float found = lit.uncoated * luminance(light);
+  return std::isfinite(found) ? found : 0;
+}
+
+}  // namespace
+
+HeldOut hold_out(const World& world, const BakeCharts& charts, std::span<const vec3> eyes,
+                 size_t count, uint64_t seed) {
+  HeldOut held;
+  const std::vector<double> areas = eyes.empty() ? sum_areas(world, charts) : std::vector<double>();
+  if (charts.tiles == 0) return held;
+  for (size_t i = 0; i < most_tries * count && held.places.size() < count; i++) {
+    Sampler sampler(mix64(seed + places_seed), uint32_t(i));
+    HeldOutPlace place;
+    if (eyes.empty()) {
+      const double sought = double(sampler.next()) * areas.back();
+      const auto at = std::upper_bound(areas.begin(), areas.end() - 1, sought);
+      look_at(world, charts, size_t(at - areas.begin()), sampler.next2(), place);
+    } else {
+      place.ray = look_about(eyes[i % eyes.size()], sampler);
+      place.hit = world.intersect(place.ray);
+      if (!place.hit.valid()) continue;
+    }
+    if (describe(world, *charts.places, place)) held.places.push_back(place);
+  }
+  return held;
+}
+
+bool restore(const World& world, const IlluminationCharts& charts, HeldOut& held) {
+  auto is_of_world = [&](HeldOutPlace& place) {
+    const Hit& hit = place.hit;
+    const vec2 b = hit.barycentric;
+    return hit.instance < world.scene().instances.size() &&
+           hit.triangle < world.mesh_of(hit.instance).triangles.size() && b.x >= 0 && b.y >= 0 &&
+           b.x + b.y <= 1.001f && is_finite(place.ray.origin) && is_finite(place.ray.direction) &&
+           std::isfinite(place.half[0]) && std::isfinite(place.half[1]) &&
+           describe(world, charts, place);
+  };
+  return std::all_of(held.places.begin(), held.places.end(), is_of_world);
+}
+
+void sample_held_out(const BakeScene& scene, int samples, HeldOut& held) {
+  parallel_for(int(held.places.size()), [&](int i) {
+    HeldOutPlace& place = held.places[size_t(i)];
+    std::vector<vec3> gathered(size_t(scene.layers()));
+    for (uint64_t half = 0; half < 2; half++)
+      for (uint32_t k = 0; k < uint32_t(samples); k++) {
+        Sampler sampler(mix64(samples_seed + 2 * uint64_t(i) + half), held.samples + k);
+        place.half[half] += sample_place(scene, place, sampler, gathered);
+      }
+  });
+  held.samples += uint32_t(samples);
+}
+
+float held_out_error(const HeldOut& held, const IlluminationMap& map) {
+  const double count = double(held.places.size());
+  if (held.samples == 0 || count == 0) return 1;
+  double light = 0, sum = 0, squares = 0;
+  for (const HeldOutPlace& place : held.places) {
+    const IlluminationChart& chart = map.places->charts[place.chart];
+    const IlluminationTaps taps = find_taps(map, chart, place.position);
+    const double known =
+        double(luminance(eval_illumination(map.nodes, taps))) *
+        double(eval_illumination_turn(map, map.nodes, chart, taps, place.mesh, place.seen));
+    const double a = double(place.half[0]) / held.samples, b = double(place.half[1]) / held.samples,
+                 square = (a - known) * (b - known);
+    light += 0.5 * (a + b), sum += square, squares += square * square;
+  }
+  const double mean = sum / count,
+               deviation = std::sqrt(std::max(squares / count - mean * mean, 0.0) / count);
+  if (!(light > 0)) return sum > 0 ? 1 : 0;
+  return float(std::sqrt(std::max(mean, 0.0) + deviation) / (light / count));
+}
+
+}  // namespace wellspring
