@@ -195,8 +195,8 @@ VisitResult simulate_visits(const VisitSettings& settings) {
   std::vector<VisitTrace> traces = load_visit_traces(settings.traces);
   refuse_unknown_names(settings, traces);
   VisitStage stage(settings.exhibit, settings.technique);
-  if (std::any_of(settings.methods.begin(), settings.methods.end(),
-                  [](const std::string& name) { return name == "mapped" || name == "corrected"; }))
+  if (std::find(settings.methods.begin(), settings.methods.end(), "mapped") !=
+      settings.methods.end())
     stage.use_maps(settings.truths, settings.bake_seconds);
   TruthSettings truths;
   truths.spp = settings.truth_spp;

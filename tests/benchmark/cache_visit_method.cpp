@@ -89,8 +89,6 @@ class Deferred : public VisitMethod {
     if (denoises) denoiser_ = load_denoiser(NetSize::small, problem);
     if (!problem.empty()) throw std::runtime_error(problem);
   }
-  // What shines is corrected.
-  void correct() { corrects_ = true; }
   // Points of now on count in multiples of the light of these maps; null: by themselves.
   void use_maps(std::shared_ptr<const IlluminationMap> maps) {
     cache_.clear();
@@ -111,14 +109,6 @@ class Deferred : public VisitMethod {
     land(broker_.collect(), *moment.world, pose, cache_);
     cache_.project(view);
     cache_.attend();
-    Corrections& corrections = compositor_.corrections();
-    std::vector<Request> corrected;
-    if (corrects_ && passing) {
-      if (shining_.empty()) shining_ = find_shining(moment.world->scene());
-      corrections.begin(view, visibility(moment), shining_);
-      corrections.request({}, int(corrected_share * budget), moment.seed, corrected);
-    }
-    budget -= int(corrected.size());
     ahead_.clear();
     if (moment.frame > 0 && view != view_before_)
       cache_.predict(extrapolate(view_before_, view, predicted_frames),
@@ -134,7 +124,6 @@ class Deferred : public VisitMethod {
     else if (spread) plan_still(view, asked_, budget - tested, still_seed, batch_.requests);
     if (spread) asked_ += uint64_t(budget - tested);
     batch_.requests.insert(batch_.requests.end(), ahead_.begin(), ahead_.end());
-    batch_.requests.insert(batch_.requests.end(), corrected.begin(), corrected.end());
     if (answers_ == Answers::next_frame) {
       broker_.ask(view, {moment.technique, moment.transport}, batch_.requests);
       while (auto piece = broker_.take()) {
@@ -147,7 +136,6 @@ class Deferred : public VisitMethod {
     } else {
       batch_.trace(moment);
       cache_.remember(view, batch_.requests, batch_.samples);
-      corrections.remember(view, batch_.requests, batch_.samples);
       compositor_.follow_changes(cache_);
       if (!passing) compositor_.add_samples(view, batch_.requests, batch_.samples);
     }
@@ -163,9 +151,8 @@ class Deferred : public VisitMethod {
   }
 
  private:
-  static constexpr double corrected_share = 0.2;  // of samples
-  static constexpr int still_after = 15;          // frames
-  static constexpr int first_pass = 29;  // likewise; then at so many times as many samples:
+  static constexpr int still_after = 15;  // frames
+  static constexpr int first_pass = 29;   // likewise; then at so many times as many samples:
   static constexpr double growth = 1.3;
   // As show/draw/picture.cpp spreads samples.
   static constexpr double tested_share = 0.0625, spread_from = 0.8;
@@ -190,8 +177,6 @@ class Deferred : public VisitMethod {
     return *visibility_;
   }
   Answers answers_;
-  bool corrects_ = false;
-  std::vector<float> shining_;
   std::unique_ptr<Denoiser> denoiser_;
   StillReconstruction work_;
   uint64_t asked_ = 0;  // samples spread over the view at rest
@@ -212,9 +197,6 @@ class Deferred : public VisitMethod {
 
 class Mapped : public VisitMethod {
  public:
-  explicit Mapped(bool corrects = false) {
-    if (corrects) drawn_.correct();
-  }
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
     if (moment.maps != maps_) drawn_.use_maps(maps_ = moment.maps);
     Lights lights = *moment.lights;
@@ -412,8 +394,6 @@ constexpr VisitMethodEntry list[] = {
     {"primary", "shapes and reflectances drawn in the cache's light", false,
      [] { return make_deferred(Answers::at_once); }},
     {"mapped", "primary, with illumination maps", false, make_mapped, true},
-    {"corrected", "mapped, with corrective samples of what shines", false,
-     [] { return std::unique_ptr<VisitMethod>(std::make_unique<Mapped>(true)); }, true},
     {"primary_late", "the same, answers a frame late", false,
      [] { return make_deferred(Answers::next_frame); }},
     {"primary_behind", "the same, pictures a frame late", false,
