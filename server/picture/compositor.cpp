@@ -55,16 +55,15 @@ void Compositor::follow_changes(const RenderCache& cache) {
 
 // Finds the light of `lit`, which is projected, then calls compose() and takes the time.
 template <class Compose>
-void Compositor::draw(RenderCache& cache, const View& lit, bool corrected, const Compose& compose) {
+void Compositor::draw(RenderCache& cache, const View& lit, const Compose& compose) {
   Frame& light = work_->light;
   fit_frame(lit.width, lit.height, light);
   cache.lend_light();
   cache.scratch().start(cells_bytes(lit.width, lit.height));
   take_cells(cells_, lit.width, lit.height, cache.scratch());
   ShownPoints shown = read_surface(lit, cache.points(), cache.image(), cells_, light);
-  if (corrected) corrections_->show(lit, light);
   known_ = fill_cells(lit, cells_);
-  filter_cells(lit, cells_);
+  if (known_) filter_cells(lit, cells_);
   const double began = seconds_now();
   compose(float(shown.points) / float(light.color.size()));
   drawing_ms_ = float(1000 * (seconds_now() - began));
@@ -78,7 +77,7 @@ void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass
   if (!cache.has_projected(lit)) cache.project(lit);
   begin(cache);
   fit_frame(view.width, view.height, frame);
-  draw(cache, lit, true, [&](float) {
+  draw(cache, lit, [&](float) {
     compose_drawn(view, lit, visibility, cells_, known_, work_->light, kept_, frame);
   });
 }
@@ -89,7 +88,7 @@ void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass
   View lit = light_of(cache, view);
   if (!cache.has_projected(lit)) cache.project(lit);
   begin(cache);
-  draw(cache, lit, true, [&](float) {
+  draw(cache, lit, [&](float) {
     compose_drawn(view, lit, visibility, cells_, known_, work_->light, kept_, tonemap, filtered,
                   work_->peaks, image, depth);
   });
@@ -101,7 +100,7 @@ void Compositor::draw_still(RenderCache& cache, const View& view, const Visibili
   begin_still(cache);
   fit_frame(view.width, view.height, frame);
   const bool changes = cache.image().alarm > 0;
-  draw(cache, view, false, [&](float told) {
+  draw(cache, view, [&](float told) {
     const float guessed = 1 - told;
     compose_still(view, visibility, spread_in_pixel(cache.still_frames()), cells_, known_,
                   work_->light, kept_, guessed, frame);
@@ -161,7 +160,7 @@ void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
 }
 
 size_t Compositor::memory_bytes() const {
-  size_t sum = bytes_of(still_.count) + samples_bytes(samples_) + corrections_->memory_bytes();
+  size_t sum = bytes_of(still_.count) + samples_bytes(samples_);
   for (const auto& plane : still_.mean) sum += bytes_of(plane);
   return sum + (shares_ ? 0 : wellspring::memory_bytes(*work_));
 }

@@ -12,7 +12,6 @@
 #include "light/visible/visibility.h"
 #include "picture/cells.h"
 #include "picture/compose_drawn.h"
-#include "picture/corrections.h"
 #include "picture/still/correct_still.h"
 #include "picture/still/still_image.h"
 #include "picture/still/still_samples.h"
@@ -83,16 +82,13 @@ class Compositor {
 
   // What the pixels of a view at rest have been found to be by samples; empty before.
   const StillSamples& samples() const { return samples_; }
-  // Samples of what shines, which draw() shows where they are of its light's view.
-  Corrections& corrections() { return *corrections_; }
-  const Corrections& corrections() const { return *corrections_; }
   float drawing_ms() const { return drawing_ms_; }  // visibility and shading of the last picture
   size_t memory_bytes() const;                      // without work that is shared
 
  private:
   View light_of(const RenderCache& cache, const View& view) const;
   template <class Compose>
-  void draw(RenderCache& cache, const View& lit, bool corrected, const Compose& compose);
+  void draw(RenderCache& cache, const View& lit, const Compose& compose);
   void begin(const RenderCache& cache);
   void begin_still(const RenderCache& cache);
 
@@ -102,7 +98,6 @@ class Compositor {
   std::shared_ptr<const IlluminationMap> maps_;  // keeps those of kept_
   Cells cells_;                                  // in the cache's scratch
   bool known_ = false;                           // any light
-  std::unique_ptr<Corrections> corrections_ = std::make_unique<Corrections>();
   StillImage still_;
   StillSamples samples_;
   View sampled_;  // the view of samples_

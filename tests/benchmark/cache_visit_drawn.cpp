@@ -14,6 +14,7 @@
 #include "picture/still/still_guides.h"
 #include "show/draw/sample_budget.h"
 #include "show/draw/steer.h"
+#include "show/state/lamps.h"
 #include "show/state/picture_job.h"
 
 namespace wellspring {
@@ -22,12 +23,12 @@ namespace {
 constexpr double displayed_rate = 60;  // frames a second
 // As the show has them.
 constexpr float predicted_frames = 2, barely_covered = 0.1f;
-constexpr double predicted_share = 0.3, corrected_share = 0.2;  // of the budget, at most
-constexpr double more_asked = 1.2;                              // than is traced
-constexpr double tested_share = 0.0625, spread_from = 0.8;      // of samples at rest
-constexpr float task_weight = 0.5f;                             // of attention
-constexpr int analysed_every = 3;                               // frames: at most 25 a second
-constexpr int still_after = 15;                                 // frames
+constexpr double predicted_share = 0.3;                     // of the budget, at most
+constexpr double more_asked = 1.2;                          // than is traced
+constexpr double tested_share = 0.0625, spread_from = 0.8;  // of samples at rest
+constexpr float task_weight = 0.5f;                         // of attention
+constexpr int analysed_every = 3;                           // frames: at most 25 a second
+constexpr int still_after = 15;                             // frames
 constexpr int first_pass = 29;  // likewise; then at so many times as many samples:
 constexpr double growth = 1.3;
 constexpr uint64_t still_seed = 17;
@@ -38,9 +39,9 @@ struct MappedObjects {
   MappedObjects() = default;
   MappedObjects(const Scene& scene, const IlluminationMap& maps)
       : mapped(mapped_objects(scene, maps)), known(mapped) {
-    const std::vector<float> shining = find_shining(scene);
+    const std::vector<char> shining = find_shining(scene);
     for (size_t i = 0; i < known.size(); i++)
-      if (shining[i] > 0) known[i] = 0;
+      if (shining[i]) known[i] = 0;
   }
 };
 
@@ -101,17 +102,8 @@ class Drawn : public VisitMethod {
     });
     broker_.forget();
     compositor_.invalidate_samples();
-    compositor_.corrections().clear();
   }
   void plan(const VisitMoment& moment, const View& view, bool passing, int budget) {
-    Corrections& corrections = compositor_.corrections();
-    corrected_.clear();
-    if (way_.corrects && passing) {
-      if (shining_.empty()) shining_ = find_shining(moment.world->scene());
-      corrections.begin(view, visibility(moment), shining_);
-      corrections.request({}, int(corrected_share * budget), moment.seed, corrected_);
-    }
-    budget -= int(corrected_.size());
     ahead_.clear();
     if (moment.frame > 0 && view != view_before_)
       cache_.predict(extrapolate(view_before_, view, predicted_frames),
@@ -127,7 +119,6 @@ class Drawn : public VisitMethod {
     else if (spread) plan_still(view, asked_, budget - tested, still_seed, requests_);
     if (spread) asked_ += uint64_t(budget - tested);
     requests_.insert(requests_.end(), ahead_.begin(), ahead_.end());
-    requests_.insert(requests_.end(), corrected_.begin(), corrected_.end());
   }
   void ask(const VisitMoment& moment, const View& view, int budget) {
     broker_.ask(view, {moment.technique, moment.transport}, requests_);
@@ -141,7 +132,6 @@ class Drawn : public VisitMethod {
       answer.samples.resize(answer.piece.requests.size());
       trace(*moment.technique, *moment.world, *moment.lights, moment.transport,
             answer.piece.requests, answer.samples);
-      compositor_.corrections().remember(view, answer.piece.requests, answer.samples);
       broker_.answer(std::move(answer));
     }
   }
@@ -150,7 +140,6 @@ class Drawn : public VisitMethod {
     samples_.resize(requests_.size());
     trace(*moment.technique, *moment.world, *moment.lights, moment.transport, requests_, samples_);
     cache_.remember(view, requests_, samples_);
-    compositor_.corrections().remember(view, requests_, samples_);
     compositor_.follow_changes(cache_);
     if (!passing) compositor_.add_samples(view, requests_, samples_);
   }
@@ -188,7 +177,6 @@ class Drawn : public VisitMethod {
   DrawnWay way_;
   std::shared_ptr<const IlluminationMap> maps_;
   MappedObjects objects_;
-  std::vector<float> shining_;
   std::unique_ptr<Denoiser> denoiser_;
   StillReconstruction work_;
   bool learns_ = false;
@@ -197,7 +185,7 @@ class Drawn : public VisitMethod {
   int left_ = 0;        // samples that a broker's workers may trace
   View view_before_, last_view_;
   int moved_ = 0;  // frame
-  std::vector<Request> requests_, ahead_, corrected_;
+  std::vector<Request> requests_, ahead_;
   std::vector<Sample> samples_;
   std::unique_ptr<VisibilityPass> visibility_;
   std::shared_ptr<const LightTables> sees_;

@@ -260,8 +260,6 @@ constexpr VisitMethodEntry list[] = {
      [] { return make_drawn({.uses_maps = false}); }, true},
     {"unsteered", "the same, without attention", false,
      [] { return make_drawn({.steers = false}); }, true},
-    {"corrected", "the same, with corrective samples of what shines", false,
-     [] { return make_drawn({.corrects = true}); }, true},
     {"reconstructed", "the same, each picture through the small network", false,
      [] { return make_reconstructed(1); }, true},
     {"reconstructed_half", "the same at half the resolution", false,

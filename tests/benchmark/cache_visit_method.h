@@ -64,7 +64,6 @@ struct DrawnWay {
   Answers answers = Answers::next_frame;
   bool uses_maps = true;  // the moment's
   bool steers = true;     // attention tells whose samples come first
-  bool corrects = false;  // what shines has samples of its own
   bool denoises = false;  // at rest, by the network; throws std::runtime_error without its weights
 };
 std::unique_ptr<VisitMethod> make_drawn(const DrawnWay& way);

@@ -46,7 +46,7 @@ void VisitStage::light(bool on) {
   change_.reset();
   const LampLevels before = show_->switches.lit, &after = on ? lit_ : dark_;
   if (before == after) return;
-  change_.emplace(exhibit().scene, show_->switches.all, before, after);
+  change_.emplace(exhibit().scene, show_->switches.all, show_->switches.cells, before, after);
   light_world(*show_, after);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ageing and splatting remembered samples costs (cache/corrective/): balls before a large one,
-// as a formula knows them.
+// What ageing and splatting remembered samples costs (corrective/): balls before a large one, as a
+// formula knows them. And what they are worth (corrective_error.cpp).
 #include <algorithm>
 #include <cmath>
 #include <oneapi/tbb/global_control.h>
@@ -8,7 +8,7 @@
 
 #include "base/clock.h"
 #include "base/rgb9e5.h"
-#include "cache/corrective/warp_and_splat.h"
+#include "corrective/warp_and_splat.h"
 #include "report.h"
 
 namespace wellspring {
@@ -123,8 +123,11 @@ void bench_corrective(BenchReport& report, const BenchOptions& options) {
   const SampleStore store = make_store();
   const int runs = options.quick ? 100 : 1000;
   measure_with(report, store, oneapi::tbb::this_task_arena::max_concurrency(), seconds_now, runs);
-  oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
-  measure_with(report, store, 1, thread_seconds_now, runs);
+  {
+    oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+    measure_with(report, store, 1, thread_seconds_now, runs);
+  }
+  bench_corrective_error(report, options);
 }
 
 }  // namespace wellspring

@@ -71,6 +71,7 @@ void bench_cache_starve(BenchReport& report, const BenchOptions& options);
 void bench_cache_turns(BenchReport& report, const BenchOptions& options);
 void bench_cache_switch(BenchReport& report, const BenchOptions& options);
 void bench_corrective(BenchReport& report, const BenchOptions& options);
+void bench_corrective_error(BenchReport& report, const BenchOptions& options);  // a part of it
 void bench_denoise_time(BenchReport& report, const BenchOptions& options);
 void bench_denoise_flip(BenchReport& report, const BenchOptions& options);
 void bench_bake(BenchReport& report, const BenchOptions& options);

@@ -233,11 +233,28 @@ ReportPage cache_switch_page() {
 
 ReportPage corrective_page() {
   return {"corrective",
-          "What do remembered samples of corrective splatting cost a picture? 512x512 pixels of 37 "
-          "objects, wholly sampled at the three coarser of four levels, from ten views.",
-          {"Wanted on four cores: ageing at most 0.3 ms, warping and splatting at most 1.5 ms.",
-           "One core: processor time. All cores: by the clock, so what else runs counts."},
-          {{.caption = "",
+          "Are samples of what shines, asked for in the order of corrective splatting, worth more "
+          "than others? Error of non-diffuse objects' pixels in the castle, lit by its maps, after "
+          "a second's walk and at rest; samples: a 64th of the pixels each picture.",
+          {"none: samples as the render cache plans them; even: half of them on such pixels in no "
+           "order; objects: a fifth, in motion, object by object; groups: half, at rest, too, by "
+           "groups of neighbours of one material; weighed: such objects are four times as urgent "
+           "to the render cache.",
+           "The walk ends after one second. FLIP and RMSE of display values.",
+           "No order is better by more than chance, so the server has none.",
+           "Costs: 512x512 pixels of 37 objects, sampled at the three coarser of four levels, from "
+           "ten views. One core: processor time. All cores: by the clock."},
+          {{.caption = "FLIP of what shines",
+            .rows = {{"visit", "visit"}, {"seconds", "seconds"}},
+            .columns = {{"corrective.error.flip", "FLIP"}},
+            .across = "order",
+            .most_rows = 24},
+           {.caption = "RMSE of what shines",
+            .rows = {{"visit", "visit"}, {"seconds", "seconds"}},
+            .columns = {{"corrective.error.rmse", "RMSE"}},
+            .across = "order",
+            .most_rows = 24},
+           {.caption = "Warping and splatting",
             .rows = {{"cores", "cores"}},
             .columns = {{"corrective.splat.ms", "warp and splat"},
                         {"corrective.splat.ms", "samples", 1, "", "samples"},

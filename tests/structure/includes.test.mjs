@@ -65,7 +65,6 @@ const may_enter = {
   },
   cache: {
     '': [],
-    corrective: [''],
   },
   picture: {
     still: [],

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/material/microfacet.h"
 #include "light/material/bsdf_gloss.h"
 #include "light/random/warp.h"
 #include "light/sample/light_tables.h"
@@ -44,21 +43,6 @@ BakeScene make_bake_scene_of_paths(const World& world) {
   for (const auto& tables : bake.tables) bake.parts.push_back({world, *tables});
   return bake;
 }
-
-namespace {
-
-// A surface sends this share of light that is as bright all around back towards the viewer. A gloss
-// that is `sharp` is left out: walks follow it.
-vec3 reflectance_of(const Bsdf& b, bool sharp) {
-  const vec3 diffuse = b.diffuse * b.coat_passes;
-  const vec3 gloss =
-      b.metallic * fresnel_schlick(b.metal, b.view.z) + (1 - b.metallic) * (1 - b.coat_passes);
-  return b.beneath * (sharp ? diffuse : diffuse + gloss);
-}
-
-constexpr float sharp_gloss_alpha = 0.09f;  // a roughness of 0.3
-
-}  // namespace
 
 // The chart of what the walk met, where coarse light is known.
 static uint32_t find_known_chart(const BakeScene& scene, const Walk& walk, const Hit& hit) {
@@ -148,10 +132,9 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
     Bsdf bsdf = make_bsdf_in(any, walk.media, surface, material, walk.ray.direction);
     Lobes goes_on = Lobes::all;
     if (const uint32_t chart = find_known_chart(scene, walk, hit); chart != no_chart) {
-      const bool sharp = bsdf.alpha < sharp_gloss_alpha && has_specular(bsdf);
       add_known_light(scene, chart, walk.ray, hit, surface,
-                      walk.throughput * reflectance_of(bsdf, sharp), light);
-      if (!sharp) return;
+                      walk.throughput * kept_reflectance(bsdf), light);
+      if (!has_sharp_gloss(bsdf)) return;
       goes_on = Lobes::specular;
     } else if (!is_smooth(bsdf)) {
       for (size_t p = 0; p < light.size(); p++) {

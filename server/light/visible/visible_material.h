@@ -55,6 +55,15 @@ inline bool may_gloss(const Material& m, TextureRanges& ranges) {
   return m.roughness * range.low.y < least_rough || m.metallic * range.high.z >= least_metal;
 }
 
+// Some place of it reflects light that depends on the view beyond what rough paint does.
+inline constexpr float least_matte = 0.5f;  // roughness, from which nothing shines
+inline bool may_shine(const Material& m, TextureRanges& ranges) {
+  if (m.unlit) return false;
+  const TexelRange& range = ranges.of(m.metallic_roughness_texture);
+  return m.metallic * range.high.z > 0 || m.roughness * range.low.y < least_matte ||
+         m.transmission > 0 || m.clearcoat > 0;
+}
+
 // All of it is diffuse but for a gloss so rough that it shows the light around as the diffuse layer
 // does: an illumination map says all of its light.
 inline constexpr float least_plain_roughness = 0.45f, most_plain_metal = 0.02f;

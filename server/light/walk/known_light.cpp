@@ -83,17 +83,14 @@ bool find_kept_light(const Transport& transport, const Ray& ray, const Hit& hit,
   return true;
 }
 
-// Gloss that is not followed reflects light that is as bright all around.
-vec3 reflect_kept_light(Bsdf& bsdf, bool& goes_on) {
-  goes_on = bsdf.alpha < sharp_alpha && has_specular(bsdf);
-  vec3 reflected = bsdf.diffuse * bsdf.coat_passes;
-  if (!goes_on)
-    reflected += bsdf.metallic * fresnel_schlick(bsdf.metal, bsdf.view.z) +
-                 vec3((1 - bsdf.metallic) * (1 - bsdf.coat_passes));
-  reflected *= bsdf.beneath;
-  bsdf.diffuse = vec3(0);
-  bsdf.diffuse_share = 0;
-  return reflected;
+bool has_sharp_gloss(const Bsdf& bsdf) { return bsdf.alpha < sharp_alpha && has_specular(bsdf); }
+
+vec3 kept_reflectance(const Bsdf& b) {
+  vec3 reflected = b.diffuse * b.coat_passes;
+  if (!has_sharp_gloss(b))
+    reflected += b.metallic * fresnel_schlick(b.metal, b.view.z) +
+                 vec3((1 - b.metallic) * (1 - b.coat_passes));
+  return b.beneath * reflected;
 }
 
 bool may_be_shaded(const Transport& transport, vec3 position) {

@@ -29,9 +29,10 @@ KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hi
 // `sharp`: shadows of what moves would be seen. False: nothing is known there.
 bool find_kept_light(const Transport& transport, const Ray& ray, const Hit& hit, bool sharp,
                      vec3& light);
-// What a surface sends back of such light, times that. A sharp gloss goes on: `bsdf` then keeps its
-// gloss alone.
-vec3 reflect_kept_light(Bsdf& bsdf, bool& goes_on);
+// What a surface sends back of light that is as bright all around. A sharp gloss is left out: walks
+// follow it.
+bool has_sharp_gloss(const Bsdf& bsdf);
+vec3 kept_reflectance(const Bsdf& bsdf);
 
 // Whether something that moves may change the light there by more than a little: it is near, or
 // close to the way from a punctual light.

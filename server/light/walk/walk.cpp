@@ -267,9 +267,9 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
     if (last && !is_clear_solid(bsdf)) return radiance;
     if (vec3 light; may_end(transport, walk, hit, light)) {
-      bool goes_on;
-      radiance += walk.throughput * reflect_kept_light(bsdf, goes_on) * light;
-      if (!goes_on) return radiance;
+      radiance += walk.throughput * kept_reflectance(bsdf) * light;
+      if (!has_sharp_gloss(bsdf)) return radiance;
+      bsdf.diffuse = vec3(0), bsdf.diffuse_share = 0;
     }
     std::optional<WavelengthSpread> spread;
     part_colors(transport, walk, surface, base, sampler, bsdf, spread);

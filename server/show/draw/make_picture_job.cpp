@@ -61,7 +61,8 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   // Of a place that was never seen, nothing is known.
   bool seen = picture.drawn_at >= 0 && place.camera_cuts == before.camera_cuts;
   float guessed = seen ? picture.stats.filled + picture.stats.empty : 1;
-  job.learns = show.pass.denoiser && in_steps(job);
+  const bool points = show.settings.display == Display::points;
+  job.learns = show.pass.denoiser && in_steps(job) && !points;
   job.settled = job.learns
                     ? picture.rest.samples >= settled_samples
                     : wants_reference(show.time - place.moved_at, seen && before.settled,
@@ -89,8 +90,9 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   double interval = 1 / drawing_rate(show, visitor);
   double seen_for = std::max(interval, 0.001 * double(visitor.times.interval));
   job.passing = !fine;
-  job.coarse = job.passing && !affords_fine_light(job.samples / (seen_for * pixels),
-                                                  before.passing && !before.coarse);
+  job.coarse =
+      job.passing && !points &&
+      !affords_fine_light(job.samples / (seen_for * pixels), before.passing && !before.coarse);
   if (moves) {
     // It is seen from when it is finished until the next one is.
     interval = seen_for;
@@ -101,7 +103,8 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
     job.view = scaled_view(keyframe_view(job.expected, turn), job.scale);
     if (job.passing) {
       job.ahead = scaled_view(keyframe_view(job.ahead), job.scale);
-      job.around = surroundings(place.heading, now, job.view, seen_in + 0.5 * interval);
+      if (!points)
+        job.around = surroundings(place.heading, now, job.view, seen_in + 0.5 * interval);
     }
   } else {
     job.ahead = expected_view(place.heading, now, predicted_pictures * interval);

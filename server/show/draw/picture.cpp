@@ -2,6 +2,7 @@
 #include "show/draw/picture.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "base/clock.h"
@@ -30,9 +31,12 @@ void carry_times(double factor, StageTimes& times) {
     *one *= float(factor);
 }
 
+// As the render cache was published: points alone.
+bool shows_points(const Show& show) { return show.settings.display == Display::points; }
+
 // What moves is drawn by itself where that is little of the picture, as what it covers is kept.
 bool draws_backdrop(const Show& show, const PictureJob& job) {
-  if (!in_steps(job) || !job.moving || job.passing) return false;
+  if (!in_steps(job) || !job.moving || job.passing || shows_points(show)) return false;
   if (!show.visibility->rasterises(job.view)) return false;
   if (!job.dynamic.empty()) return true;
   PictureWindow window = moving_window(*show.world, job.view);
@@ -77,6 +81,15 @@ DrawingStep trace_more(Show& show, const PictureJob& job, const Technique& techn
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
+// The render cache as it was published. Where no point is near, nothing is shown.
+void paint_points(RenderCache& cache, const View& view, Frame& frame) {
+  fit_frame(view.width, view.height, frame);
+  std::fill(frame.color.begin(), frame.color.end(), vec3(0));
+  std::fill(frame.depth.begin(), frame.depth.end(), std::numeric_limits<float>::infinity());
+  std::fill(frame.object.begin(), frame.object.end(), 0);
+  cache.reconstruct(view, frame);
+}
+
 DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& technique,
                           const View& lit, Visitor& visitor) {
   RenderCache& cache = visitor.picture.cache;
@@ -93,7 +106,9 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   const Tonemap curve{show.exhibit.exposure};
   costs.backdrop = draws_backdrop(show, job);
   light_dynamically(show, job, job.view, visitor);
-  if (job.passing)
+  const bool points = shows_points(show), passing = job.passing && !points;
+  if (points) paint_points(cache, job.view, work.frame);
+  else if (passing)
     compositor.draw(cache, job.view, *show.visibility, curve, work.picture,
                     job.keep ? &work.depth : nullptr);
   else
@@ -106,15 +121,14 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
     return DrawingStep::guide;
   }
   double painted = seconds_now();
-  if (!job.passing) tonemap(work.frame, curve, work.picture);
+  if (!passing) tonemap(work.frame, curve, work.picture);
   work.seen = job.note_seen ? note_seen(job, lit, work.picture, cache) : nullptr;
   if (job.keep)
-    make_keyframe(job.view, work.picture, job.passing ? work.depth : work.frame.depth,
-                  work.keyframe);
+    make_keyframe(job.view, work.picture, passing ? work.depth : work.frame.depth, work.keyframe);
   double finished = seconds_now();
 
   costs.core_seconds += process_seconds_now() - cores_began;
-  costs.drawing = compositor.drawing_ms();
+  costs.drawing = points ? 0 : compositor.drawing_ms();
   costs.display += float(1000 * (painted - began)) - costs.drawing;
   costs.tonemap = float(1000 * (finished - painted));
   if (job.passing)
@@ -184,8 +198,6 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   if (costs.samples > 0 && costs.trace > 0)
     smooth(show.samples_per_second, float(costs.samples) / (0.001f * costs.trace));
   show.totals.samples += costs.samples;
-  show.totals.corrected += costs.corrected;
-  show.totals.corrective_samples += costs.corrective;
   // A visitor whose view has changed meanwhile begins anew.
   if (visitor.place.moved_at <= job.time)
     picture.rest.asked = costs.asked, picture.rest.samples = costs.kept_samples;

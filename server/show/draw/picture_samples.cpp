@@ -18,16 +18,16 @@ constexpr float barely_covered = 0.1f;   // of the pixels by points
 constexpr size_t least_slice = 2048;     // samples
 // Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
 constexpr double longest_slice = 0.025, least_slice_seconds = 0.006;
-constexpr double spread_from = 0.8;      // samples a pixel
-constexpr float corrected_share = 0.2f;  // of the samples, at most, for what shines
-constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
+constexpr double spread_from = 0.8;  // samples a pixel
+constexpr float more_asked = 1.2f;   // than there is time for, by what was measured: none is idle
 
 // Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
 // still camera's picture, waits for its own.
 bool may_be_late(const Show& show, const RenderCache& cache, const Technique& technique,
                  int samples) {
-  return show.settings.late_samples && !technique.begin_pass &&
-         samples <= BrokerSettings{}.most_waiting && cache.covered() > barely_covered;
+  return show.settings.late_samples && show.settings.display != Display::points &&
+         !technique.begin_pass && samples <= BrokerSettings{}.most_waiting &&
+         cache.covered() > barely_covered;
 }
 
 TransportSettings transport_of(const Show& show, const PictureJob& job) {
@@ -47,22 +47,6 @@ bool spreads_samples(const PictureJob& job, const Technique& technique) {
 size_t slice_of_samples(const Show& show) {
   double seconds = std::clamp(show.renderer.until_moving, least_slice_seconds, longest_slice);
   return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
-}
-
-bool corrects(const Show& show, const PictureJob& job, const Technique& technique) {
-  return show.settings.display == Display::corrected && show.lights.maps && job.passing &&
-         !technique.begin_pass;
-}
-
-// Requests for what shines, asked for from coarse to fine; the rest is the cache's to plan.
-void plan_corrections(const Show& show, const PictureJob& job, const View& lit, int most,
-                      VisitorPicture& picture, std::vector<Request>& requests) {
-  Corrections& corrections = picture.compositor.corrections();
-  corrections.begin(lit, *show.visibility, show.shining);
-  corrections.request(job.weights ? std::span(*job.weights) : std::span<const float>(), most,
-                      job.seed, requests);
-  picture.costs.corrected = corrections.pixels() > 0;
-  picture.costs.corrective = requests.size();
 }
 
 // The same view in as many pixels as there are samples.
@@ -110,11 +94,7 @@ void spread_samples(const View& view, int count, Visitor& visitor, std::vector<R
 }  // namespace
 
 void take_answers(const Show& show, VisitorPicture& picture) {
-  const std::vector<Answer> answers = picture.broker.collect();
-  land(answers, *show.world, show.pose_number, picture.cache);
-  for (const Answer& answer : answers)
-    picture.compositor.corrections().remember(answer.piece.view, answer.piece.requests,
-                                              answer.samples);
+  land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
 }
 
 void plan_samples(Show& show, const PictureJob& job, const Technique& technique, const View& lit,
@@ -143,18 +123,14 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   work.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
     cache.predict(ahead, int(predicted_share * float(asked)), job.seed, work.ahead);
-  work.corrective.clear();
-  if (corrects(show, job, technique))
-    plan_corrections(show, job, lit, int(corrected_share * float(asked)), picture, work.corrective);
-  const int planned = asked - int(work.ahead.size()) - int(work.corrective.size());
+  const int planned = asked - int(work.ahead.size());
   const bool spread = spreads_samples(job, technique);
   const int aimed = spread ? samples_to_watch(planned) : planned;
   cache.plan(lit, aimed, job.seed, work.requests);
   if (spread) {
     spread_samples(lit, planned - aimed, visitor, work.requests);
   }
-  for (const auto* more : {&work.ahead, &work.corrective})
-    work.requests.insert(work.requests.end(), more->begin(), more->end());
+  work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
   picture.costs.late = late;
 }
 
@@ -197,8 +173,9 @@ void remember_traced(const Show& show, const PictureJob& job, const Technique& t
   work.samples.resize(work.traced);
   if (technique.finish_pass) name_pixels(lit, work.requests);
   if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
+  if (show.settings.display == Display::points)
+    for (Sample& sample : work.samples) sample.glow = vec3(0);  // points show all light
   picture.cache.remember(lit, work.requests, work.samples);
-  picture.compositor.corrections().remember(lit, work.requests, work.samples);
   picture.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
   bool kept_long = !job.passing && picture.cache.is_still();

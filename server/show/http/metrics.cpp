@@ -88,7 +88,7 @@ std::string write_metrics(const ShowReport& report) {
   add_metric(out, "reconstruction_milliseconds", "What the last of them took, all cores",
              double(totals.reconstruction_ms));
   begin_metric(out, "display", "How pictures get their diffuse light");
-  for (const char* name : {"points", "maps", "corrected"})
+  for (const char* name : {"points", "maps"})
     add_sample(out, "display", {{"method", name}}, std::string_view(name) == report.display);
   add_metric(out, "illumination_map_texels", "Of the illumination maps in use; 0: none are",
              double(report.map_texels));
@@ -117,11 +117,6 @@ std::string write_metrics(const ShowReport& report) {
              double(totals.attention_analyses));
   add_metric(out, "attention_milliseconds", "What the last of them took, one core",
              double(totals.attention_ms));
-  add_metric(out, "corrected_pictures_total",
-             "Pictures with samples of what shines by themselves, none where nothing does",
-             double(totals.corrected));
-  add_metric(out, "corrective_samples_total", "Asked for by these",
-             double(totals.corrective_samples));
   add_metric(out, "surroundings_drawn_total",
              "Small wide pictures drawn of what a quick turn may show",
              double(totals.surroundings));

@@ -37,7 +37,7 @@ ShowReport make_report(const Show& show) {
   report.samples_per_second = show.samples_per_second;
   report.denoiser_problem = show.pass.problem;
   if (const IlluminationMap* maps = show.lights.maps.get()) {
-    report.display = show.settings.display == Display::corrected ? "corrected" : "maps";
+    report.display = "maps";
     report.map_error = maps->error;
     report.map_texels = maps->nodes.light.size();
   }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "picture/corrections.h"
+#include "light/visible/visible_material.h"
 #include "show/exhibit/exhibit_lamps.h"
 
 namespace wellspring {
@@ -46,6 +46,17 @@ void look_anew(VisitorPicture& picture) {
 
 }  // namespace
 
+std::vector<char> find_shining(const Scene& scene) {
+  std::vector<char> shining(scene.objects.size(), 0);
+  TextureRanges ranges(scene);
+  for (const Instance& instance : scene.instances) {
+    if (instance.object >= shining.size()) continue;
+    const int material = scene.meshes[size_t(instance.mesh)].material;
+    shining[instance.object] |= may_shine(scene.materials[size_t(material)], ranges);
+  }
+  return shining;
+}
+
 void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   const bool first = !show.lights.maps;
   const Scene& scene = show.exhibit.scene;
@@ -53,7 +64,7 @@ void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   if (first) show.shining = find_shining(scene);
   show.known = show.mapped;
   for (size_t i = 0; i < show.known.size(); i++)
-    if (show.shining[i] > 0) show.known[i] = 0;
+    if (show.shining[i]) show.known[i] = 0;
   show.lights.maps = maps;
   if (!show.exhibit.lamps.empty()) {
     show.switches.all.maps = std::move(maps);
@@ -66,7 +77,6 @@ void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
     if (!first) continue;
     // Points know their light by itself, not in multiples of what maps know.
     visitor.picture.cache.clear();
-    visitor.picture.compositor.corrections().clear();
   }
 }
 
@@ -190,7 +200,6 @@ void follow_lamps(Show& show, Visitor& visitor) {
   }
   picture.broker.forget();
   picture.compositor.invalidate_samples();
-  picture.compositor.corrections().clear();
   picture.lamps = lit;
 }
 

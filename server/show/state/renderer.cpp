@@ -8,8 +8,7 @@ namespace wellspring {
 size_t memory_bytes(const DrawingWork& work) {
   return memory_bytes(*work.cache) + memory_bytes(*work.compositor) + memory_bytes(work.frame) +
          memory_bytes(work.keyframe) + memory_bytes(work.around) +
-         bytes_of(work.depth, work.picture.rgb, work.requests, work.ahead, work.corrective,
-                  work.samples) +
+         bytes_of(work.depth, work.picture.rgb, work.requests, work.ahead, work.samples) +
          memory_bytes(work.dynamic) + memory_bytes(work.backdrop_light) +
          memory_bytes(work.moving_light) + memory_bytes(work.moving);
 }

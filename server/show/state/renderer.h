@@ -33,10 +33,8 @@ namespace wellspring {
 struct PictureCosts {
   float display = 0, light = 0, trace = 0, drawing = 0, tonemap = 0;
   size_t samples = 0;
-  uint64_t asked = 0;       // RestState::asked, after it
-  double kept_samples = 0;  // RestState::samples, likewise
-  bool corrected = false;   // what shines was asked for by itself: so many of the samples
-  size_t corrective = 0;
+  uint64_t asked = 0;        // RestState::asked, after it
+  double kept_samples = 0;   // RestState::samples, likewise
   bool late = false;         // its samples are still to be traced
   bool given_up = false;     // there is no picture
   double guide_seconds = 0;  // for what a reconstruction begins with
@@ -59,7 +57,7 @@ struct DrawingWork {
   Image8 picture;                           // when it is finished the visitor's old one
   Keyframe keyframe, around;                // likewise
   std::shared_ptr<const SeenPicture> seen;  // of it, for attention; null: not wanted
-  std::vector<Request> requests, ahead, corrective;
+  std::vector<Request> requests, ahead;
   std::vector<Sample> samples;
   View pass;          // whose pixels all are asked for, where whole passes are filtered
   size_t traced = 0;  // of the requests

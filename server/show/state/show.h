@@ -42,9 +42,8 @@ enum class Display : uint8_t {
   automatic,  // by illumination maps, where there are some
   points,     // by the points of the visitor's render cache alone
   maps,       // by illumination maps; until there are some by points
-  corrected,  // likewise, and in motion what shines by samples of its own (picture/corrections.h)
 };
-inline constexpr const char* display_names[] = {"automatic", "points", "maps", "corrected"};
+inline constexpr const char* display_names[] = {"automatic", "points", "maps"};
 
 struct ShowSettings {
   float fps = 60;                    // pictures a second a walking visitor gets, machine permitting
@@ -107,7 +106,7 @@ struct Show {
   Switches switches;
   // While there are lights.maps, of each object:
   std::vector<char> mapped;      // they know the light of some of it
-  std::vector<float> shining;    // find_shining()
+  std::vector<char> shining;     // some of its light depends on the view
   std::vector<char> known;       // mapped and not shining: it needs no samples
   std::string light_problem;     // of the package's own light; empty: none
   std::unique_ptr<Baker> baker;  // null: maps are as they were at the start

@@ -23,8 +23,7 @@ struct ShowTotals {
   uint64_t lamps_switched = 0;
   uint64_t announcements = 0;
   uint64_t attention_analyses = 0;
-  float attention_ms = 0;                          // of the last of these
-  uint64_t corrected = 0, corrective_samples = 0;  // pictures that show what shines; asked for it
+  float attention_ms = 0;  // of the last of these
 };
 
 }  // namespace wellspring

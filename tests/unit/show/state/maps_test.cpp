@@ -126,12 +126,27 @@ TEST_F(Maps, DamagedOnesAreNotUsed) {
   EXPECT_FALSE(show->lights.maps);
 }
 
+// The render cache as published, not shapes in its light.
 TEST_F(Maps, WhoWantsPointsGetsThem) {
   keep_map();
   open(Display::points, "gather");
   EXPECT_FALSE(show->lights.maps);
   EXPECT_TRUE(show->lights.known) << "on which walks end";
   EXPECT_FALSE(show->baker);
+  join(96, 64);
+  ASSERT_TRUE(step_until([&] { return !pictures().empty(); }));
+  Frame points;
+  visitor().picture.cache.reconstruct(visitor().picture.job.view, points);
+  Image8 wanted, shown = image(pictures().size() - 1);
+  tonemap(points, Tonemap{show->exhibit.exposure}, wanted);
+  ASSERT_EQ(shown.rgb.size(), wanted.rgb.size());
+  double difference = 0, light = 0;
+  for (size_t i = 0; i < shown.rgb.size(); i++) {
+    difference += std::abs(int(shown.rgb[i]) - int(wanted.rgb[i]));
+    light += wanted.rgb[i];
+  }
+  EXPECT_GT(light / double(shown.rgb.size()), 20);
+  EXPECT_LT(difference / double(shown.rgb.size()), 8) << "but for JPEG's";
 }
 
 TEST_F(Maps, TechniquesThatKnowNothingOfThemGetNone) {
@@ -233,55 +248,13 @@ void add_bronze(Exhibit& exhibit) {
   exhibit.scene.instances.push_back({2, mat4(1), 3});
 }
 
-struct Corrected : Maps {
-  void walk(Display display, double seconds = 0.6) {
-    keep_map();
-    open(display);
-    join(96, 64);
-    steps(3);
-    for (double t = 0; t < seconds; t += tick_seconds) turn(0.02 * t, 0.1), step();
-  }
-};
-
-TEST_F(Corrected, WhatShinesHasSamplesOfItsOwn) {
+TEST_F(Maps, WhatShinesIsNotKnown) {
   add_bronze(exhibit);
-  walk(Display::corrected);
-  EXPECT_TRUE(says("wellspring_display{method=\"corrected\"} 1\n"));
-  EXPECT_GT(show->totals.corrected, 5u);
-  EXPECT_GT(show->totals.corrective_samples, 100u);
-  EXPECT_GT(visitor().picture.compositor.corrections().counts().kept, 100u);
+  keep_map();
+  open();
+  ASSERT_EQ(show->known.size(), 4u);
   EXPECT_EQ(show->known[3], 0);
   EXPECT_EQ(show->known[1], 1);
-}
-
-TEST_F(Corrected, NothingIsDoneWhereNothingShines) {
-  walk(Display::corrected);
-  ASSERT_GT(show->totals.drawn, 5u);
-  EXPECT_EQ(show->totals.corrected + show->totals.corrective_samples, 0u);
-}
-
-TEST_F(Corrected, NothingIsDoneUnlessItIsAskedFor) {
-  add_bronze(exhibit);
-  walk(Display::automatic);
-  ASSERT_GT(show->totals.drawn, 5u);
-  EXPECT_EQ(show->totals.corrected + show->totals.corrective_samples, 0u);
-}
-
-TEST_F(Corrected, ALampThatIsSwitchedForgetsThem) {
-  add_bronze(exhibit);
-  add_switch(true);
-  keep_map({daylight, lamplight});
-  open(Display::corrected);
-  join(96, 64);
-  for (int i = 0; i < 30; i++) turn(0.01 * i, 0.1), step();
-  const Corrections& corrections = visitor().picture.compositor.corrections();
-  const size_t before = corrections.memory_bytes();
-  ASSERT_GT(corrections.counts().kept, 100u);
-  ASSERT_TRUE(switch_lamp(*show, show->visitors.front(), "ceiling", false));
-  const uint64_t kept = corrections.counts().kept;
-  for (int i = 0; i < 20; i++) turn(0.3 + 0.01 * i, 0.1), step();
-  EXPECT_GT(corrections.counts().kept, kept);
-  EXPECT_LT(corrections.memory_bytes(), 2 * before);
 }
 
 }  // namespace

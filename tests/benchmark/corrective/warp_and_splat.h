@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/raw_vector.h"
-#include "cache/corrective/object_samples.h"
+#include "object_samples.h"
 
 namespace wellspring {
 

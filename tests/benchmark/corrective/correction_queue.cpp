@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cache/corrective/correction_queue.h"
+#include "correction_queue.h"
 
 #include <algorithm>
 #include <cmath>

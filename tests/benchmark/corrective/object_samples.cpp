@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cache/corrective/object_samples.h"
+#include "object_samples.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,8 +7,8 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "cache/corrective/fine_normal.h"
-#include "cache/corrective/level_lanes.h"
+#include "fine_normal.h"
+#include "level_lanes.h"
 
 namespace wellspring {
 namespace {
@@ -228,11 +228,6 @@ void set_delta(SampleStore& store, uint32_t object, float delta) {
   if (object != 0 && std::isfinite(delta)) enter_object(store, object).delta = delta;
 }
 
-void forget_samples(SampleStore& store, uint32_t object) {
-  if (ObjectSamples* samples = find_object(store, object))
-    for (LevelSamples& list : samples->levels) list = {};
-}
-
 AgeingStats age_samples(SampleStore& store, vec3 eye, uint32_t age,
                         const AgeingSettings& settings) {
   std::atomic<int> checked = 0, invalid = 0, dropped = 0;
@@ -248,16 +243,6 @@ AgeingStats age_samples(SampleStore& store, vec3 eye, uint32_t age,
     }
   });
   return {checked, invalid, dropped};
-}
-
-size_t memory_bytes(const SampleStore& store) {
-  size_t sum = bytes_of(store.objects);
-  for (const ObjectSamples& object : store.objects) {
-    sum += bytes_of(object.levels);
-    for (const LevelSamples& list : object.levels)
-      each_array(list, [&](const auto& array) { sum += bytes_of(array); });
-  }
-  return sum;
 }
 
 }  // namespace wellspring

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cache/corrective/warp_and_splat.h"
+#include "warp_and_splat.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "base/parallel.h"
-#include "cache/corrective/fine_normal.h"
-#include "cache/corrective/level_lanes.h"
+#include "fine_normal.h"
+#include "level_lanes.h"
 
 namespace wellspring {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "cache/corrective/warp_and_splat.h"
+#include "benchmark/corrective/warp_and_splat.h"
 #include "world/view.h"
 
 namespace wellspring::test {

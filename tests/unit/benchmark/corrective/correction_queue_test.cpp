@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who is corrected first, how much of each, and by how many threads.
-#include "cache/corrective/correction_queue.h"
+#include "benchmark/corrective/correction_queue.h"
 
 #include <gtest/gtest.h>
 
@@ -141,7 +141,7 @@ TEST(CorrectionQueue, ANewPlanOfTheSameViewChangesPrioritiesAndGoesOn) {
   jobs.push_back(job);
   std::vector<CorrectionJob> rest = take_all(queue);
   EXPECT_EQ(rest.back().object, 1u);
-  EXPECT_FLOAT_EQ(rest.back().priority, 0.1f * 0.85f * 0.85f * 0.85f);
+  EXPECT_FLOAT_EQ(rest.back().priority, 0.1f * 0.9f * 0.9f * 0.9f);
   jobs.insert(jobs.end(), rest.begin(), rest.end());
   EXPECT_EQ(count_places(jobs), size_t(size * size));  // nothing twice
   queue.submit(halves(1, 1));

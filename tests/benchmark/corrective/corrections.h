@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light that depends on the view, of what shines (Haber, Myszkowski, Yamauchi, Seidel 2001, section
-// 4): each such object's samples are kept by themselves (cache/corrective/), dropped when it is
+// 4): each such object's samples are kept by themselves, dropped when it is
 // seen from too different an angle, warped and splatted over its own pixels, and asked for from
 // coarse to fine in the order in which objects are attended to. What they leave out points tell.
 // One visitor's. What moves has none.
@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "cache/corrective/correction_queue.h"
-#include "cache/corrective/warp_and_splat.h"
+#include "correction_queue.h"
+#include "warp_and_splat.h"
 #include "frame/frame.h"
 #include "light/sample.h"
 #include "light/visible/visibility.h"
@@ -21,6 +21,10 @@ namespace wellspring {
 // invalid (delta_of()); 0: it is matte, and nothing of it is corrected.
 std::vector<float> find_shining(const Scene& scene);
 
+// Of each object by its number, the first of its group: those of one material that stand close
+// together (section 4.1).
+std::vector<uint32_t> group_shining(const Scene& scene, std::span<const float> shining);
+
 struct CorrectionCounts {
   uint64_t pictures = 0;                      // in which something that shines was seen
   uint64_t asked = 0, kept = 0, dropped = 0;  // samples
@@ -28,6 +32,8 @@ struct CorrectionCounts {
 
 class Corrections {
  public:
+  // `groups`: group_shining(); empty: each object is one by itself.
+  explicit Corrections(std::vector<uint32_t> groups = {}) : groups_(std::move(groups)) {}
   // Finds what of `shining` the view shows, drops samples that no longer hold, and warps the
   // others. Nothing is done where nothing shines.
   void begin(const View& view, const VisibilityPass& visibility, std::span<const float> shining);
@@ -35,24 +41,25 @@ class Corrections {
   // `weights`: of objects, see RenderCache::set_weights().
   void request(std::span<const float> weights, int most, uint64_t seed,
                std::vector<Request>& requests);
+  // The same in no order, of pixels without a sample of their own.
+  void request_evenly(int most, uint64_t seed, std::vector<Request>& requests);
   // Keeps answers to requests of `view`, whoever asked, as far as they show what shines.
   void remember(const View& view, std::span<const Request> requests,
                 std::span<const Sample> samples);
   // Puts samples into the light of `lit`, packed as read_surface() leaves it, if that view was
   // begun.
   void show(const View& lit, Frame& light);
-  // Samples of another light, or of another exhibit, are forgotten.
-  void clear();
 
   // Pixels of the view that show what shines.
   int pixels() const { return pixels_; }
   const CorrectionCounts& counts() const { return counts_; }
-  size_t memory_bytes() const;
 
  private:
   void find_regions(std::span<const float> weights);
   void splat();
+  Request request_at(ivec2 place, uint64_t seed);
 
+  std::vector<uint32_t> groups_;  // of each object
   SampleStore store_;
   CorrectionQueue queue_;
   SplatScratch scratch_;
@@ -62,7 +69,10 @@ class Corrections {
   uint32_t age_ = 0;
   // Of the view's pixels.
   int pixels_ = 0;
-  std::vector<uint32_t> object_;
+  std::vector<uint32_t> object_, group_;
+  uint32_t group_of(uint32_t object) const {
+    return object < groups_.size() ? groups_[object] : object;
+  }
   std::vector<float> depth_;
   std::vector<SampleWords> words_;
   std::vector<uint8_t> level_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cache/corrective/sqrt5_grid.h"
+#include "sqrt5_grid.h"
 
 #include <algorithm>
 

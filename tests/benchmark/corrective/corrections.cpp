@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "picture/corrections.h"
+#include "corrections.h"
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <unordered_map>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/packing.h"
-#include "light/material/material_use.h"
+#include "light/visible/visible_material.h"
 #include "picture/surface_image.h"
 
 namespace wellspring {
 namespace {
-
-constexpr float least_matte = 0.5f;  // roughness, from which nothing shines
 
 // The words of a sample are those of a point of its surface (picture/surface_image.h), the last as
 // plane_more.
@@ -38,16 +35,49 @@ std::vector<float> find_shining(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     if (instance.object >= shining.size()) continue;
     const Material& m = scene.materials[size_t(scene.meshes[size_t(instance.mesh)].material)];
-    if (m.unlit) continue;
-    const TexelRange texels = ranges.of(m.metallic_roughness_texture);
-    const float roughness = m.roughness * texels.low.y;
-    bool shines = m.metallic * texels.high.z > 0 || roughness < least_matte || m.transmission > 0 ||
-                  m.clearcoat > 0;
-    if (!shines) continue;
+    if (!may_shine(m, ranges)) continue;
+    const float roughness = m.roughness * ranges.of(m.metallic_roughness_texture).low.y;
     float& delta = shining[instance.object];
     delta = delta > 0 ? std::min(delta, delta_of(roughness)) : delta_of(roughness);
   }
   return shining;
+}
+
+std::vector<uint32_t> group_shining(const Scene& scene, std::span<const float> shining) {
+  constexpr float close = 0.3f;  // metres
+  struct Thing {
+    Bounds box;
+    int material = -1;
+  };
+  std::vector<Thing> things(scene.objects.size());
+  for (const Instance& instance : scene.instances) {
+    if (instance.object >= shining.size() || shining[instance.object] <= 0) continue;
+    const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+    Thing& thing = things[instance.object];
+    if (thing.material < 0) thing.material = mesh.material;
+    for (vec3 p : mesh.positions) {
+      const vec3 place = vec3(instance.to_world * vec4(p, 1));
+      thing.box.low = min(thing.box.low, place), thing.box.high = max(thing.box.high, place);
+    }
+  }
+  std::vector<uint32_t> group(things.size());
+  for (uint32_t i = 0; i < group.size(); i++) group[i] = i;
+  auto first = [&](uint32_t i) {
+    while (group[i] != i) i = group[i];
+    return i;
+  };
+  for (uint32_t i = 0; i < things.size(); i++)
+    for (uint32_t k = 0; k < i; k++) {
+      const Thing &a = things[i], &b = things[k];
+      if (a.material < 0 || a.material != b.material) continue;
+      bool near = true;
+      for (int axis = 0; axis < 3; axis++)
+        near &= a.box.low[axis] - close < b.box.high[axis] &&
+                b.box.low[axis] - close < a.box.high[axis];
+      if (near) group[std::max(first(i), first(k))] = std::min(first(i), first(k));
+    }
+  for (uint32_t i = 0; i < group.size(); i++) group[i] = first(i);
+  return group;
 }
 
 void Corrections::begin(const View& view, const VisibilityPass& visibility,
@@ -60,7 +90,8 @@ void Corrections::begin(const View& view, const VisibilityPass& visibility,
   }
   if (std::none_of(shining.begin(), shining.end(), [](float delta) { return delta > 0; })) return;
   const size_t pixels = size_t(view.width) * size_t(view.height);
-  object_.resize(pixels), depth_.resize(pixels), words_.resize(pixels), level_.resize(pixels);
+  object_.resize(pixels), group_.resize(pixels), depth_.resize(pixels), words_.resize(pixels),
+      level_.resize(pixels);
   std::atomic<int> seen = 0;
   visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
     size_t at = size_t(run.y) * size_t(view.width) + size_t(run.x);
@@ -69,6 +100,7 @@ void Corrections::begin(const View& view, const VisibilityPass& visibility,
       uint32_t object = run.object[i];
       bool shines = object < shining_.size() && shining_[object] > 0 && !visibility.moves(object);
       object_[at + size_t(i)] = shines ? object : 0;
+      group_[at + size_t(i)] = shines ? group_of(object) : 0;
       depth_[at + size_t(i)] = run.depth[i];
       here += shines;
     }
@@ -83,12 +115,12 @@ void Corrections::begin(const View& view, const VisibilityPass& visibility,
   splat();
 }
 
-void Corrections::splat() { warp_and_splat(store_, view_, object_, scratch_, words_, level_); }
+void Corrections::splat() { warp_and_splat(store_, view_, group_, scratch_, words_, level_); }
 
 void Corrections::find_regions(std::span<const float> weights) {
   std::unordered_map<uint32_t, PixelBox> boxes;
   for (int y = 0; y < view_.height; y++) {
-    const uint32_t* row = &object_[size_t(y) * size_t(view_.width)];
+    const uint32_t* row = &group_[size_t(y) * size_t(view_.width)];
     for (int x = 0; x < view_.width; x++) {
       if (row[x] == 0) continue;
       int end = x + 1;
@@ -98,7 +130,7 @@ void Corrections::find_regions(std::span<const float> weights) {
       x = end - 1;
     }
   }
-  CorrectionPlan plan{view_, age_, object_, {}};
+  CorrectionPlan plan{view_, age_, group_, {}};
   for (const auto& [object, box] : boxes) {
     float weight = object < weights.size() ? weights[object] : 1;
     plan.regions.push_back({object, box, weight});
@@ -106,6 +138,15 @@ void Corrections::find_regions(std::span<const float> weights) {
   auto first = [](const auto& a, const auto& b) { return a.object < b.object; };
   std::sort(plan.regions.begin(), plan.regions.end(), first);
   queue_.submit(std::move(plan));
+}
+
+Request Corrections::request_at(ivec2 place, uint64_t seed) {
+  Request request;
+  request.seed = sample_seed(seed, uint32_t(place.x), uint32_t(place.y), 0);
+  request.ray = view_ray(view_, float(place.x) + 0.5f, float(place.y) + 0.5f);
+  request.pixel = uint32_t(place.y) * uint32_t(view_.width) + uint32_t(place.x);
+  counts_.asked++;
+  return request;
 }
 
 void Corrections::request(std::span<const float> weights, int most, uint64_t seed,
@@ -118,13 +159,22 @@ void Corrections::request(std::span<const float> weights, int most, uint64_t see
     for (ivec2 place : job.places) {
       const uint32_t pixel = uint32_t(place.y) * uint32_t(view_.width) + uint32_t(place.x);
       if (level_[pixel] >= job.level || requests.size() >= full) continue;
-      Request request;
-      request.seed = sample_seed(seed, uint32_t(place.x), uint32_t(place.y), 0);
-      request.ray = view_ray(view_, float(place.x) + 0.5f, float(place.y) + 0.5f);
-      request.pixel = pixel;
-      requests.push_back(request);
-      counts_.asked++;
+      requests.push_back(request_at(place, seed));
     }
+}
+
+void Corrections::request_evenly(int most, uint64_t seed, std::vector<Request>& requests) {
+  if (pixels_ == 0 || most <= 0) return;
+  const size_t full = requests.size() + size_t(most);
+  Rng rng(mix64(seed ^ 0x6576656e));
+  const uint64_t pixels = object_.size();
+  for (int tries = 0; tries < 40 * most && requests.size() < full; tries++) {
+    const uint32_t pixel = uint32_t(uint64_t(rng.next()) * pixels >> 32);
+    if (object_[pixel] == 0 || level_[pixel] >= store_.grid.levels) continue;
+    level_[pixel] = uint8_t(store_.grid.levels);
+    const ivec2 place(int(pixel) % view_.width, int(pixel) / view_.width);
+    requests.push_back(request_at(place, seed));
+  }
 }
 
 void Corrections::remember(const View& view, std::span<const Request> requests,
@@ -141,7 +191,7 @@ void Corrections::remember(const View& view, std::span<const Request> requests,
     // Light that is not as the map has it, near what moves, points tell.
     if ((sample.flags & sample_mapped) && sample.smooth != vec3(1)) continue;
     ivec2 place(int(pixel) % view.width, int(pixel) / view.width);
-    found_.push_back({sample.object, level_of_pixel(store_.grid, place), sample.position,
+    found_.push_back({group_of(sample.object), level_of_pixel(store_.grid, place), sample.position,
                       sample.normal, make_words(sample)});
   }
   counts_.kept += uint64_t(add_samples(store_, view, age_, found_));
@@ -162,16 +212,6 @@ void Corrections::show(const View& lit, Frame& light) {
         std::memcpy(&light.confidence[at], &words_[at][3], sizeof(uint32_t));
       }
   });
-}
-
-void Corrections::clear() {
-  for (ObjectSamples& object : store_.objects) forget_samples(store_, object.object);
-  queue_.submit({});
-}
-
-size_t Corrections::memory_bytes() const {
-  return wellspring::memory_bytes(store_) +
-         bytes_of(object_, words_, depth_, level_, shining_, found_);
 }
 
 }  // namespace wellspring

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "unit/cache/corrective/stage.h"
+#include "unit/benchmark/corrective/stage.h"
 
 #include <bit>
 #include <cmath>

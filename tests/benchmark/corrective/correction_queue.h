@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "cache/corrective/sqrt5_grid.h"
+#include "sqrt5_grid.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -32,8 +32,8 @@ struct CorrectionPlan {
 
 struct CorrectionSettings {
   int levels = 4;
-  int job = 64;         // most places of a job: the paper's N_job
-  float decay = 0.85f;  // of priority from level to level; the paper takes 0.8 to 0.9
+  int job = 64;        // most places of a job: the paper's N_job
+  float decay = 0.9f;  // of priority from level to level; the paper takes 0.8 to 0.9
 };
 
 // Places of one object and level, for one tracer.

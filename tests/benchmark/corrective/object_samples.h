@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "cache/corrective/sqrt5_grid.h"
+#include "sqrt5_grid.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -69,9 +69,6 @@ float delta_of(float roughness);
 // Also of an object that has no samples yet.
 void set_delta(SampleStore& store, uint32_t object, float delta);
 
-// The light on an object has changed: its samples go, its delta stays.
-void forget_samples(SampleStore& store, uint32_t object);
-
 struct AgeingSettings {
   uint32_t max_age = 300;  // changes of the camera; at most 65535
   int least_samples = 10;  // that say whether an age is valid: the paper's N_min
@@ -86,7 +83,5 @@ struct AgeingStats {
 // View::position now; `age`: the camera's now. Many threads; the result does not depend on them.
 AgeingStats age_samples(SampleStore& store, vec3 eye, uint32_t age,
                         const AgeingSettings& settings = {});
-
-size_t memory_bytes(const SampleStore& store);
 
 }  // namespace wellspring

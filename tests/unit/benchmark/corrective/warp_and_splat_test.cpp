@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which pixels samples cover, from the view they were traced for and from others.
-#include "cache/corrective/warp_and_splat.h"
+#include "benchmark/corrective/warp_and_splat.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "base/rng.h"
-#include "unit/cache/corrective/stage.h"
+#include "unit/benchmark/corrective/stage.h"
 
 namespace wellspring {
 namespace {

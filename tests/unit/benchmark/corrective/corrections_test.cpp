@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "picture/corrections.h"
+#include "benchmark/corrective/corrections.h"
 
 #include <gtest/gtest.h>
 
@@ -111,7 +111,6 @@ TEST(Corrections, CostNothingWhereNothingShines) {
   EXPECT_TRUE(room.ask(1000).empty());
   EXPECT_EQ(room.corrections.pixels(), 0);
   EXPECT_EQ(room.corrections.counts().pictures, 0u);
-  EXPECT_EQ(room.corrections.memory_bytes(), room.shining.capacity() * sizeof(float));
 }
 
 // What is shown in the end is what is traced, bit for bit.
@@ -190,12 +189,25 @@ TEST(Corrections, HoldWhileTheAngleDoes) {
       << "another view's";
 }
 
-TEST(Corrections, AreForgottenWithTheLight) {
-  Corrected room(room_with({metal(vec3(0.9f), 0.3f)}));
-  room.converge();
-  ASSERT_TRUE(room.ask(1000).empty());
-  room.corrections.clear();
-  EXPECT_FALSE(room.ask(1000).empty());
+// What stands close together and is of one material is a group, once there are groups.
+TEST(Corrections, GroupsAreOfOneMaterialAndClose) {
+  Scene scene = empty_scene();
+  const int gold = add_material(scene, metal(vec3(0.9f), 0.1f)),
+            steel = add_material(scene, metal(vec3(0.5f), 0.1f)),
+            paint = add_material(scene, diffuse(vec3(0.5f)));
+  const uint32_t first = uint32_t(scene.objects.size());
+  for (auto [material, x] : {std::pair(gold, 0.0f),
+                             {gold, 0.4f},
+                             {steel, 0.2f},
+                             {gold, 5.0f},
+                             {paint, 0.1f},
+                             {gold, 0.8f}}) {
+    Mesh ball = sphere_mesh(material, 0.1f, 6);
+    add_mesh(scene, ball, "ball", at({x, 0, 0}));
+  }
+  std::vector<uint32_t> group = group_shining(scene, find_shining(scene));
+  group.erase(group.begin(), group.begin() + first);
+  EXPECT_EQ(group, (std::vector<uint32_t>{first, first, first + 2, first + 3, first + 4, first}));
 }
 
 // What something that moves is near to does not have the map's light: points know it.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which pixels the levels of the sqrt(5) hierarchy hold, against a recursive construction.
-#include "cache/corrective/sqrt5_grid.h"
+#include "benchmark/corrective/sqrt5_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "unit/cache/corrective/stage.h"
+#include "unit/benchmark/corrective/stage.h"
 
 namespace wellspring {
 namespace {
