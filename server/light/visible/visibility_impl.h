@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "light/material/gloss_albedo.h"
 #include "light/sample/illumination_map.h"
 #include "light/visible/facet.h"
 #include "light/visible/shade_facet.h"
@@ -58,6 +59,14 @@ struct Stretches {
   PicturePlaces base, shine;
 };
 
+// How the light of eight pixels changes with the direction they face
+// (light/material/light_slope.h).
+struct LightSlopes {
+  Lanes x, y, z;
+};
+
+inline constexpr float most_shining = 0.25f;  // roughness
+
 struct VisibleRun::Impl {
   const VisibilityPass::Impl& visibility;
   const View& view;
@@ -76,7 +85,16 @@ struct VisibleRun::Impl {
   }
   PrimaryHit see(int i) const;
   Lanes read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness, Lanes share) const;
-  Lanes read_relief(const Facet& f, const IlluminationLanes& light, int i, int end) const;
+  Lanes read_relief(const Facet& f, const LightSlopes& light, int i, int end) const;
+  Lanes read_sheen(const RunSurface& surface, const LightSlopes& slope, int i,
+                   float roughness) const;
+  // Its gloss is smooth enough to show what is around.
+  bool shines(const Facet& f) const {
+    const GlossFactors gloss = gloss_factors(*f.material);
+    return f.placed->moving && gloss.f0 > 0 && gloss.share > 0 && gloss.roughness < most_shining;
+  }
+  // The light of such gloss; RunSkin's other light is known.
+  void shine(const Lights& lights, RunSkin& to) const;
   void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
   vec3 scale_of(const Material& m, int index) const {
     return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * visibility.scale[size_t(index)].factor;
