@@ -327,7 +327,7 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
     RunMoving moving;
     RunGlow emitting = describe_run(run, p);
     const KeptLight& kept = composer.kept;
-    if (kept.skin) moving.pixels = run.light(*kept.skin, p.surface, moving.light);
+    if (kept.skin) moving.pixels = run.light(*kept.skin, *kept.lights, p.surface, moving.light);
     RunMapped mapped;
     if (kept.maps) mapped.pixels = run.known(*kept.maps, p.surface, mapped.unit);
     if (kept.maps && composer.passing)

@@ -17,7 +17,8 @@ struct SkinLight;        // light/known/skin_light.h
 
 // Light that need not be found, borrowed; null: all is lit by points.
 struct KeptLight {
-  const SkinLight* skin = nullptr;        // what moves is lit by
+  const SkinLight* skin = nullptr;        // what moves is lit by, and its smooth gloss by
+  const Lights* lights = nullptr;         // these, where that is not null
   const IlluminationMap* maps = nullptr;  // what still surfaces' points count in multiples of
   // What lights that move or change add, computed for pictures of the view that is drawn.
   const DynamicImage* dynamic = nullptr;

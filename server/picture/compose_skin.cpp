@@ -36,7 +36,7 @@ void compose_moving(const View& view, const VisibilityPass& visibility, const Pi
     RunPixels p;
     RunMoving moving;
     RunGlow emitting = describe_run(run, p);
-    moving.pixels = run.light(*kept.skin, p.surface, moving.light);
+    moving.pixels = run.light(*kept.skin, *kept.lights, p.surface, moving.light);
     const RunDynamic dynamic = find_dynamic(kept.dynamic, view, run, p);
     size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
     for (int i = 0; i < run.count; i += lane_count)

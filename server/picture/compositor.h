@@ -38,8 +38,11 @@ class Compositor {
  public:
   explicit Compositor(std::shared_ptr<CompositorWork> shared = nullptr);
 
-  // What moves is lit by it from now on (borrowed; null: by points like everything else).
-  void set_skin(const SkinLight* skin) { kept_.skin = skin; }
+  // What moves is lit by it from now on (borrowed; null: by points like everything else), and what
+  // of that is smooth shows `lights` (borrowed).
+  void set_skin(const SkinLight* skin, const Lights* lights) {
+    kept_.skin = skin, kept_.lights = lights;
+  }
   // Still surfaces are lit by these as far as points do not say otherwise, whose light counts in
   // multiples of theirs (Sample::known); null: by points alone.
   void set_maps(std::shared_ptr<const IlluminationMap> maps) {

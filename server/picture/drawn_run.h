@@ -44,14 +44,15 @@ inline constexpr float skin_samples = 64;  // as much as light of the skin is su
 // Radiance of those of eight pixels, from lane `i` on, that reflect the light of the skin.
 inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
                        const LaneMask& lanes_that_move, Shown& shown) {
-  Lanes gloss = lanes_at(skin.gloss, i);
-  auto put = [&](const float* light, const float* reflectance, Lanes& to) {
-    Lanes lit = lanes_at(light, i) * (lanes_at(reflectance, i) * (1.0f - gloss) + gloss);
+  const Lanes gloss = lanes_at(skin.gloss, i);
+  auto put = [&](const float* light, const float* shine, const float* reflectance, Lanes& to) {
+    const Lanes lit =
+        lanes_at(light, i) * lanes_at(reflectance, i) * (1.0f - gloss) + lanes_at(shine, i) * gloss;
     to = lanes_that_move ? positive_lanes(lit) : to;
   };
-  put(skin.red, p.surface.red, shown.color.r);
-  put(skin.green, p.surface.green, shown.color.g);
-  put(skin.blue, p.surface.blue, shown.color.b);
+  put(skin.red, skin.shine_red, p.surface.red, shown.color.r);
+  put(skin.green, skin.shine_green, p.surface.green, shown.color.g);
+  put(skin.blue, skin.shine_blue, p.surface.blue, shown.color.b);
   shown.samples = lanes_that_move ? all_lanes(skin_samples) : shown.samples;
 }
 

@@ -65,7 +65,7 @@ void welcome_links(Show& show, Arrivals& arrivals) {
     visitor.came_at = show.time;
     visitor.picture.cache = RenderCache({}, show.renderer.work.cache);
     visitor.picture.compositor = Compositor(show.renderer.work.compositor);
-    visitor.picture.compositor.set_skin(&show.skin);
+    visitor.picture.compositor.set_skin(&show.skin, &show.lights);
   }
 }
 

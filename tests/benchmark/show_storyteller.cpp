@@ -99,7 +99,7 @@ struct Visit {
 
   Visit(const VisitStage& stage, const View& view, double samples)
       : stage(stage), view(view), samples_a_second(samples) {
-    compositor.set_skin(&skin);
+    compositor.set_skin(&skin, &stage.lights());
     const size_t pixels = size_t(view.width) * size_t(view.height);
     Image8 black{view.width, view.height, std::vector<uint8_t>(3 * pixels)};
     make_keyframe(view, black, std::vector<float>(pixels, INFINITY), backdrop);
@@ -112,7 +112,7 @@ struct Visit {
     update.samples = int(owed);
     owed -= update.samples;
     update.seed = mix64(uint64_t(1000 * time) + 1);
-    update.eyes = std::span(&view.position, 1);
+    update.views = std::span(&view, 1);
     update.transport = stage.settings().transport;
     update.transport.clamp = moving_clamp;
     update_skin(stage.world(), stage.lights(), update, skin);
@@ -158,7 +158,7 @@ void measure(BenchReport& report, const VisitStage& stage, const View& view) {
   add("smooth", [&] { smooth_skin(stage.world(), visit.skin); });
   SkinUpdate update;
   update.samples = 1000;
-  update.eyes = std::span(&view.position, 1);
+  update.views = std::span(&view, 1);
   add("thousand samples", [&] { update_skin(stage.world(), stage.lights(), update, visit.skin); });
 }
 

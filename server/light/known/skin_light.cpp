@@ -7,6 +7,8 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/spread.h"
+#include "light/known/skin_sight.h"
+#include "light/material/light_slope.h"
 #include "light/walk/first_surface.h"
 #include "light/sample/lamps_seen.h"
 
@@ -20,9 +22,18 @@ constexpr float surprise = 4;            // standard errors between them that sa
 constexpr float kept_nearby = 0.5f;      // samples, of older ones beside such a place
 constexpr float blocked_window = 16;     // samples
 constexpr uint32_t sure_samples = 4;     // that say that a place is hidden
+constexpr float maybe_hidden = 0.25f;    // of them blocked: samples look closer
+constexpr int closer_looks = 4;          // short rays; and how many of them, with the sample's own,
+constexpr int closed = 3;                // say that it is hidden now
+constexpr float seen_share = 0.75f;      // of samples go to what is seen
+constexpr float rays_a_sample = 4;       // that look for it: some miss
+constexpr float least_dense = 0.3f;      // share of samples of what is sparse
+constexpr float well_known = 24;         // samples
+constexpr uint32_t less_of_known = 4;    // a power of two: one of so many that are met is sampled
 constexpr float hidden = 0.8f;           // of them blocked
 constexpr uint32_t longest_period = 16;  // turns from sample to sample of a place
 constexpr uint32_t most_tries = 4, again = 48;  // at a direction; dimension of the others
+constexpr uint32_t look = 64;                   // dimension of closer looks
 constexpr float most_over_known = 3;            // times what is known there and of all
 constexpr float gather_blunt = 0.14f;           // as technique `gather` has it
 
@@ -32,7 +43,21 @@ struct Asked {
 struct Answer {
   vec3 light{0};
   bool valid = false, blocked = false;
+  bool shut = false;  // the place is hidden now
+  // What makes the slope: how much of the light came straight, times its slope_of(), and whence the
+  // rest came.
+  vec3 straight{0}, straight_slope{0}, direction{0}, normal{0};
 };
+
+void scale(Answer& answer, float factor) {
+  answer.light *= factor, answer.straight *= factor, answer.straight_slope *= factor;
+}
+
+vec3 find_slope(const Answer& answer) {
+  const float rest = luminance(answer.light - answer.straight);
+  if (!(rest > 0)) return answer.straight_slope;
+  return answer.straight_slope + rest * slope_of(answer.direction, answer.normal);
+}
 
 // A place around the vertex where light is gathered.
 struct SkinPoint {
@@ -108,6 +133,12 @@ Answer gather(const Transport& transport, const WalkRules& rules, const SkinLigh
   DirectLight direct = sample_direct_light(transport, walk, point.place, lobe, true, sampler);
   answer.light = direct.area_diffuse + direct.punctual_diffuse;
   answer.valid = true;
+  answer.normal = point.normal;
+  answer.straight = answer.light;
+  if (float l = luminance(direct.area_diffuse); l > 0)
+    answer.straight_slope += l * slope_of(direct.area_direction, point.normal);
+  if (float l = luminance(direct.punctual_diffuse); l > 0)
+    answer.straight_slope += l * slope_of(direct.punctual_direction, point.normal);
   // The part of a smooth normal's hemisphere that lies within a flat triangle is as light as the
   // rest: else facets would darken what is round.
   BsdfSample scattered;
@@ -116,6 +147,7 @@ Answer gather(const Transport& transport, const WalkRules& rules, const SkinLigh
     scattered = sample_lambert(lobe, sampler.next2());
   }
   if (!advance(walk, point.place, scattered)) return answer;
+  answer.direction = scattered.direction;
   walk.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;
   Hit hit = transport.world.intersect(walk.ray);
   answer.blocked = hit.valid() && hit.t < skin.reach;
@@ -124,18 +156,39 @@ Answer gather(const Transport& transport, const WalkRules& rules, const SkinLigh
   return answer;
 }
 
+// Whether the place is hidden at the moment, after a sample that found that the way was blocked or
+// not. What moves opens and shuts it: lips, lids.
+bool is_shut(const World& world, const SkinLight& skin, uint32_t place, bool blocked,
+             Sampler& sampler) {
+  int found = blocked;
+  for (int i = 0; i < closer_looks; i++) {
+    sampler.seek(look + uint32_t(8 * i));
+    SkinPoint point;
+    if (!pick_point(world, skin, place, sampler, point)) return true;
+    const BsdfSample way = sample_lambert(
+        LambertLobe{point.normal, point.place.geometric_normal, vec3(1)}, sampler.next2());
+    if (!(way.pdf > 0)) continue;
+    Ray ray;
+    ray.origin = offset_origin(point.place, way.direction);
+    ray.direction = way.direction;
+    ray.t_max = skin.reach;
+    found += world.intersect(ray).valid();
+  }
+  return found >= closed;
+}
+
 bool is_hidden(const SkinHistory& h) { return h.asked >= sure_samples && h.blocked > hidden; }
 
-bool is_faced(const World& world, const SkinPlace& place, std::span<const vec3> eyes) {
+bool is_faced(const World& world, const SkinPlace& place, std::span<const View> views) {
   const Mesh& mesh = world.mesh_of(place.instance);
   vec3 p = mesh.positions[place.vertex];
   vec3 n = mesh.normals[place.vertex] * (place.back ? -1.0f : 1.0f);
   constexpr float aside = 0.2f;  // normals of a vertex lean
-  for (vec3 eye : eyes) {
-    vec3 line = eye - p;
+  for (const View& view : views) {
+    vec3 line = view.position - p;
     if (dot(n, line) > -aside * std::sqrt(dot(line, line))) return true;
   }
-  return eyes.empty();
+  return views.empty();
 }
 
 uint32_t period_of(const SkinLight& skin, uint32_t place, bool faced) {
@@ -145,6 +198,30 @@ uint32_t period_of(const SkinLight& skin, uint32_t place, bool faced) {
   if (16 * area < skin.usual_area) period *= 4;
   else if (4 * area < skin.usual_area) period *= 2;
   return std::min(period, longest_period);
+}
+
+// Places that are seen, each view as many.
+void choose_seen(const World& world, const SkinUpdate& update, size_t most, SkinLight& skin,
+                 std::vector<Asked>& asked) {
+  const size_t each = most / std::max<size_t>(update.views.size(), 1);
+  for (size_t v = 0; v < update.views.size() && each > 0; v++) {
+    const SkinSight sight =
+        see_skin(world, skin, update.views[v], int(rays_a_sample * each), mix64(update.seed + v));
+    size_t taken = 0;
+    for (size_t i = 0; i < sight.places.size(); i++) {
+      const uint32_t place = sight.places[i];
+      SkinHistory& h = skin.history[place];
+      // Where places are dense, as on a face, light has more detail.
+      const float dense = std::sqrt(skin.usual_area / std::max(skin.places[place].area, 1e-12f));
+      const float choice = float(mix64(update.seed + i) >> 40) * 0x1p-24f;
+      if (choice > std::max(dense, least_dense)) continue;
+      // What is well known does with less.
+      const bool known = h.newer.count + h.older.count > well_known;
+      if (known && (h.passed_over++ & (less_of_known - 1)) != 0) continue;
+      asked.push_back({place, h.asked++});
+      if (++taken == each) break;
+    }
+  }
 }
 
 // Whose turn it is.
@@ -157,13 +234,14 @@ void choose(const World& world, const SkinUpdate& update, SkinLight& skin,
   const uint64_t step = golden_step(count);
   auto place_at = [&](uint64_t i) { return uint32_t((i * step) % count); };
   auto take = [&](uint32_t place) { asked.push_back({place, skin.history[place].asked++}); };
+  choose_seen(world, update, size_t(seen_share * float(most)), skin, asked);
   auto shown = [&](uint32_t place) {
     return shows[skin.places[place].instance - skin.first_instance];
   };
   for (uint32_t i = 0; i < count && asked.size() < most; i++) {
     uint32_t place = place_at(uint64_t(skin.cursor) + i);
     if (skin.history[place].asked == 0 && shown(place) &&
-        is_faced(world, skin.places[place], update.eyes))
+        is_faced(world, skin.places[place], update.views))
       take(place);
   }
   uint64_t looked = 0, looks = uint64_t(longest_period) * count;
@@ -171,7 +249,7 @@ void choose(const World& world, const SkinUpdate& update, SkinLight& skin,
     uint32_t place = place_at(skin.cursor);
     if (++skin.cursor == count) skin.cursor = 0, skin.turn++;
     if (!shown(place)) continue;
-    uint32_t period = period_of(skin, place, is_faced(world, skin.places[place], update.eyes));
+    uint32_t period = period_of(skin, place, is_faced(world, skin.places[place], update.views));
     if (((skin.turn + uint32_t(mix64(place))) & (period - 1)) == 0) take(place);
   }
 }
@@ -183,8 +261,9 @@ float most_light(const SkinLight& skin, uint32_t place, float clamp) {
   return std::min(clamp, most_over_known * (max_component(vec3(known)) + max_component(skin.mean)));
 }
 
-void add(SkinMean& mean, vec3 light) {
+void add(SkinMean& mean, vec3 light, vec3 slope) {
   mean.count++;
+  mean.slope += (slope - mean.slope) / mean.count;
   float before = luminance(light - mean.mean);
   mean.mean += (light - mean.mean) / mean.count;
   mean.squares += before * luminance(light - mean.mean);
@@ -200,6 +279,7 @@ void join(SkinHistory& h) {
   float count = to.count + from.count, apart = luminance(from.mean - to.mean);
   to.squares += from.squares + apart * apart * to.count * from.count / count;
   to.mean += (from.mean - to.mean) * (from.count / count);
+  to.slope += (from.slope - to.slope) * (from.count / count);
   to.count = count;
   from = {};
 }
@@ -209,7 +289,8 @@ void remember(const Answer& answer, const Asked& asked, SkinLight& skin) {
   if (!answer.valid) return;
   float blocked = answer.blocked ? 1.0f : 0.0f;
   h.blocked += (blocked - h.blocked) / std::min(float(asked.index + 1), blocked_window);
-  add(h.newer, answer.light);
+  if (answer.shut) return;
+  add(h.newer, answer.light, find_slope(answer));
   if (h.newer.count >= window) join(h);
 }
 
@@ -258,7 +339,9 @@ void drop_history(std::span<const Asked> asked, std::span<const Answer> answers,
   for (size_t i = 0; i < asked.size(); i++) {
     if (!dropped[i]) continue;
     SkinHistory& h = skin.history[asked[i].place];
-    h.older = {}, h.newer = {answers[i].light, answers[i].valid ? 1.0f : 0.0f, 0};
+    h.older = {}, h.newer = {};
+    if (answers[i].valid && !answers[i].shut)
+      add(h.newer, answers[i].light, find_slope(answers[i]));
   }
 }
 
@@ -278,6 +361,8 @@ int update_skin(const World& world, const Lights& lights, const SkinUpdate& upda
     for (size_t i = size_t(begin); i < size_t(end); i++) {
       Sampler sampler(mix64(update.seed ^ mix64(asked[i].place)), asked[i].index);
       answers[i] = gather(transport, rules, skin, asked[i].place, sampler);
+      if (skin.history[asked[i].place].blocked > maybe_hidden || answers[i].blocked)
+        answers[i].shut = is_shut(world, skin, asked[i].place, answers[i].blocked, sampler);
       vec3& light = answers[i].light;
       if (!is_finite(light) || std::min({light.x, light.y, light.z}) < 0) {
         answers[i].valid = false;
@@ -285,7 +370,7 @@ int update_skin(const World& world, const Lights& lights, const SkinUpdate& upda
       }
       float most = most_light(skin, asked[i].place, update.transport.clamp);
       float largest = max_component(light);
-      if (most > 0 && largest > most) light *= most / largest;
+      if (most > 0 && largest > most) scale(answers[i], most / largest);
     }
   });
   for (size_t i = 0; i < asked.size(); i++) remember(answers[i], asked[i], skin);

@@ -16,8 +16,13 @@
 // that (Briggs, Henson, McCormick 2000, "A Multigrid Tutorial", chapter 8), a V-cycle a call, going
 // on from the last. So one sample a place already gives light of little noise.
 //
-// A place whose hemisphere is blocked within millimetres (skin under cloth, a strand's root) is
-// hidden: it says nothing and takes the light of its neighbours.
+// Each place also keeps how its light changes with the direction that it faces
+// (light/material/light_slope.h), smoothed likewise. By that neighbours are expected to differ as
+// their normals do, so that smoothing takes no form from a face, and maps of normals are lit.
+//
+// A place whose hemisphere is blocked within millimetres (skin under cloth, a strand's root, teeth
+// behind lips) is hidden: what is found then is not kept. It has the light that it had when it was
+// open, or takes that of its neighbours.
 #pragma once
 #include <functional>
 #include <span>
@@ -25,6 +30,7 @@
 
 #include "light/sample/lights.h"
 #include "light/transport_settings.h"
+#include "world/view.h"
 
 namespace wellspring {
 
@@ -56,13 +62,14 @@ struct SkinLevel {
 
 // Samples of a place.
 struct SkinMean {
-  vec3 mean{0};
+  vec3 mean{0}, slope{0};        // the second: of luminance times slope_of()
   float count = 0, squares = 0;  // of luminance: sum of squared differences from the mean
 };
 struct SkinHistory {
   SkinMean newer, older;
-  float blocked = 0;   // share of the last samples
-  uint32_t asked = 0;  // samples so far, whatever became of them
+  float blocked = 0;         // share of the last samples, and of what looked closer
+  uint32_t asked = 0;        // samples so far, whatever became of them
+  uint32_t passed_over = 0;  // times that it was seen and well known
 };
 
 struct SkinLight {
@@ -80,6 +87,7 @@ struct SkinLight {
   // What samples say.
   std::vector<SkinHistory> history;
   std::vector<vec4> light;        // of each place; w: 0 where nothing is known
+  std::vector<vec4> slope;        // of the luminance of that, world; times it, unlike eval_slope()
   vec3 mean{0};                   // of all that is known of what is visible
   float noise = 0.5f;             // relative variance of a sample, measured
   float samples = 0;              // of a place that is visible and known, on average
@@ -87,7 +95,7 @@ struct SkinLight {
   float usual_area = 0;           // of places
   uint32_t cursor = 0, turn = 0;  // whose turn it is
 };
-// About 250 bytes a place.
+// About 300 bytes a place.
 size_t memory_bytes(const SkinLight& skin);
 
 // Of what moves in `world`, as its meshes are now (at rest). Tens of milliseconds.
@@ -96,13 +104,14 @@ SkinLight make_skin_light(const World& world);
 struct SkinUpdate {
   int samples = 0;
   uint64_t seed = 1;
-  // Scene coordinates. Places that no eye can face are sampled now and then, small ones less often
-  // than large ones. Empty: nothing is known of eyes.
-  std::span<const vec3> eyes;
+  // Who looks. Most samples go to places that are seen, as often as pixels show them, and more of
+  // them where few are known; some to all in turn, those now and then that no eye can face, small
+  // ones less often than large ones. Empty: nothing is known of eyes.
+  std::span<const View> views;
   TransportSettings transport;
 };
-// Traces samples at places of what moves and is visible, as the world is now, those never sampled
-// first, then all in turn. All cores; the same bits whatever the number of threads. Returns how
+// Traces samples at places of what moves and is visible, as the world is now, of all in turn those
+// never sampled first. All cores; the same bits whatever the number of threads. Returns how
 // many were traced. Call after World::commit(), while nothing moves.
 int update_skin(const World& world, const Lights& lights, const SkinUpdate& update,
                 SkinLight& skin);
@@ -119,15 +128,11 @@ void relight_skin(const World& world, const SkinChange& change, SkinLight& skin)
 // Light at the corners of a triangle of a moving instance, seen from its back or not.
 struct SkinTriangle {
   vec3 corner, edge1, edge2;
+  vec3 slope, slope1, slope2;  // the same of the slope, relative to the light's luminance
 };
 // Of the World's moving instances, which are visible.
 std::vector<uint8_t> find_visible(const World& world, const SkinLight& skin);
 
-inline SkinTriangle find_skin(const SkinLight& skin, uint32_t instance, uvec3 vertices, bool back) {
-  const std::vector<uint32_t>& place = back ? skin.back : skin.front;
-  const uint32_t* of = &place[skin.first_vertex[instance - skin.first_instance]];
-  vec3 a(skin.light[of[vertices.x]]), b(skin.light[of[vertices.y]]), c(skin.light[of[vertices.z]]);
-  return {a, b - a, c - a};
-}
+SkinTriangle find_skin(const SkinLight& skin, uint32_t instance, uvec3 vertices, bool back);
 
 }  // namespace wellspring

@@ -19,6 +19,8 @@ constexpr float one_position = 1e-5f;  // of the largest coordinate
 // The other side of a thin thing is lit otherwise: but where nothing can be known, as of the root
 // of a strand of hair, it is better than black.
 constexpr float other_side = 0.02f;
+// Teeth and strands of hair that lie side by side and face one way: cosine, and samples.
+constexpr float beside_facing = 0.5f, most_beside = 4;
 constexpr float strong = 0.25f;  // of the most alike neighbour: goes into one group with it
 constexpr int most_levels = 12;
 constexpr float most_reach = 0.004f, reach_share = 0.01f;  // metres; of the root of the area
@@ -87,15 +89,17 @@ struct Neighbours {
 float alike(const Builder& b, const Neighbours& edge) {
   auto [here, there] = edge.places;
   const SkinPlace &from = b.skin.places[here], &to = b.skin.places[there];
-  if (from.back != to.back || !edge.joined) return other_side;
+  const float facing = dot(b.normal[here], b.normal[there]);
+  if (from.back != to.back || !(edge.joined || facing > beside_facing)) return other_side;
   vec3 d = b.position[here] - b.position[there], turn = b.normal[here] - b.normal[there];
   float differs = anyway * anyway + by_normal * by_normal * dot(turn, turn) +
                   by_distance * by_distance * dot(d, d);
-  return std::isfinite(differs) ? 1 / differs : 0.0f;
+  if (!std::isfinite(differs)) return 0;
+  return edge.joined ? 1 / differs : std::min(1 / differs, most_beside);
 }
 
-// Strands of hair and teeth hang together with nothing: those that nothing can be known of take the
-// light of what is near.
+// Strands of hair and teeth hang together with nothing: they are lit as those beside them, and
+// those that nothing can be known of take the light of what is near.
 void join_near(const Builder& b, float reach, std::vector<Neighbours>& pairs) {
   if (!(reach > 0)) return;
   std::unordered_map<uint64_t, uint32_t> last;  // place in a cell
@@ -272,14 +276,15 @@ SkinLight make_skin_light(const World& world) {
   find_pieces(skin);
   skin.history.resize(skin.places.size());
   skin.light.assign(skin.places.size(), vec4(0));
+  skin.slope.assign(skin.places.size(), vec4(0));
   skin.usual_area = float(all / double(std::max<size_t>(skin.places.size(), 1)));
   return skin;
 }
 
 size_t memory_bytes(const SkinLight& skin) {
-  size_t bytes =
-      bytes_of(skin.first_vertex, skin.front, skin.back, skin.places, skin.first_corner,
-               skin.first_edge, skin.corners, skin.edges, skin.piece, skin.history, skin.light);
+  size_t bytes = bytes_of(skin.first_vertex, skin.front, skin.back, skin.places, skin.first_corner,
+                          skin.first_edge, skin.corners, skin.edges, skin.piece, skin.history,
+                          skin.light, skin.slope);
   for (const SkinLevel& level : skin.levels)
     bytes += bytes_of(level.parent, level.first_edge, level.edges);
   return bytes;

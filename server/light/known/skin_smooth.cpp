@@ -6,30 +6,27 @@
 
 #include "base/parallel.h"
 #include "light/known/skin_light.h"
+#include "light/material/light_slope.h"
 
 namespace wellspring {
 namespace {
 
-constexpr float open_below = 0.6f, shut_above = 0.85f, shut_weight = 1e-4f;  // of what is blocked
 constexpr float least_noise = 0.02f, most_noise = 4;  // relative variance of a sample
 constexpr double prior_noise = 0.4, prior_samples = 1000;
 constexpr float kept_after_switch = 0.25f;  // samples that all light before a switch counts as
 constexpr float least_known = 0.5f;         // samples
 constexpr float damping = 0.8f;             // of Jacobi steps
 constexpr int coarse_steps = 2, coarsest_steps = 8;
-constexpr int grain = 2048;  // places
-
-float openness(float blocked) {
-  float shut = std::clamp((blocked - open_below) / (shut_above - open_below), 0.0f, 1.0f);
-  return 1 - (1 - shut_weight) * shut;
-}
+constexpr float sure_of_group = 1;    // sample
+constexpr float prior_slope = 0.25f;  // samples a place that say that there is none
+constexpr int grain = 2048;           // places
 
 // What samples say of a place; w: their count.
-vec4 told(const SkinHistory& h) {
+vec4 told(const SkinHistory& h, vec3 SkinMean::*what) {
   float count = h.newer.count + h.older.count;
   if (!(count > 0)) return vec4(0);
-  vec3 mean = (h.newer.mean * h.newer.count + h.older.mean * h.older.count) / count;
-  return vec4(mean, count * openness(h.blocked));
+  vec3 mean = (h.newer.*what * h.newer.count + h.older.*what * h.older.count) / count;
+  return vec4(mean, count);
 }
 
 // The equations of one level: what is to be added to the light of a place, times the weights there,
@@ -119,11 +116,92 @@ void measure(std::span<const uint8_t> visible, SkinLight& skin) {
 }
 
 // Whether anything is known of what hangs together with each place: more than that it is hidden.
-void mark_known(std::span<const vec4> said, std::span<const uint8_t> active, SkinLight& skin) {
+void mark_known(std::span<const vec4> sums, std::span<const uint8_t> active, SkinLight& skin) {
   std::vector<float> known(skin.pieces, 0);
-  for (size_t i = 0; i < said.size(); i++) known[skin.piece[i]] += said[i].w;
-  for (size_t i = 0; i < said.size(); i++)
+  for (size_t i = 0; i < sums.size(); i++) known[skin.piece[i]] += sums[i].w;
+  for (size_t i = 0; i < sums.size(); i++)
     if (active[i]) skin.light[i].w = known[skin.piece[i]] >= least_known;
+}
+
+// Of each place that is active what samples say, times their count.
+std::vector<vec4> find_sums(const SkinLight& skin, vec3 SkinMean::*what,
+                            const std::vector<uint8_t>& active) {
+  std::vector<vec4> sums(skin.places.size(), vec4(0));
+  parallel_ranges(int(sums.size()), grain, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      if (!active[i]) continue;
+      const vec4 said = told(skin.history[i], what);
+      sums[i] = vec4(vec3(said) * said.w, said.w);
+    }
+  });
+  return sums;
+}
+
+// What nothing was known of begins with the mean of what samples say of it, or of the smallest
+// group around that any sample was taken of: cycles take long to tell what is far.
+void begin_unknown(const SkinLight& skin, std::span<const vec4> sums,
+                   std::span<const uint8_t> unknown, std::vector<vec4>& values) {
+  if (std::find(unknown.begin(), unknown.end(), 1) == unknown.end()) return;
+  std::vector<std::vector<vec4>> coarser;
+  vec4 all(0);
+  for (const vec4& sum : sums) all += sum;
+  for (const SkinLevel& level : skin.levels) {
+    std::span<const vec4> finer = coarser.empty() ? sums : std::span<const vec4>(coarser.back());
+    std::vector<vec4> of(level.size(), vec4(0));
+    for (size_t i = 0; i < finer.size(); i++) of[level.parent[i]] += finer[i];
+    coarser.push_back(std::move(of));
+  }
+  parallel_ranges(int(sums.size()), grain, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      if (!unknown[i]) continue;
+      vec4 sum = sums[i];
+      size_t at = i;
+      for (size_t level = 0; !(sum.w >= sure_of_group) && level < coarser.size(); level++) {
+        at = skin.levels[level].parent[at];
+        sum = coarser[level][at];
+      }
+      if (!(sum.w > 0)) sum = all;
+      if (sum.w > 0) values[i] = vec4(vec3(sum) / sum.w, values[i].w);
+    }
+  });
+}
+
+// Adds by what neighbours are expected to differ: as their normals do, by the slope between them.
+void expect_slopes(const World& world, const SkinLight& skin, Equations& of) {
+  std::vector<vec3> normals(skin.places.size());
+  parallel_ranges(int(normals.size()), grain, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      const SkinPlace& place = skin.places[i];
+      const vec3 n = world.mesh_of(place.instance).normals[place.vertex];
+      const float length2 = dot(n, n);
+      if (length2 > 1e-12f && std::isfinite(length2))
+        normals[i] = n * ((place.back ? -1.0f : 1.0f) / std::sqrt(length2));
+    }
+  });
+  parallel_ranges(int(normals.size()), grain, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      if (!of.active[i]) continue;
+      const vec3 here(skin.slope[i]), light(skin.light[i]);
+      vec3 sum(0);
+      for (uint32_t e = skin.first_edge[i]; e < skin.first_edge[i + 1]; e++) {
+        const uint32_t next = skin.edges[e].place;
+        const vec3 both = light + vec3(skin.light[next]);
+        const float most = 0.5f * luminance(both);
+        if (!(most > 0)) continue;
+        const float differs = 0.5f * dot(here + vec3(skin.slope[next]), normals[i] - normals[next]);
+        sum += skin.edges[e].alike * std::clamp(differs / most, -1.0f, 1.0f) * 0.5f * both;
+      }
+      of.residual[i] += vec4(of.noise * sum, 0);
+    }
+  });
+}
+
+void run_cycles(const SkinLight& skin, int cycles, Equations& of) {
+  of.before.resize(of.added.size());
+  for (int cycle = 0; cycle < cycles; cycle++) {
+    if (!skin.levels.empty()) solve(skin, 0, of);
+    of.step();
+  }
 }
 
 }  // namespace
@@ -142,27 +220,46 @@ void smooth_skin(const World& world, SkinLight& skin, int cycles) {
   std::vector<uint8_t> active(count);
   for (size_t i = 0; i < count; i++)
     active[i] = visible[skin.places[i].instance - skin.first_instance];
-  std::vector<vec4> said(count, vec4(0));
-  parallel_ranges(int(count), grain, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++)
-      if (active[i]) said[i] = told(skin.history[i]);
-  });
-  mark_known(said, active, skin);
-  Equations of{skin.first_edge, skin.edges, skin.noise, std::move(active),
-               std::move(said), skin.light, {}};
-  of.before.resize(count);
-  for (vec4& r : of.residual) r = vec4(vec3(r) * r.w, r.w);
-  for (int cycle = 0; cycle < cycles; cycle++) {
-    if (!skin.levels.empty()) solve(skin, 0, of);
-    of.step();
-  }
+  std::vector<vec4> slopes = find_sums(skin, &SkinMean::slope, active),
+                    lights = find_sums(skin, &SkinMean::mean, active);
+  std::vector<uint8_t> unknown(count);
+  for (size_t i = 0; i < count; i++) unknown[i] = active[i] && !(skin.light[i].w > 0);
+  mark_known(lights, active, skin);
+  for (vec4& slope : slopes) slope.w += prior_slope;
+  begin_unknown(skin, slopes, unknown, skin.slope);
+  begin_unknown(skin, lights, unknown, skin.light);
+  auto equations = [&](std::vector<vec4>&& sums, const std::vector<vec4>& from) {
+    return Equations{skin.first_edge, skin.edges, skin.noise, active, std::move(sums), from, {}};
+  };
+  Equations of_slopes = equations(std::move(slopes), skin.slope);
+  run_cycles(skin, cycles, of_slopes);
+  skin.slope = std::move(of_slopes.added);
+  Equations of = equations(std::move(lights), skin.light);
+  expect_slopes(world, skin, of);
+  run_cycles(skin, cycles, of);
   parallel_ranges(int(count), grain, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++)
       skin.light[i] = vec4(max(vec3(of.added[i]), vec3(0)), skin.light[i].w);
   });
   measure(visible, skin);
-  for (vec4& light : skin.light)
-    if (!(light.w > 0)) light = vec4(skin.mean, 0);
+  for (size_t i = 0; i < count; i++)
+    if (!(skin.light[i].w > 0)) skin.light[i] = vec4(skin.mean, 0), skin.slope[i] = vec4(0);
+}
+
+SkinTriangle find_skin(const SkinLight& skin, uint32_t instance, uvec3 vertices, bool back) {
+  const std::vector<uint32_t>& place = back ? skin.back : skin.front;
+  const uint32_t* of = &place[skin.first_vertex[instance - skin.first_instance]];
+  vec3 light[3], slope[3];
+  for (int k = 0; k < 3; k++) {
+    const uint32_t at = of[vertices[k]];
+    light[k] = vec3(skin.light[at]);
+    const float l = luminance(light[k]);
+    if (l > 0) slope[k] = vec3(skin.slope[at]) / l;
+    const float length2 = dot(slope[k], slope[k]);
+    if (length2 > most_slope * most_slope) slope[k] *= most_slope / std::sqrt(length2);
+  }
+  return {light[0], light[1] - light[0], light[2] - light[0],
+          slope[0], slope[1] - slope[0], slope[2] - slope[0]};
 }
 
 void relight_skin(const World& world, const SkinChange& change, SkinLight& skin) {
@@ -174,11 +271,14 @@ void relight_skin(const World& world, const SkinChange& change, SkinLight& skin)
       vec3 normal = mesh.normals[place.vertex] * (place.back ? -1.0f : 1.0f);
       if (!change(mesh.positions[place.vertex], normal, kept, added)) continue;
       SkinHistory& h = skin.history[i];
-      vec4 before = told(h);
+      const vec4 before = told(h, &SkinMean::mean), slope = told(h, &SkinMean::slope);
+      const float left = luminance(kept);
       h.newer = h.older = {};
-      if (before.w > 0) h.older = {vec3(before) * kept + added, kept_after_switch, 0};
+      if (before.w > 0)
+        h.older = {vec3(before) * kept + added, left * vec3(slope), kept_after_switch, 0};
       h.asked = 0;
       skin.light[i] = vec4(vec3(skin.light[i]) * kept + added, skin.light[i].w);
+      skin.slope[i] *= left;
     }
   });
 }

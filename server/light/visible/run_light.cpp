@@ -8,6 +8,10 @@
 
 namespace wellspring {
 
+// Of irradiance's slope to that of radiance: bands of a clamped cosine (Ramamoorthi and Hanrahan
+// 2001).
+static constexpr float sheen_slope = 1.5f;
+
 // What part of light from all around eight pixels' gloss reflects, of a surface as described.
 Lanes VisibleRun::Impl::read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness,
                                    Lanes share) const {
@@ -23,23 +27,58 @@ Lanes VisibleRun::Impl::read_gloss(const RunSurface& surface, int i, Lanes f0, L
                       lanes_min(lanes_max(cosine, all_lanes(0)), all_lanes(1)));
 }
 
-uint64_t VisibleRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {
+// Times as much light as the diffuse layer is lit by comes from about where eight pixels mirror, by
+// the light's slope: of spherical harmonics of two bands, of which a rough lobe leaves a part.
+Lanes VisibleRun::Impl::read_sheen(const RunSurface& surface, const IlluminationLanes& slope, int i,
+                                   float roughness) const {
+  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+  const vec3 way = direction(i), step = view.right * pixel_angle;
+  const Lanes x = way.x + step.x * lane, y = way.y + step.y * lane, z = way.z + step.z * lane;
+  const Lanes nx = load_lanes(surface.nx + i), ny = load_lanes(surface.ny + i),
+              nz = load_lanes(surface.nz + i);
+  const Lanes unit = 1.0f / lanes_sqrt(lanes_max(nx * nx + ny * ny + nz * nz, all_lanes(1e-30f))),
+              length = 1.0f / lanes_sqrt(x * x + y * y + z * z);
+  const Lanes along = (slope.x * nx + slope.y * ny + slope.z * nz) * unit,
+              back = 2.0f * (x * nx + y * ny + z * nz) * unit * unit;
+  const Lanes mirrored =
+      (slope.x * (x - back * nx) + slope.y * (y - back * ny) + slope.z * (z - back * nz)) * length;
+  return positive_lanes(1.0f - along + sheen_slope * (1 - roughness * roughness) * mirrored);
+}
+
+uint64_t VisibleRun::light(const SkinLight& skin, const Lights& lights, const RunSurface& surface,
+                           RunSkin& to) const {
   if (seen_) return 0;
   const RasterRun& r = *impl_->run;
   float f0[RunSurface::most], roughness[RunSurface::most], share[RunSurface::most];
   uint64_t moving = 0;
+  bool shines = false;
   for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
     if (r.instance[begin] == RasterRun::nothing) continue;
     const Facet& f = impl_->facet(begin);
     if (!f.placed->moving) continue;
     SkinTriangle light = find_skin(skin, r.instance[begin], f.corner, !f.front);
     GlossFactors gloss = gloss_factors(*f.material);
+    shines |= impl_->shines(f);
     for (int i = begin; i < r.end[p]; i++) moving |= uint64_t(1) << i;
     for (int i = begin; i < r.end[p]; i += lane_count) {
       Lanes u = load_lanes(r.u + i), v = load_lanes(r.v + i);
-      store_lanes(to.red + i, light.corner.x + light.edge1.x * u + light.edge2.x * v);
-      store_lanes(to.green + i, light.corner.y + light.edge1.y * u + light.edge2.y * v);
-      store_lanes(to.blue + i, light.corner.z + light.edge1.z * u + light.edge2.z * v);
+      auto mix = [&](const vec3& a, const vec3& b, const vec3& c, int k) {
+        return a[k] + b[k] * u + c[k] * v;
+      };
+      IlluminationLanes slopes{};
+      slopes.x = mix(light.slope, light.slope1, light.slope2, 0);
+      slopes.y = mix(light.slope, light.slope1, light.slope2, 1);
+      slopes.z = mix(light.slope, light.slope1, light.slope2, 2);
+      const Lanes factor =
+          f.relief.known ? impl_->read_turn(f, slopes, true, false, i, r.end[p]) : all_lanes(1);
+      const Lanes sheen = impl_->read_sheen(surface, slopes, i, gloss.roughness);
+      auto put = [&](int k, float* diffuse, float* shine) {
+        const Lanes kept = mix(light.corner, light.edge1, light.edge2, k);
+        store_lanes(diffuse + i, factor * kept);
+        store_lanes(shine + i, sheen * kept);
+      };
+      put(0, to.red, to.shine_red), put(1, to.green, to.shine_green);
+      put(2, to.blue, to.shine_blue);
       store_lanes(f0 + i, all_lanes(gloss.f0));
       store_lanes(roughness + i, all_lanes(gloss.roughness));
       store_lanes(share + i, all_lanes(gloss.share));
@@ -50,6 +89,7 @@ uint64_t VisibleRun::light(const SkinLight& skin, const RunSurface& surface, Run
       store_lanes(to.gloss + i,
                   impl_->read_gloss(surface, i, load_lanes(f0 + i), load_lanes(roughness + i),
                                     load_lanes(share + i)));
+  if (shines) impl_->shine(lights, to);
   return moving;
 }
 

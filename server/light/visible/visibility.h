@@ -22,10 +22,11 @@ struct RunSurface {
 };
 
 // Light that a run's pixels reflect of what moves, and how: radiance is
-// light * (reflectance * (1 - gloss) + gloss).
+// light * reflectance * (1 - gloss) + shine * gloss.
 struct RunSkin {
   float red[RunSurface::most], green[RunSurface::most], blue[RunSurface::most];
   float gloss[RunSurface::most];  // albedo of the dielectric's reflection, 0 to 1
+  float shine_red[RunSurface::most], shine_green[RunSurface::most], shine_blue[RunSurface::most];
 };
 
 // Of a run's pixels, Sample::known: what the light of points counts in multiples of.
@@ -56,8 +57,11 @@ class VisibleRun {
   // Highlights of its pixels (light/visible/gloss.h); none where rays have seen them.
   void gloss(uint32_t* codes, uint8_t* metallic) const;
   // Of its pixels that show what moves, as `surface` describes it (light/known/skin_light.h); of
-  // others anything. Returns those, a bit each; none where rays have seen them.
-  uint64_t light(const struct SkinLight& skin, const RunSurface& surface, RunSkin& to) const;
+  // others anything. Returns those, a bit each; none where rays have seen them. Rough gloss shows
+  // the light that is kept, as much as comes about from where it mirrors; smooth gloss what rays
+  // meet there, and those of `lights` that have no size.
+  uint64_t light(const struct SkinLight& skin, const Lights& lights, const RunSurface& surface,
+                 RunSkin& to) const;
   // Of its pixels whose diffuse light the map knows (light/sample/illumination_map.h); of others
   // anything. Returns those, a bit each; none where rays have seen them. `surface`: as described.
   uint64_t known(const struct IlluminationMap& map, const RunSurface& surface, RunKnown& to) const;

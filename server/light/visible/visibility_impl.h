@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "light/material/gloss_albedo.h"
 #include "light/sample/illumination_map.h"
 #include "light/visible/facet.h"
 #include "light/visible/shade_facet.h"
@@ -58,6 +59,8 @@ struct Stretches {
   PicturePlaces base, shine;
 };
 
+inline constexpr float most_shining = 0.25f;  // roughness
+
 struct VisibleRun::Impl {
   const VisibilityPass::Impl& visibility;
   const View& view;
@@ -78,6 +81,15 @@ struct VisibleRun::Impl {
   Lanes read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness, Lanes share) const;
   Lanes read_turn(const Facet& f, const IlluminationLanes& light, bool relief, bool bent, int i,
                   int end) const;
+  Lanes read_sheen(const RunSurface& surface, const IlluminationLanes& slope, int i,
+                   float roughness) const;
+  // Its gloss is smooth enough to show what is around.
+  bool shines(const Facet& f) const {
+    const GlossFactors gloss = gloss_factors(*f.material);
+    return f.placed->moving && gloss.f0 > 0 && gloss.share > 0 && gloss.roughness < most_shining;
+  }
+  // The light of such gloss; RunSkin's other light is known.
+  void shine(const Lights& lights, RunSkin& to) const;
   void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
   vec3 scale_of(const Material& m, int index) const {
     return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * visibility.scale[size_t(index)].factor;

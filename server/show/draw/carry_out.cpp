@@ -117,7 +117,7 @@ void carry_out(Show& show, const Decision& decision, int waiting) {
     case Drawing::moving: return draw_what_moves(show, visitor());
     case Drawing::skin:
       go_on_in_world_of(show, visitor());
-      begin_skin_light(show);
+      begin_skin_light(show, visitor());
       return use_cores(show, [&show] { compute_skin_light(show); });
     case Drawing::go_on:
       if (decision.hurry) show.renderer.step = DrawingStep::draw;
@@ -134,8 +134,9 @@ void draw_now(Show& show, int waiting) {
   const int lit =
       waiting > 0 ? next_to_light(show.time, draw_states(show), renderer_state(show)) : -1;
   if (lit >= 0) {
-    begin_world_of(show, *std::next(show.visitors.begin(), lit));
-    begin_skin_light(show), compute_skin_light(show), finish_skin_light(show);
+    Visitor& visitor = *std::next(show.visitors.begin(), lit);
+    begin_world_of(show, visitor);
+    begin_skin_light(show, visitor), compute_skin_light(show), finish_skin_light(show);
   }
   const RendererState renderer = renderer_state(show);
   for (Visitor& visitor : show.visitors) {

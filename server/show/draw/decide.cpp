@@ -8,7 +8,6 @@ namespace wellspring {
 namespace {
 
 constexpr double on_time = 0.0005;   // seconds that a picture may come too early
-constexpr double skin_rate = 5;      // times a second that light on what moves is found
 constexpr double longest_gap = 0.5;  // seconds without a picture until a walker comes first
 // Of reconstructions.
 constexpr double first_after = 0.5;     // seconds at rest
@@ -95,7 +94,7 @@ bool wants_moving(double now, const VisitorDrawState& state) {
 
 int next_to_light(double now, std::span<const VisitorDrawState> states,
                   const RendererState& renderer) {
-  if (!renderer.has_skin || now - renderer.skin_at < 1 / skin_rate - on_time) return -1;
+  if (!renderer.has_skin || now - renderer.skin_at < renderer.skin_interval - on_time) return -1;
   auto sees = [](const VisitorDrawState& one) { return one.welcomed && one.sees_moving; };
   const auto count = std::count_if(states.begin(), states.end(), sees);
   if (count == 0) return -1;

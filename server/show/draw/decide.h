@@ -52,6 +52,7 @@ struct RendererState {
   bool in_pass = false;          // a reconstruction of somebody's picture is under way
   bool has_skin = false;         // what moves keeps light on its skin
   double skin_at = -1e9;         // when that was last ordered
+  double skin_interval = 0.2;    // seconds from then until it is due again
   uint64_t skin_turn = 0;        // how often
   double served = 0;             // Renderer::served
   int waiting = 0;               // visitors who waited for a picture when the tick began

@@ -5,15 +5,18 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
+#include "light/known/skin_sight.h"
 #include "picture/relight.h"
+#include "show/draw/skin_pace.h"
+#include "show/state/animations.h"
+#include "show/state/visitor_world.h"
 
 namespace wellspring {
 namespace {
 
-constexpr double most_skin_seconds = 0.025;  // of tracing, each time; when there are
-constexpr float enough_samples = 8;          // of a place, less, but
-constexpr double least_moving_share = 0.25;  // of that at least: she moves
 constexpr int cycles = 2, first_cycles = 6;  // of smoothing; when it was not found for a while
+constexpr double a_while = 1.5;              // seconds
+constexpr int sight_rays = 64;               // that tell how large it is in a visitor's picture
 
 }  // namespace
 
@@ -22,27 +25,39 @@ bool may_be_laid_over(const PictureWindow& window, const View& view) {
          size_t(view.width) * size_t(view.height);
 }
 
-void begin_skin_light(Show& show) {
+void begin_skin_light(Show& show, const Visitor& visitor) {
   SkinJob& job = show.renderer.skin;
   job.update = {};
-  job.eyes.clear();
-  for (const Visitor& visitor : show.visitors)
-    if (visitor.welcomed) job.eyes.push_back(visitor.place.last_view.position);
-  job.update.eyes = job.eyes;
-  double seconds = most_skin_seconds *
-                   std::clamp(double(enough_samples / show.skin.samples), least_moving_share, 1.0);
-  job.update.samples = int(seconds * double(show.samples_per_second));
+  job.views.clear();
+  float pixels = 0;
+  bool alike = true;  // all see the same of what moves
+  for (const Visitor& one : show.visitors) {
+    const View& view = one.place.last_view;
+    if (!one.welcomed || !sees_moving(show, one, view)) continue;
+    alike &= see_the_same(show, one, visitor);
+    if (!see_the_same(show, one, visitor)) continue;
+    const float seen = see_skin(*show.world, show.skin, view, sight_rays, job.turn).pixels;
+    if (seen > 0) job.views.push_back(view);
+    pixels = std::max(pixels, seen);
+  }
+  job.update.views = job.views;
+  const SkinPace pace = plan_skin(pixels, double(show.samples_per_second), show.skin.samples);
+  job.update.samples = pace.samples;
+  job.interval = alike ? pace.interval : least_interval;  // others may be nearer
   job.update.seed = mix64(show.ticks);
   job.update.transport = show.settings.transport;
   job.update.transport.clamp = show.settings.moving_clamp;
-  job.cycles = show.time - job.time > 1 ? first_cycles : cycles;
+  job.cycles = show.time - job.lit_at > a_while ? first_cycles : cycles;
   job.time = show.time;
+  if (pace.samples > 0) job.lit_at = show.time;
   job.turn++;
   job.at_work = true;
 }
 
 void compute_skin_light(Show& show) {
   SkinJob& job = show.renderer.skin;
+  job.traced = 0;
+  if (job.update.samples <= 0) return;
   job.traced = size_t(update_skin(*show.world, show.lights, job.update, show.skin));
   smooth_skin(*show.world, show.skin, job.cycles);
 }

@@ -10,8 +10,9 @@ namespace wellspring {
 bool may_be_laid_over(const PictureWindow& window, const View& view);
 
 // Light on what moves (light/known/skin_light.h), that all visitors share. By the tick, while the
-// renderer is idle, then on the renderer, as the world is then, then by the tick.
-void begin_skin_light(Show& show);
+// renderer is idle and the world is in that visitor's state, then on the renderer, as the world is
+// then, then by the tick.
+void begin_skin_light(Show& show, const Visitor& visitor);
 void compute_skin_light(Show& show);
 void finish_skin_light(Show& show);
 // Reads the visitor's keyframe, which may not change meanwhile.

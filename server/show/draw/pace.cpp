@@ -231,6 +231,7 @@ RendererState renderer_state(const Show& show) {
   state.in_pass = show.pass.visitor != nullptr;
   state.has_skin = !show.skin.places.empty();
   state.skin_at = renderer.skin.time;
+  state.skin_interval = renderer.skin.interval;
   state.skin_turn = renderer.skin.turn;
   state.served = renderer.served;
   return state;

@@ -73,12 +73,14 @@ size_t memory_bytes(const DrawingWork& work);
 // Light on what moves is being found (show/draw/moving.h).
 struct SkinJob {
   bool at_work = false;
-  double time = -1e9;  // show time
-  uint64_t turn = 0;   // how many there were
+  double time = -1e9;    // show time
+  double lit_at = -1e9;  // show time when there were samples
+  double interval = 0;   // seconds until it is due again
+  uint64_t turn = 0;     // how many there were
   SkinUpdate update;
-  std::vector<vec3> eyes;
-  int cycles = 1;     // of smoothing
-  size_t traced = 0;  // samples
+  std::vector<View> views;  // of those who see it
+  int cycles = 1;           // of smoothing
+  size_t traced = 0;        // samples
 };
 
 struct Renderer {

@@ -72,7 +72,7 @@ struct Rested {
     for (int i = 0; i < pictures; i++) visit.step(stage, view, pixels / 4, PictureOf::still);
     skin = make_skin_light(*stage.world);
     compute_skin_light(stage);
-    visit.compositor.set_skin(&skin);
+    visit.compositor.set_skin(&skin, &stage.lights);
   }
   void compute_skin_light(const Stage& stage) {
     SkinUpdate update;
@@ -295,7 +295,7 @@ TEST(MovingPicture, IsLitByItsSkinAlone) {
   std::fill(skin.light.begin(), skin.light.end(), vec4(0, 2, 0, 1));
   for (PictureOf kind : {PictureOf::moving, PictureOf::moving_fine, PictureOf::still}) {
     DrawnVisit visit;
-    visit.compositor.set_skin(&skin);
+    visit.compositor.set_skin(&skin, &stage.lights);
     for (int i = 0; i < 3; i++) visit.step(stage, view, pixels / 4, kind);
     int of_ball = 0, green = 0, others_green = 0;
     for (size_t i = 0; i < visit.frame.color.size(); i++) {

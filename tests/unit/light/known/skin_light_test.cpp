@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/rng.h"
-#include "scenes/scenes.h"
+#include "unit/light/known/skin_stage.h"
 #include "unit/light/statistics.h"
 
 namespace wellspring {
@@ -18,68 +18,6 @@ vec3 eval_skin(const SkinTriangle& light, vec2 barycentric) {
   return light.corner + light.edge1 * barycentric.x + light.edge2 * barycentric.y;
 }
 
-constexpr int sphere_rings = 24;
-
-// Meshes that move, in a scene of nothing else but what is put there before.
-struct Stage {
-  Scene scene = scenes::empty_scene();
-  std::vector<Mesh> moving;
-  std::unique_ptr<World> world;
-  Lights lights;
-  SkinLight skin;
-  SkinUpdate update;
-
-  int add_lambert(bool two_sided = false) {
-    Material m = scenes::diffuse(vec3(0.5f));
-    m.double_sided = two_sided;
-    return scenes::add_material(scene, m);
-  }
-  void begin() {
-    scene.objects.push_back("figure");
-    world = std::make_unique<World>(
-        scene, moving, std::vector<uint32_t>(moving.size(), uint32_t(scene.objects.size() - 1)));
-    world->commit();
-    lights = make_lights(*world);
-    skin = make_skin_light(*world);
-  }
-  // As a show would: some samples and then smoothing, again and again.
-  int look(int samples, int times = 1, int cycles = 2) {
-    update.samples = samples;
-    int traced = 0;
-    for (int i = 0; i < times; i++) {
-      traced += update_skin(*world, lights, update, skin);
-      smooth_skin(*world, skin, cycles);
-    }
-    return traced;
-  }
-  uint32_t place_of(uint32_t vertex, uint32_t mesh = 0) const {
-    return skin.front[skin.first_vertex[mesh] + vertex];
-  }
-  vec3 light_at(uint32_t vertex, uint32_t mesh = 0) const {
-    return vec3(skin.light[place_of(vertex, mesh)]);
-  }
-  vec3 normal_at(uint32_t vertex, uint32_t mesh = 0) const {
-    return world->mesh_of(skin.first_instance + mesh).normals[vertex];
-  }
-  bool is_finite_everywhere() const {
-    for (const vec4& light : skin.light)
-      if (!is_finite(vec3(light)) || std::min({light.x, light.y, light.z}) < 0) return false;
-    return is_finite(skin.mean);
-  }
-};
-
-Stage make_sphere_stage(float radius = 0.1f) {
-  Stage stage;
-  stage.moving.push_back(scenes::sphere_mesh(stage.add_lambert(), radius, sphere_rings));
-  return stage;
-}
-PunctualLight make_sun(vec3 direction = {0, -1, 0}, float intensity = pi) {
-  PunctualLight sun;
-  sun.type = PunctualType::directional;
-  sun.direction = direction;
-  sun.intensity = vec3(intensity);
-  return sun;
-}
 // A lamp of some size above, so that samples are noisy.
 void add_panel(Scene& scene, float radiance = 20) {
   scenes::add_quad(scene, scenes::add_material(scene, scenes::emitter(vec3(radiance))),
@@ -93,7 +31,7 @@ void add_ceiling(Scene& scene) {
                    {2, 0, 0}, {0, 0, 2}, "ceiling");
 }
 // As the ball would be lit after very many samples.
-std::vector<vec3> converged(Stage& stage) {
+std::vector<vec3> converged(SkinStage& stage) {
   SkinLight kept = stage.skin;
   std::vector<dvec3> sum(stage.skin.places.size(), dvec3(0));
   constexpr int rounds = 48;
@@ -121,7 +59,7 @@ double rms_error(const SkinLight& skin, const std::vector<vec3>& truth, bool smo
 }
 
 TEST(SkinLight, WhiteFurnace) {
-  Stage stage = make_sphere_stage();
+  SkinStage stage = make_sphere_stage();
   stage.scene.environment.radiance = vec3(1, 0.5f, 0.25f);
   stage.begin();
   stage.look(4 * int(stage.skin.places.size()), 8);
@@ -135,7 +73,7 @@ TEST(SkinLight, WhiteFurnace) {
 
 // A panel's light has chance in it: its mean over independent seeds is the integral's.
 TEST(SkinLight, HasNoBiasUnderALampOfSomeSize) {
-  Stage stage;
+  SkinStage stage;
   stage.moving.emplace_back();
   stage.moving[0].material = stage.add_lambert();
   scenes::append_quad(stage.moving[0], {-0.02f, 0, 0.02f}, {0.04f, 0, 0}, {0, 0, -0.04f});
@@ -156,7 +94,7 @@ TEST(SkinLight, HasNoBiasUnderALampOfSomeSize) {
 }
 
 TEST(SkinLight, CosineUnderASun) {
-  Stage stage = make_sphere_stage();
+  SkinStage stage = make_sphere_stage();
   stage.scene.lights.push_back(make_sun());
   stage.begin();
   stage.look(4 * int(stage.skin.places.size()), 8);
@@ -172,7 +110,7 @@ TEST(SkinLight, CosineUnderASun) {
 }
 
 TEST(SkinLight, FollowsTheMeshThatMoves) {
-  Stage stage = make_sphere_stage();
+  SkinStage stage = make_sphere_stage();
   add_panel(stage.scene);
   stage.begin();
   stage.look(int(stage.skin.places.size()), 16);
@@ -195,7 +133,7 @@ TEST(SkinLight, FollowsTheMeshThatMoves) {
 }
 
 TEST(SkinLight, OneSampleAPlaceIsCalmOnceSmoothed) {
-  Stage stage = make_sphere_stage(0.08f);
+  SkinStage stage = make_sphere_stage(0.08f);
   stage.scene.environment.radiance = vec3(0.05f);
   add_ceiling(stage.scene);
   stage.begin();
@@ -210,7 +148,7 @@ TEST(SkinLight, OneSampleAPlaceIsCalmOnceSmoothed) {
 }
 
 TEST(SkinLight, VerticesAtOnePositionShareLight) {
-  Stage stage = make_sphere_stage();
+  SkinStage stage = make_sphere_stage();
   add_panel(stage.scene);
   stage.begin();
   stage.look(int(stage.skin.places.size()), 2);
@@ -220,14 +158,14 @@ TEST(SkinLight, VerticesAtOnePositionShareLight) {
   EXPECT_EQ(stage.place_of(0), stage.place_of(1));  // the pole
   EXPECT_LT(stage.skin.places.size(), stage.moving[0].positions.size());
   // A box's corners do not: its sides face elsewhere.
-  Stage box;
+  SkinStage box;
   box.moving.push_back(scenes::box_mesh(box.add_lambert(), vec3(0.1f)));
   box.begin();
   EXPECT_EQ(box.skin.places.size(), 24u);
 }
 
 TEST(SkinLight, TwoSidesOfAThinThingAreLitEachByItself) {
-  Stage stage;
+  SkinStage stage;
   stage.moving.emplace_back();
   stage.moving[0].material = stage.add_lambert(true);
   scenes::append_quad(stage.moving[0], {-0.1f, 0, 0.1f}, {0.2f, 0, 0}, {0, 0, -0.2f});
@@ -242,7 +180,7 @@ TEST(SkinLight, TwoSidesOfAThinThingAreLitEachByItself) {
 
 TEST(SkinLight, HiddenVerticesDoNotDarkenVisibleOnes) {
   // A strip that runs under a cover a millimetre above it.
-  Stage stage;
+  SkinStage stage;
   stage.moving.resize(2);
   stage.moving[0].material = stage.moving[1].material = stage.add_lambert();
   constexpr int columns = 20;
@@ -261,15 +199,18 @@ TEST(SkinLight, HiddenVerticesDoNotDarkenVisibleOnes) {
   stage.begin();
   stage.look(4 * int(stage.skin.places.size()), 30);
   for (uint32_t v = 0; v < uint32_t(strip.positions.size()); v++) {
-    // The nearest under the cover takes its neighbours' light; the rest nobody sees.
-    if (strip.positions[v].x < 0.23f) {
-      EXPECT_NEAR(stage.light_at(v).x, 1, strip.positions[v].x < 0.21f ? 0.03f : 0.15f) << v;
+    // The nearest under the cover is as light as its edge, where half of the sky is seen, at least;
+    // the rest nobody sees.
+    if (strip.positions[v].x < 0.21f) {
+      EXPECT_NEAR(stage.light_at(v).x, 1, 0.03f) << v;
+    } else if (strip.positions[v].x < 0.23f) {
+      EXPECT_GT(stage.light_at(v).x, 0.45f) << v;
     }
   }
 }
 
 TEST(SkinLight, SwitchedLightIsFollowed) {
-  Stage stage = make_sphere_stage();
+  SkinStage stage = make_sphere_stage();
   add_panel(stage.scene);
   stage.begin();
   const int places = int(stage.skin.places.size());
@@ -302,7 +243,7 @@ TEST(SkinLight, SwitchedLightIsFollowed) {
 }
 
 TEST(SkinLight, NoiseAloneIsNoChange) {
-  Stage stage = make_sphere_stage();
+  SkinStage stage = make_sphere_stage();
   add_panel(stage.scene);
   stage.begin();
   const int places = int(stage.skin.places.size());
@@ -318,7 +259,7 @@ TEST(SkinLight, NoiseAloneIsNoChange) {
 }
 
 TEST(SkinLight, SamplesGoWhereNoneWereAndThenToAllInTurn) {
-  Stage stage = make_sphere_stage();
+  SkinStage stage = make_sphere_stage();
   add_panel(stage.scene);
   stage.begin();
   const size_t places = stage.skin.places.size();
@@ -330,8 +271,8 @@ TEST(SkinLight, SamplesGoWhereNoneWereAndThenToAllInTurn) {
   }
   EXPECT_EQ(unasked, places % 100);
   // From above the lower half is seen seldom.
-  vec3 eye(0, 3, 0);
-  stage.update.eyes = std::span(&eye, 1);
+  const View view = stage.view_from({0, 3, 0});
+  stage.update.views = std::span(&view, 1);
   stage.look(int(places), 16);
   double above = 0, below = 0, above_count = 0, below_count = 0;
   for (size_t i = 0; i < places; i++) {
@@ -345,7 +286,7 @@ TEST(SkinLight, SamplesGoWhereNoneWereAndThenToAllInTurn) {
 
 std::vector<vec4> run_on(size_t threads) {
   oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
-  Stage stage = make_sphere_stage();
+  SkinStage stage = make_sphere_stage();
   stage.scene.environment.radiance = vec3(0.1f);
   add_panel(stage.scene);
   stage.begin();
@@ -373,7 +314,7 @@ TEST(SkinLight, OddMeshesAreLitFinitely) {
   odd[2].normals[1] = vec3(nan), odd[4].normals[0] = vec3(0);
   for (bool all : {false, true})
     for (size_t i = 0; i < odd.size(); i++) {
-      Stage stage;
+      SkinStage stage;
       stage.moving = all ? odd : std::vector{odd[i]};
       int material = stage.add_lambert(i % 2);
       for (Mesh& mesh : stage.moving) mesh.material = material;
@@ -392,7 +333,7 @@ TEST(SkinLight, OddMeshesAreLitFinitely) {
       EXPECT_TRUE(stage.is_finite_everywhere()) << i << all;
       if (all) break;
     }
-  Stage one;
+  SkinStage one;
   one.moving = {odd[1]};
   one.moving[0].material = one.add_lambert();
   one.scene.environment.radiance = vec3(0.5f);
@@ -402,13 +343,13 @@ TEST(SkinLight, OddMeshesAreLitFinitely) {
 }
 
 TEST(SkinLight, NothingToDo) {
-  Stage still;
+  SkinStage still;
   scenes::add_quad(still.scene, 0, {0, 0, 0}, {1, 0, 0}, {0, 0, -1});
   still.begin();
   EXPECT_EQ(still.look(100, 2), 0);
   EXPECT_TRUE(still.skin.places.empty());
 
-  Stage dark = make_sphere_stage();
+  SkinStage dark = make_sphere_stage();
   dark.begin();
   EXPECT_EQ(dark.look(0), 0);
   EXPECT_EQ(dark.look(-5), 0);
@@ -425,7 +366,7 @@ TEST(SkinLight, NothingToDo) {
 
 // Where nothing was sampled yet, light is that of what is known, not black.
 TEST(SkinLight, WhatIsUnknownIsNotBlack) {
-  Stage stage;
+  SkinStage stage;
   int lambertian = stage.add_lambert();
   stage.moving = {scenes::sphere_mesh(lambertian, 0.1f, 8),
                   scenes::sphere_mesh(lambertian, 0.1f, 8)};
@@ -433,7 +374,7 @@ TEST(SkinLight, WhatIsUnknownIsNotBlack) {
   stage.scene.environment.radiance = vec3(1);
   stage.begin();
   stage.look(3);
-  for (const vec4& light : stage.skin.light) EXPECT_NEAR(light.x, 1, 0.05f);
+  for (const vec4& light : stage.skin.light) EXPECT_NEAR(light.x, 1, 0.1f);
 }
 
 }  // namespace

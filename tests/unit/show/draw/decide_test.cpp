@@ -279,6 +279,13 @@ const std::vector<Row> rows = {
        renderer.skin_at = now - 0.19;
      },
      {}},
+    {"nor sooner than it is due where it is small",
+     [](States& all, RendererState& renderer) {
+       all = {listener()};
+       renderer.has_skin = true;
+       renderer.skin_at = now - 0.3, renderer.skin_interval = 0.4;
+     },
+     {}},
     {"light on what moves is not found where nobody sees it",
      [](States& all, RendererState& renderer) {
        all = {stander()};

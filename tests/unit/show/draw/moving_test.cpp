@@ -144,5 +144,39 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   EXPECT_FALSE(visitor().picture.backdrop);
 }
 
+// Where she stood the next picture shows the wall as though she had never been there.
+TEST_F(Moving, NoGhostStaysWhereSheStood) {
+  ASSERT_TRUE(rested());
+  steps(200);
+  show->teller.visible = false;
+  const uint64_t drawn = show->totals.drawn;
+  ASSERT_TRUE(
+      step_until([&] { return show->totals.drawn > drawn && !visitor().picture.job.moving; }));
+  const size_t sent = pictures().size();
+  ASSERT_TRUE(step_until([&] { return pictures().size() > sent; }));
+  const Image8 after = last_image();
+  ShowStage without;
+  without.tick_seconds = 0.01;
+  without.begin(make_tiny_exhibit(), settings_for("direct"));
+  without.join(192, 128);
+  ASSERT_TRUE(without.step_until([&] { return without.show->totals.drawn > 20; }, 600));
+  const Image8 never = without.last_image();
+  ASSERT_EQ(after.rgb.size(), never.rgb.size());
+  const View& view = visitor().place.last_view;
+  const Projected head = project_point(view, {-2, 2.2f, 0.5f}),
+                  left = project_point(view, {-2.4f, 0.6f, 0.5f}),
+                  right = project_point(view, {-1.6f, 0.6f, 0.5f});
+  // She is red: what is left of her would be.
+  double red = 0, count = 0;
+  for (int y = int(head.y) - 4; y < int(left.y) + 4 && y < after.height; y++)
+    for (int x = int(left.x) - 4; x < int(right.x) + 4; x++, count++) {
+      const size_t at = 3 * (size_t(y) * size_t(after.width) + size_t(x));
+      red +=
+          double(after.rgb[at]) - after.rgb[at + 1] - (double(never.rgb[at]) - never.rgb[at + 1]);
+      EXPECT_LT(after.rgb[at] - after.rgb[at + 1], 24) << x << ", " << y;
+    }
+  EXPECT_LT(std::abs(red / count), 1);
+}
+
 }  // namespace
 }  // namespace wellspring

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// What light on what moves (light/known/skin_light.h) is worth: where it is small in all pictures
+// few samples do, and where nobody sees it, behind a wall, none.
+#pragma once
+
+namespace wellspring {
+
+inline constexpr double least_interval = 0.2;
+
+// How often and by how much light on what moves is found.
+struct SkinPace {
+  int samples = 0;      // each time; 0: nothing is traced, and nothing smoothed
+  double interval = 0;  // seconds from one time to the next
+  bool operator==(const SkinPace&) const = default;
+};
+// `pixels`: of whoever sees most of it. `known`: samples that a place has already, on average.
+SkinPace plan_skin(float pixels, double samples_per_second, float known);
+
+}  // namespace wellspring
