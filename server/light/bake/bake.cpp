@@ -193,7 +193,7 @@ PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
           light[(node - grid.first) * samples + number] = found;
           sum += double(found), count++;
         });
-  double unlike = 0, pairs = 0;
+  double unlike = 0, chance = 0, pairs = 0;
   for_each_pair(grid, [&](uint32_t a, uint32_t b) {
     double differ = 0, squares = 0, n = 0;
     for (uint32_t k = 0; k < samples; k++) {
@@ -203,10 +203,16 @@ PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
       differ += d, squares += d * d, n++;
     }
     if (n < 2) return;
-    // The square of the mean, without what chance adds to it.
+    // The square of the mean, without what chance adds to it, and that.
     unlike += (differ * differ - squares) / (n * (n - 1)), pairs++;
+    chance += (squares - differ * differ / n) / (n * (n - 1));
   });
-  return {count > 0 ? float(sum / count) : 0, pairs > 0 ? float(std::max(unlike, 0.0) / pairs) : 0};
+  PilotTile pilot;
+  if (count > 0) pilot.light = float(sum / count);
+  // A deviation more: what is near a source is noisy, and mostly uneven.
+  if (pairs > 0)
+    pilot.unlike = float(std::max(unlike / pairs + 2 * chance / (pairs * std::sqrt(pairs)), 0.0));
+  return pilot;
 }
 
 float mean_light(const Bake& bake) {
