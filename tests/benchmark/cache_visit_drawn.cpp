@@ -39,7 +39,7 @@ struct MappedObjects {
   MappedObjects() = default;
   MappedObjects(const Scene& scene, const IlluminationMap& maps)
       : mapped(mapped_objects(scene, maps)), known(mapped) {
-    const std::vector<char> shining = find_shining(scene);
+    const std::vector<char> shining = shining_objects(scene);
     for (size_t i = 0; i < known.size(); i++)
       if (shining[i]) known[i] = 0;
   }

@@ -46,7 +46,7 @@ void look_anew(VisitorPicture& picture) {
 
 }  // namespace
 
-std::vector<char> find_shining(const Scene& scene) {
+std::vector<char> shining_objects(const Scene& scene) {
   std::vector<char> shining(scene.objects.size(), 0);
   TextureRanges ranges(scene);
   for (const Instance& instance : scene.instances) {
@@ -61,7 +61,7 @@ void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   const bool first = !show.lights.maps;
   const Scene& scene = show.exhibit.scene;
   show.mapped = mapped_objects(scene, *maps);
-  if (first) show.shining = find_shining(scene);
+  if (first) show.shining = shining_objects(scene);
   show.known = show.mapped;
   for (size_t i = 0; i < show.known.size(); i++)
     if (show.shining[i]) show.known[i] = 0;

@@ -19,7 +19,7 @@
 namespace wellspring {
 
 // Of each object: whether some of its light depends on the view, which maps do not know.
-std::vector<char> find_shining(const Scene& scene);
+std::vector<char> shining_objects(const Scene& scene);
 // Pictures show maps of all lamps from now on. While nothing is drawn.
 void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
 // The same of maps of the scene as it is: walks end on them, too.
