@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/spread.h"
-#include "light/known/skin_sight.h"
 #include "light/material/light_slope.h"
 #include "light/walk/first_surface.h"
 #include "light/sample/lamps_seen.h"

@@ -119,6 +119,16 @@ int update_skin(const World& world, const Lights& lights, const SkinUpdate& upda
 // thousand places and one core.
 void smooth_skin(const World& world, SkinLight& skin, int cycles = 1);
 
+// Which places a view shows, by rays through a few places of the window that what moves lies in.
+struct SkinSight {
+  float pixels = 0;              // of the view that show what moves, about
+  std::vector<uint32_t> places;  // one of each ray that met any, in the order of the rays
+};
+// Other rays for each `turn`. Clear panes are seen through. All cores; the same bits whatever the
+// number of threads. Call after World::commit(), while nothing moves.
+SkinSight see_skin(const World& world, const SkinLight& skin, const View& view, int rays,
+                   uint64_t turn);
+
 // The light changes at once: a lamp was switched. What is known counts as next to nothing from now
 // on, and until samples say more `change` is shown: what is left of light, and what is added, 1 and
 // 0 unless it says so (LightChange).

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "light/known/skin_sight.h"
-
+// Where light on what moves is seen (light/known/skin_light.h).
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "light/known/skin_light.h"
 #include "world/surface.h"
 
 namespace wellspring {
 namespace {
 
 constexpr float nearest_seen = 1e-3f;  // metres: what is nearer may be anywhere
-constexpr int most_panes_seen = 8;
+constexpr int most_panes_seen = 8;     // in a row
 constexpr uint32_t nowhere = 0xffffffffu;
 
 struct Rectangle {

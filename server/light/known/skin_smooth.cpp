@@ -232,7 +232,7 @@ void smooth_skin(const World& world, SkinLight& skin, int cycles) {
     return Equations{skin.first_edge, skin.edges, skin.noise, active, std::move(sums), from, {}};
   };
   Equations of_slopes = equations(std::move(slopes), skin.slope);
-  run_cycles(skin, cycles, of_slopes);
+  run_cycles(skin, (cycles + 1) / 2, of_slopes);  // they change less
   skin.slope = std::move(of_slopes.added);
   Equations of = equations(std::move(lights), skin.light);
   expect_slopes(world, skin, of);

@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
-#include "light/known/skin_sight.h"
+#include "light/known/skin_light.h"
 #include "picture/relight.h"
 #include "show/draw/skin_pace.h"
 #include "show/state/animations.h"

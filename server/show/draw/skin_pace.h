@@ -5,7 +5,7 @@
 
 namespace wellspring {
 
-inline constexpr double least_interval = 0.2;
+inline constexpr double least_interval = 0.2;  // seconds: it is found no more often
 
 // How often and by how much light on what moves is found.
 struct SkinPace {

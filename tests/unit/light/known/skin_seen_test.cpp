@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "light/known/skin_sight.h"
+#include "light/known/skin_light.h"
 #include "light/material/light_slope.h"
 #include "unit/light/known/skin_stage.h"
 
