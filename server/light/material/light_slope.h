@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diffuse light as a function of the direction that a surface faces, near the normal of its mesh:
+// Diffuse light as a function of the direction that a surface faces, near a normal:
 //   light(seen) = light * max(0, 1 + dot(slope, seen - normal)),
-// so a map of normals is lit rightly by what is kept at the mesh. It is first order, as spherical
-// harmonics of two bands are (Ramamoorthi and Hanrahan 2001, "An Efficient Representation for
-// Irradiance Environment Maps"), but exact at the mesh's normal and fitted to directions within
-// the tilts that maps of normals have: of light from one direction the cosine is followed to where
-// it ends at 0.
+// so folds that share a node, and maps of normals, are lit rightly by what is kept at the node. It
+// is first order, as spherical harmonics of two bands are (Ramamoorthi and Hanrahan 2001, "An
+// Efficient Representation for Irradiance Environment Maps"), but exact at the mesh's normal and
+// fitted to directions within the tilts that maps of normals have: of light from one direction the
+// cosine is followed to where it ends at 0.
 #pragma once
 #include <algorithm>
 #include <bit>

@@ -5,6 +5,9 @@
 // projected along that direction and cut into tiles; light is kept at the nodes of a grid in each
 // tile and is bilinear in between. Frozen once made.
 //
+// Where the mesh's normals differ, light is kept as it falls on the mean of those around each node,
+// with a slope that turns it to each place's normal (light/material/light_slope.h).
+//
 // What is kept is Sample::smooth of a Lambertian surface under all light of the scene, punctual
 // light too: irradiance over pi. A coat's darkening towards the viewer is not in it.
 #pragma once
@@ -67,7 +70,7 @@ struct IlluminationMap {
   std::shared_ptr<const std::vector<uint32_t>> normals;
   // The light of what belongs to no lamp, then of each lamp alone. Copies share them.
   std::shared_ptr<const std::vector<IlluminationNodes>> layers;
-  float error = 1;  // estimated: standard error of the nodes over their mean light
+  float error = 1;  // estimated: root mean square of what it is wrong by over the mean light
   float mean = 0;   // luminance of the mean light
   float least_known() const { return mean > 0 ? 0.01f * mean : 1.0f; }  // see known_light()
 };
