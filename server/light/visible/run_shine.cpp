@@ -13,7 +13,7 @@ namespace {
 
 constexpr int most_rays = 8;                // of a pixel
 constexpr size_t most_together = 256;       // rays
-constexpr float turn_a_ray = 0.015f;         // radians that normals turn within a pixel, for a ray
+constexpr float turn_a_ray = 0.015f;        // radians that normals turn within a pixel, for a ray
 constexpr float least_alpha_shown = 0.03f;  // of highlights of lamps that have no size
 constexpr float darkest = 1e-3f;            // radiance: of less nobody sees a shadow
 constexpr float beyond = 0.5f;              // triangles' sides that normals are followed beyond it
