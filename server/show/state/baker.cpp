@@ -18,7 +18,7 @@ namespace wellspring {
 namespace {
 
 constexpr double look_every = 0.05, save_every = 120, at_a_time = 1;  // seconds
-constexpr float worth_showing = 0.15f;  // error; above it points say more
+constexpr float worth_showing = 0.5f;  // error; above it coarse light is better
 constexpr float better = 0.97f;         // of the last error
 constexpr uint32_t ahead = 16;          // passes, of what visitors look at
 
