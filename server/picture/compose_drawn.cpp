@@ -330,7 +330,7 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
     if (kept.skin) moving.pixels = run.light(*kept.skin, *kept.lights, p.surface, moving.light);
     RunMapped mapped;
     if (kept.maps) mapped.pixels = run.known(*kept.maps, p.surface, mapped.unit);
-    if (kept.maps && composer.passing)
+    if (kept.maps && composer.passing && kept.maps->error < most_sure_error)
       mapped.plain = mapped.unit.plain & ~emitting.some &
                      ~composer.shade.pixels(run, composer.rays, composer.offset);
     const RunDynamic dynamic = find_dynamic(kept.dynamic, composer.view, run, p);

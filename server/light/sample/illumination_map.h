@@ -74,6 +74,8 @@ struct IlluminationMap {
   float mean = 0;   // luminance of the mean light
   float least_known() const { return mean > 0 ? 0.01f * mean : 1.0f; }  // see known_light()
 };
+// Light of a map that may be wrong by more waits for what visitors' own samples say.
+inline constexpr float most_sure_error = 0.5f;
 size_t memory_bytes(const IlluminationMap& map);
 // Of a scene's map: one for each lamp, and one for what belongs to none.
 inline size_t layer_count(const Scene& scene) { return scene.lamps.size() + 1; }

@@ -18,7 +18,6 @@ namespace wellspring {
 namespace {
 
 constexpr double look_every = 0.05, save_every = 120, at_a_time = 1;  // seconds
-constexpr float worth_showing = 0.5f;  // error; above it coarse light is better
 constexpr float better = 0.97f;         // of the last error
 constexpr uint32_t ahead = 16;          // passes, of what visitors look at
 
@@ -111,7 +110,7 @@ void Baker::live(const std::stop_token& end) {
   if (bake.charts.tiles == 0) return;  // nothing is diffuse
   bake.source = settings_.source;
   float error = bake.passes > 0 ? bake_error(bake) : 1;
-  float shown = std::min(settings_.shown_error, worth_showing);
+  float shown = std::min(settings_.shown_error, most_sure_error);
   uint64_t next = bake.passes + 1;  // passes after which it is looked at again
   double saved = seconds_now();
   auto tell = [&](bool works) {

@@ -64,7 +64,7 @@ void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   if (first) show.shining = shining_objects(scene);
   show.known = show.mapped;
   for (size_t i = 0; i < show.known.size(); i++)
-    if (show.shining[i]) show.known[i] = 0;
+    if (show.shining[i] || !(maps->error < most_sure_error)) show.known[i] = 0;
   show.lights.maps = maps;
   if (!show.exhibit.lamps.empty()) {
     show.switches.all.maps = std::move(maps);
