@@ -38,8 +38,8 @@ class Compositor {
  public:
   explicit Compositor(std::shared_ptr<CompositorWork> shared = nullptr);
 
-  // What moves is lit by it from now on (borrowed; null: by points like everything else), and what
-  // of that is smooth shows `lights` (borrowed).
+  // Moving meshes are lit by it from now on (borrowed; null: by points like everything else), and
+  // what of that is smooth shows `lights` (borrowed).
   void set_skin(const SkinLight* skin, const Lights* lights) {
     kept_.skin = skin, kept_.lights = lights;
   }

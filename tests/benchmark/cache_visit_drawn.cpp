@@ -33,7 +33,7 @@ constexpr int first_pass = 29;  // likewise; then at so many times as many sampl
 constexpr double growth = 1.3;
 constexpr uint64_t still_seed = 17;
 
-// What objects' attention depends on (show/state/lamps.h: use_maps()).
+// The attention of objects depends on these (show/state/lamps.h: use_maps()).
 struct MappedObjects {
   std::vector<char> mapped, known;
   MappedObjects() = default;

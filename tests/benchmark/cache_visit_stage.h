@@ -30,7 +30,7 @@ class VisitStage {
 
   const World& world() const { return *show_->world; }
   const Lights& lights() const { return show_->lights; }
-  // What became of the light when the lamps were switched in the last advance; null: they were not.
+  // The change of light where lamps were switched in the last advance; null: they were not.
   const LightChange* change() const { return change_ ? &*change_ : nullptr; }
   View view(const VisitTrace& trace, double time, int width, int height) const;
 

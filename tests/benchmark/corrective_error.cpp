@@ -28,7 +28,7 @@ constexpr CorrectedWay ways[] = {
     {.name = "weighed", .weight = 4},
 };
 
-// Where visits are joined, and judged: pictures of the walk, then of the rest.
+// Visits are joined and judged here: pictures of the walk, then of the rest.
 struct Place {
   const char* trace;
   double from;  // seconds
@@ -40,7 +40,8 @@ struct Error {
   double flip = 0, rmse = 0, share = 0;  // display values; of the picture's pixels
 };
 
-// Of the marked pixels; what both halves of the truth differ by does not count in `rmse`.
+// The error counts the marked pixels; what both halves of the truth differ by does not count in
+// `rmse`.
 Error eval_error(const Frame& shown, const Truth& truth, Tonemap curve,
                  const std::vector<uint8_t>& marked) {
   Image8 image, wanted, half[2];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ageing and splatting remembered samples costs (corrective/): balls before a large one, as a
-// formula knows them. And what they are worth (corrective_error.cpp).
+// Tells what ageing and splatting remembered samples costs (corrective/): balls before a large one,
+// as a formula knows them; and what they are worth (corrective_error.cpp).
 #include <algorithm>
 #include <cmath>
 #include <oneapi/tbb/global_control.h>

@@ -327,7 +327,7 @@ ReportPage denoise_flip_page() {
        {.caption = "", .columns = {{"truth_halves_flip", "FLIP of the halves"}}, .most_rows = 1}}};
 }
 
-// Of somebody who is led along a recorded walk; `where` tells the rows apart.
+// Somebody is led along a recorded walk; `where` tells the rows apart.
 std::vector<PageColumn> walk_columns(const std::string& name) {
   return {{name + ".flip", "FLIP, mean"},
           {name + ".flip_worst", "in the worst half second"},

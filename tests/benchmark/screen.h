@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page of a visitor shows of the pictures that it is sent (web/picture.js).
+// Shows the pictures that a visitor is sent as the page does (web/picture.js).
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a visitor of an exhibit would be shown if no sample were missing: pictures of `path` in two
-// halves with samples of their own, each through the largest network, kept on disk
-// (cache_visit_truth.h). No storyteller is in them, and lights that flicker have their mean
-// brightness. Since whole pictures of a long walk would take days, one window of each is enough: if
-// windows of neighbouring pictures lie elsewhere, the mean of all is that of whole pictures.
+// A visitor would be shown these if no sample were missing: pictures of `path` in two halves with
+// samples of their own, each through the largest network, kept on disk (cache_visit_truth.h). No
+// storyteller is in them, and lights that flicker have their mean brightness. Since whole pictures
+// of a long walk would take days, one window of each is enough: if windows of neighbouring pictures
+// lie elsewhere, the mean of all is that of whole pictures.
 #pragma once
 #include <memory>
 #include <string>

@@ -67,7 +67,7 @@ void save(const BenchOptions& options, const std::string& name, const Image8& sh
   save_image8(stem + name + "_flip.png", error);
 }
 
-// What was shown by the light that there was, "shipped" or "none".
+// Pictures by the light that there was, "shipped" or "none".
 using FirstVisits = std::vector<std::pair<std::string, std::vector<Moment>>>;
 
 FirstVisits visit_first_times(const BenchOptions& options, const std::string& exhibit) {

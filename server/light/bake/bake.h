@@ -29,8 +29,8 @@ struct BakeSettings {
   int shard = 0, shards = 1;
 };
 
-// What pilot samples say of a tile's direct light: its mean luminance, and the mean square of what
-// neighbouring nodes differ by.
+// Pilot samples tell the mean luminance of a tile's direct light, and the mean square of the
+// differences between neighbouring nodes.
 struct PilotTile {
   float light = 0, unlike = 0;
 };

@@ -102,7 +102,7 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
                   bool& inside) {
   const World& world = scene.world;
   const Transport& any = scene.parts.front();
-  // What is met before anything scatters the light is add_met_light()'s.
+  // Sources that are met before anything scatters the light belong to add_met_light().
   bool sampled = true, scattered_once = false;
   auto weigh_for = [&](size_t part) {
     walk.area_share = sampled ? scene.parts[part].tables.area_share : 0;

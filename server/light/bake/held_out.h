@@ -33,7 +33,7 @@ HeldOut hold_out(const World& world, const BakeCharts& charts, std::span<const v
 // Finds anew what follows from the rays and hits of places that were read from somewhere. False:
 // they are none of the world.
 bool restore(const World& world, const IlluminationCharts& charts, HeldOut& held);
-// That many more of either half. All cores.
+// Adds that many samples to either half. All cores.
 void sample_held_out(const BakeScene& scene, int samples, HeldOut& held);
 
 // Root mean square of what the map is wrong by, over the mean light; a standard error of that is

@@ -14,7 +14,7 @@ struct LampCells {
   // place_key of each cell where find_place_slot() says, 0: free; and its number.
   std::vector<uint64_t> keys;
   std::vector<uint32_t> number_of;
-  // Of each cell: its key; how much of the surface is in it; the light of what belongs to no lamp,
+  // Each cell has its key, the area of surface in it, and the light of what belongs to no lamp,
   // then of each lamp alone.
   std::vector<uint64_t> cells;
   std::vector<float> weight;

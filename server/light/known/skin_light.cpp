@@ -43,8 +43,8 @@ struct Answer {
   vec3 light{0};
   bool valid = false, blocked = false;
   bool shut = false;  // the place is hidden now
-  // What makes the slope: how much of the light came straight, times its slope_of(), and whence the
-  // rest came.
+  // The slope is made of the light that came straight, times its slope_of(), and of the direction
+  // that the rest came from.
   vec3 straight{0}, straight_slope{0}, direction{0}, normal{0};
 };
 
@@ -210,11 +210,11 @@ void choose_seen(const World& world, const SkinUpdate& update, size_t most, Skin
     for (size_t i = 0; i < sight.places.size(); i++) {
       const uint32_t place = sight.places[i];
       SkinHistory& h = skin.history[place];
-      // Where places are dense, as on a face, light has more detail.
+      // Light has more detail where places are dense, as on a face.
       const float dense = std::sqrt(skin.usual_area / std::max(skin.places[place].area, 1e-12f));
       const float choice = float(mix64(update.seed + i) >> 40) * 0x1p-24f;
       if (choice > std::max(dense, least_dense)) continue;
-      // What is well known does with less.
+      // Places that are well known need less.
       const bool known = h.newer.count + h.older.count > well_known;
       if (known && (h.passed_over++ & (less_of_known - 1)) != 0) continue;
       asked.push_back({place, h.asked++});

@@ -104,9 +104,9 @@ SkinLight make_skin_light(const World& world);
 struct SkinUpdate {
   int samples = 0;
   uint64_t seed = 1;
-  // Who looks. Most samples go to places that are seen, as often as pixels show them, and more of
-  // them where few are known; some to all in turn, those now and then that no eye can face, small
-  // ones less often than large ones. Empty: nothing is known of eyes.
+  // These eyes look. Most samples go to places that are seen, as often as pixels show them, and
+  // more of them where few are known; some to all in turn, those now and then that no eye can face,
+  // small ones less often than large ones. Empty: nothing is known of eyes.
   std::span<const View> views;
   TransportSettings transport;
 };

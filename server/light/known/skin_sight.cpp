@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where light on what moves is seen (light/known/skin_light.h).
+// Rays of views find where light on what moves is seen (light/known/skin_light.h).
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +33,7 @@ Rectangle rectangle_of(const Bounds& box, const View& view) {
   return {glm::clamp(window.low, vec2(0), size), glm::clamp(window.high, vec2(0), size)};
 }
 
-// What the ray meets behind clear panes.
+// Finds what the ray meets behind clear panes.
 Hit look(const World& world, Ray ray) {
   Hit hit = world.intersect(ray);
   for (int i = 0; i < most_panes_seen && hit.valid(); i++) {

@@ -123,7 +123,7 @@ void mark_known(std::span<const vec4> sums, std::span<const uint8_t> active, Ski
     if (active[i]) skin.light[i].w = known[skin.piece[i]] >= least_known;
 }
 
-// Of each place that is active what samples say, times their count.
+// Sums up what samples say of each active place.
 std::vector<vec4> find_sums(const SkinLight& skin, vec3 SkinMean::*what,
                             const std::vector<uint8_t>& active) {
   std::vector<vec4> sums(skin.places.size(), vec4(0));
@@ -137,8 +137,8 @@ std::vector<vec4> find_sums(const SkinLight& skin, vec3 SkinMean::*what,
   return sums;
 }
 
-// What nothing was known of begins with the mean of what samples say of it, or of the smallest
-// group around that any sample was taken of: cycles take long to tell what is far.
+// A place that nothing was known of begins with the mean of its samples, or of those of the
+// smallest group around it that has any: cycles take long to tell what is far.
 void begin_unknown(const SkinLight& skin, std::span<const vec4> sums,
                    std::span<const uint8_t> unknown, std::vector<vec4>& values) {
   if (std::find(unknown.begin(), unknown.end(), 1) == unknown.end()) return;

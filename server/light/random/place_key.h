@@ -23,7 +23,7 @@ inline uint64_t place_key(vec3 position, vec3 normal, float cell) {
          1;
 }
 
-// Whose corners are `cell` times this and one more.
+// The cell lies between `cell` times this and `cell` times one more.
 inline glm::ivec3 place_of_key(uint64_t key) {
   auto part = [&](int shift) { return int(key >> (shift + 1) & 0xfffff) - (1 << 19); };
   return {part(40), part(20), part(0)};

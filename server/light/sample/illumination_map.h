@@ -5,7 +5,7 @@
 // projected along that direction and cut into tiles; light is kept at the nodes of a grid in each
 // tile and is bilinear in between. Frozen once made.
 //
-// Where the mesh's normals differ, light is kept as it falls on the mean of those around each node,
+// On charts whose normals differ light is kept as it falls on the mean of those around each node,
 // with a slope that turns it to each place's normal (light/material/light_slope.h).
 //
 // What is kept is Sample::smooth of a Lambertian surface under all light of the scene, punctual

@@ -41,7 +41,7 @@ void prepare_gather(const World& world, std::span<const vec3> places, Lights& li
   if (!lights.tables->plan.uses(TransportPart::kept_light)) return;
   lights.lamps_seen = learn_lamps_seen({world, *lights.tables}, places);
   if (lights.known || places.empty()) return;
-  // What moves would leave its shadow in light that is kept.
+  // Moving meshes would leave their shadows in light that is kept.
   std::optional<World> still;
   if (size_t(world.instance_count()) > world.scene().instances.size()) still.emplace(world.scene());
   lights.known = make_bake_scene(still ? *still : world, places).known;

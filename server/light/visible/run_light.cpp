@@ -8,8 +8,8 @@
 
 namespace wellspring {
 
-// Of irradiance's slope to that of radiance: bands of a clamped cosine (Ramamoorthi and Hanrahan
-// 2001).
+// The slope of radiance over that of irradiance follows from the bands of a clamped cosine
+// (Ramamoorthi and Hanrahan 2001).
 static constexpr float sheen_slope = 1.5f;
 
 // What part of light from all around eight pixels' gloss reflects, of a surface as described.

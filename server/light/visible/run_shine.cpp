@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What smooth gloss of what moves shows, as the catch lights of eyes: VisibleRun::light().
+// Smooth gloss of what moves shows what is around, as the catch lights of eyes:
+// VisibleRun::light().
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,7 +38,7 @@ struct ShineFacet {
     for (int k = 0; k < 3; k++)
       extent = std::max(extent, max_component(glm::abs(mesh.positions[f.corner[k]])));
   }
-  // Where the plane is seen along `way`, and the normal there, unit.
+  // A place of the plane that is seen along `way`, and the unit normal there.
   struct Seen {
     vec3 place{0}, normal{0};
   };
@@ -84,7 +85,7 @@ struct ShineRay {
 
 }  // namespace
 
-// Of lamps without size.
+// Sums up the highlights of lamps without size.
 static vec3 eval_lamps(const Transport& transport, const SurfacePlace& place, vec3 normal, vec3 eye,
                        float alpha) {
   vec3 sum(0);
@@ -140,7 +141,7 @@ void VisibleRun::Impl::shine(const Lights& lights, RunSkin& to) const {
         Ray ray;
         place.position = s.place;
         ray.direction = there - 2 * dot(there, n) * n;
-        // What it would show lies behind the surface: it is as light as what is around.
+        // It would show something behind the surface: it is as light as what is around.
         if (!(dot(ray.direction, shape.face) > 1e-3f)) {
           to.shine_red[i] += to.red[i] / float(count);
           to.shine_green[i] += to.green[i] / float(count);
@@ -161,7 +162,7 @@ void VisibleRun::Impl::shine(const Lights& lights, RunSkin& to) const {
   }
   for (size_t k = 0; k < rays.size(); k++) {
     const int i = of[k].pixel;
-    // What it meets is lit as the place itself is.
+    // The met surface is lit as the place itself is.
     const vec3 shown = seen[k].glow + seen[k].albedo * vec3(to.red[i], to.green[i], to.blue[i]);
     to.shine_red[i] += of[k].weight * shown.x, to.shine_green[i] += of[k].weight * shown.y;
     to.shine_blue[i] += of[k].weight * shown.z;

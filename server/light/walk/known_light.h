@@ -29,8 +29,8 @@ KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hi
 // `sharp`: shadows of what moves would be seen. False: nothing is known there.
 bool find_kept_light(const Transport& transport, const Ray& ray, const Hit& hit, bool sharp,
                      vec3& light);
-// What a surface sends back of light that is as bright all around. A sharp gloss is left out: walks
-// follow it.
+// A surface reflects this share of light that is as bright all around. A sharp gloss is left out:
+// walks follow it.
 bool has_sharp_gloss(const Bsdf& bsdf);
 vec3 kept_reflectance(const Bsdf& bsdf);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What light on what moves (light/known/skin_light.h) is worth: where it is small in all pictures
-// few samples do, and where nobody sees it, behind a wall, none.
+// Light on what moves (light/known/skin_light.h) gets few samples where it is small in all
+// pictures, and none where nobody sees it.
 #pragma once
 
 namespace wellspring {

@@ -18,7 +18,7 @@
 
 namespace wellspring {
 
-// Of each object: whether some of its light depends on the view, which maps do not know.
+// Tells of each object whether some of its light depends on the view, which maps do not know.
 std::vector<char> shining_objects(const Scene& scene);
 // Pictures show maps of all lamps from now on. While nothing is drawn.
 void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);

@@ -57,8 +57,8 @@ LoadedMap find_maps(const Show& show) {
   return worth(own) < worth(shipped) ? own : shipped;
 }
 
-// What techniques must know before the first sample: light that was baked before, or coarse light.
-// Returns what pictures show of it.
+// Techniques need light before the first sample: baked before, or coarse. Returns what pictures
+// show of it.
 std::shared_ptr<const IlluminationMap> prepare(Show& show) {
   const bool keeps_light = show.lights.tables->plan.uses(TransportPart::kept_light);
   LoadedMap loaded;

@@ -22,7 +22,7 @@ struct CorrectedWay {
   float weight = 1;
 };
 
-// What all share.
+// All visits share this.
 struct CorrectedStage {
   Exhibit exhibit;
   World world;

@@ -21,8 +21,8 @@ namespace wellspring {
 // invalid (delta_of()); 0: it is matte, and nothing of it is corrected.
 std::vector<float> find_shining(const Scene& scene);
 
-// Of each object by its number, the first of its group: those of one material that stand close
-// together (section 4.1).
+// Finds the first object of each object's group: those of one material that stand close together
+// (section 4.1).
 std::vector<uint32_t> group_shining(const Scene& scene, std::span<const float> shining);
 
 struct CorrectionCounts {

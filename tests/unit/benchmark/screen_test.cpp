@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page shows of the pictures that it is sent.
+// A page shows the pictures that it is sent.
 #include "benchmark/screen.h"
 
 #include <gtest/gtest.h>

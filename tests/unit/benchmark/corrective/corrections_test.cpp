@@ -189,7 +189,7 @@ TEST(Corrections, HoldWhileTheAngleDoes) {
       << "another view's";
 }
 
-// What stands close together and is of one material is a group, once there are groups.
+// Objects of one material that stand close together are a group, once there are groups.
 TEST(Corrections, GroupsAreOfOneMaterialAndClose) {
   Scene scene = empty_scene();
   const int gold = add_material(scene, metal(vec3(0.9f), 0.1f)),

@@ -94,7 +94,7 @@ Scene make_two_boxes(float scale) {
   return scene;
 }
 
-// Of millimetres, metres and kilometres.
+// Scenes are of millimetres, metres and kilometres.
 TEST(BakeHard, LightDoesNotDependOnTheScale) {
   const BakeSettings few{.gather_nodes = 1500, .direct_nodes = 3000};
   Baked metres(make_two_boxes(1), few);

@@ -290,7 +290,7 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
   for (uint32_t light : dark->nodes.light) EXPECT_EQ(unpack_rgb9e5(light), vec3(0));
 }
 
-// What visitors look at is taken some passes ahead of the rest, and no farther.
+// Tiles that visitors look at are taken some passes ahead of the rest, and no farther.
 TEST(Bake, GoesAheadWhereOneLooks) {
   Baked baked(make_lit_floor());
   const Ray down{.origin = {0.6f, 1, 0.6f}, .direction = {0, -1, 0}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a bake says that it is wrong by.
+// A bake says how wrong it is.
 #include "light/bake/held_out.h"
 
 #include <gtest/gtest.h>

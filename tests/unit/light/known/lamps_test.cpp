@@ -179,7 +179,7 @@ TEST(SwitchedLamps, AChangeIsToldWhereItIs) {
   kept = vec3(1), added = vec3(0);
   ASSERT_TRUE(back.changes(lit, floor, kept, added));
   EXPECT_EQ(kept, vec3(1));
-  // What comes back is what went.
+  // The light that comes back is the light that went.
   for (int c = 0; c < 3; c++) EXPECT_GT(added[c], 0.2f);
   EXPECT_LT(left.x, 1);
   // Half of the light is half of what goes.

@@ -30,7 +30,7 @@ struct Prepared {
   }
 };
 
-// What walks end on is what a path tracer finds at the same places.
+// Walks end on the light that a path tracer finds at the same places.
 TEST(Gather, KeptLightIsWhatThePathTracerFinds) {
   Prepared p(scenes::make_cornell_box(), vec3(0, 0.27f, 0.3f));
   ASSERT_TRUE(p.lights.known);
@@ -148,7 +148,7 @@ TEST(Gather, MirrorsKeepNoLight) {
   EXPECT_FALSE(ask({-0.27f, 0.13f, -0.3f}));
 }
 
-// What stands before a wall shades it, which a mirror would show and a wide ray does not.
+// A ball before a wall shades it, which a mirror would show and a wide ray does not.
 TEST(Gather, WhereSomethingMovesOnlyWideRaysEnd) {
   Scene scene = scenes::make_cornell_box();
   Mesh ball = scenes::sphere_mesh(0, 0.05f);

@@ -59,7 +59,7 @@ struct Eyeball {
     }
     return {float(x / all), float(y / all), float(all)};
   }
-  // Where a ball mirrors the lamp: its normal halves the angle, about.
+  // A ball mirrors the lamp there: its normal about halves the angle.
   static vec2 expected(const View& view, vec3 lamp) {
     vec3 place = normalize(view.position) * radius;
     for (int i = 0; i < 20; i++)
@@ -119,7 +119,7 @@ TEST(Shine, ALampWithoutSizeGlintsToo) {
               0.35f * 0.04f * radius * radius / 4 * 3 / distance2);
 }
 
-// What is rougher shows the light that is kept, and no lamp.
+// Rougher gloss shows the light that is kept, and no lamp.
 TEST(Shine, RoughGlossHasNoGlint) {
   Eyeball eye;
   PunctualLight lamp;

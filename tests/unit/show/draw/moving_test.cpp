@@ -144,7 +144,7 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   EXPECT_FALSE(visitor().picture.backdrop);
 }
 
-// Where she stood the next picture shows the wall as though she had never been there.
+// The next picture shows the wall as though she had never stood there.
 TEST_F(Moving, NoGhostStaysWhereSheStood) {
   ASSERT_TRUE(rested());
   steps(200);

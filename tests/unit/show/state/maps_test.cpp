@@ -219,7 +219,7 @@ TEST_F(Maps, AreTakenOverWhileItRuns) {
   EXPECT_GT(visitor().picture.cache.stats().points, 100);
 }
 
-// Who stands still sees better light fade in.
+// A visitor who stands still sees better light fade in.
 TEST_F(Maps, BetterOnesFadeIn) {
   keep_map();
   ShowSettings settings = settings_for("path");
