@@ -19,18 +19,18 @@ BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
   Bake bake = begin_bake(scene.world, places, coarse);
   if (bake.charts.tiles == 0) return scene;
   sample_fields(scene, bake, settings.direct_samples, 0);
-  scene.known = finish_fields(bake);
+  scene.known = finish_fields(bake, false);
   for (int bounce = 1; bounce < settings.most_bounces; bounce++) {
     check_cancelled();
     clear_samples(bake.gather);
     sample_fields(scene, bake, 0, 1);
     const float before = scene.known->mean;
-    scene.known = finish_fields(bake);
+    scene.known = finish_fields(bake, false);
     if (!(scene.known->mean - before > least_bounce * scene.known->mean)) break;
   }
   clear_samples(bake.gather);
   sample_fields(scene, bake, 0, settings.gather_samples);
-  scene.known = finish_fields(bake);
+  scene.known = finish_fields(bake, true);
   return scene;
 }
 

@@ -289,12 +289,12 @@ static std::shared_ptr<const IlluminationMap> finish(const Bake& bake,
   if (sloped) map->normals = pack_normals(normals);
   map->layers = layers;
   map = std::make_shared<IlluminationMap>(sum_of_layers(std::move(*map)));
-  map->error = filtered ? held_out_error(bake.held_out, *map) : 1;
+  map->error = held_out_error(bake.held_out, *map);
   return map;
 }
 
-std::shared_ptr<const IlluminationMap> finish_fields(const Bake& bake) {
-  return finish(bake, {}, {}, false);
+std::shared_ptr<const IlluminationMap> finish_fields(const Bake& bake, bool filtered) {
+  return finish(bake, {}, {}, filtered);
 }
 
 std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake) {

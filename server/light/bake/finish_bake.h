@@ -19,9 +19,9 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
 // The same where everything may be seen.
 std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake);
 
-// Makes a map of a bake's fields as they are, refined or not, and unfiltered: nobody knows its
-// error (1).
-std::shared_ptr<const IlluminationMap> finish_fields(const Bake& bake);
+// Makes a map of a bake's fields as they are, refined or not. Nobody knows its error (1) where
+// nothing was held out.
+std::shared_ptr<const IlluminationMap> finish_fields(const Bake& bake, bool filtered);
 
 // Its parts.
 // Means of one layer's sums `of` the field (its light, or its slopes) at the nodes. Nodes without

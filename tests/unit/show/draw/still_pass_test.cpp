@@ -33,7 +33,7 @@ TEST_F(StillPassTest, WhoRestsIsShownAReconstructionAndThenTimeGoesToSamples) {
   ASSERT_TRUE(step_until([&] { return show->totals.reconstructed >= 1; }));
   ASSERT_TRUE(step_until([&] { return is_shown(); }));
   EXPECT_TRUE(visitor().picture.rest.reconstructed);
-  EXPECT_LT(error_of_last(), 6);
+  EXPECT_LT(error_of_last(), 9) << "coarse light, which few samples have corrected yet";
   uint64_t drawn = show->totals.drawn, samples = show->totals.samples;
   ASSERT_TRUE(step_until([&] { return show->totals.reconstructed >= 4; }));
   EXPECT_EQ(show->totals.drawn, drawn);

@@ -77,7 +77,7 @@ TEST_F(BakerTest, HandsOverMapsAndKeepsThem) {
     Baker baker(scene, settings);
     baker.allow(BakerCores::all);
     ASSERT_TRUE(wait_until([&] { return (map = baker.take()) != nullptr; }));
-    EXPECT_LT(map->error, 0.15f);
+    EXPECT_LT(map->error, most_sure_error);
     EXPECT_GT(map->mean, 0.01f);
     EXPECT_GT(baker.status().passes, 0u);
     EXPECT_TRUE(wait_until([&] { return baker.status().error < 0.15f; }));
