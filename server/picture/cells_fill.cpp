@@ -130,11 +130,12 @@ void write_cell(const PixelRays& rays, const Coarse& c, int x, int y, Cells& cel
 
 bool fill_cells(const WindowView& view, Cells& cells) {
   PixelRays rays(view);
-  bool all = true;
-  for (int y = 0; y < cells.height && all; y++)
+  int known = 0;
+  for (int y = 0; y < cells.height; y++)
     for (int x = 0; x < cells.width; x++)
-      all &= cells.object[size_t(cells.index(x, y))] != no_object;
-  if (all) return true;
+      known += cells.object[size_t(cells.index(x, y))] != no_object;
+  if (known == 0) return false;
+  if (known == cells.width * cells.height) return true;
 
   std::vector<Level> levels;
   int width = cells.width, height = cells.height;

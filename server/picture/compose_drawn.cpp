@@ -204,7 +204,7 @@ struct Composer {
   }
   const CellRows<Scale>& rows_around(const VisibleRun& run) const;
   void light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const;
-  void light_run(const RunPixels& p, const VisibleRun& run, const CellRows<Scale>& rows,
+  void light_run(const RunPixels& p, const VisibleRun& run, const CellRows<Scale>* read,
                  const RunGlow& emitting, int n, LanePart part, Drawn& d) const;
   Shown light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
                    const RunMoving& moving, const RunMapped& mapped, const RunDynamic& dynamic,
@@ -251,11 +251,17 @@ void Composer<Scale>::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& 
 // anything. What the light of points says of them.
 template <int Scale>
 void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
-                                const CellRows<Scale>& rows, const RunGlow& emitting, int n,
+                                const CellRows<Scale>* read, const RunGlow& emitting, int n,
                                 LanePart part, Drawn& d) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   int i = n * lane_count - half_group, x = run.x + i;  // the first lane's pixel
   Pixels& q = d.pixels;
+  if (!known) {  // there is no point
+    d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
+                lanes_at(p.surface.blue, i)};
+    q.samples = Lanes{};
+    return light_as_mapped(d.mapped, q);
+  }
   q.nx = lanes_at(p.surface.nx, i), q.ny = lanes_at(p.surface.ny, i);
   q.nz = lanes_at(p.surface.nz, i);
   d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
@@ -267,7 +273,7 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
-  if (!known) return light_as_mapped(d.mapped & (q.samples <= 0.0f), q);
+  const CellRows<Scale>& rows = *read;
   constexpr Lanes across = group == lane_count ? lane : Lanes{0, 1, 2, 3, 0, 1, 2, 3};
   const Lanes fx = (across + 0.5f) * (1.0f / group);
   float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
@@ -306,7 +312,7 @@ Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
                 d.mapped ? lanes_at(mapped.unit.green, i) : d.unit.g,
                 d.mapped ? lanes_at(mapped.unit.blue, i) : d.unit.b};
     }
-    light_run(p, run, *rows, emitting, n, part, d);
+    light_run(p, run, rows, emitting, n, part, d);
     shown.color = {positive_lanes(d.albedo.r * (q.smooth.r * d.unit.r - d.raised) + q.rest.r),
                    positive_lanes(d.albedo.g * (q.smooth.g * d.unit.g - d.raised) + q.rest.g),
                    positive_lanes(d.albedo.b * (q.smooth.b * d.unit.b - d.raised) + q.rest.b)};
@@ -335,8 +341,9 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
                      ~composer.shade.pixels(run, composer.rays, composer.offset);
     const RunDynamic dynamic = find_dynamic(kept.dynamic, composer.view, run, p);
     const uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
-    const CellRows<Scale>* rows =
-        (moving.pixels | mapped.plain) == all ? nullptr : &composer.rows_around(run);
+    const CellRows<Scale>* rows = !composer.known || (moving.pixels | mapped.plain) == all
+                                      ? nullptr
+                                      : &composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
       int i = n * lane_count - composer.half_group;

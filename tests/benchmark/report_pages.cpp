@@ -295,7 +295,7 @@ ReportPage picture_page() {
       "What does a drawn picture cost, without samples to trace? The castle, 1280x720.",
       {"`maps`: lit by the light that the package carries; `points`: by a visitor's own points, "
        "of which there are none.",
-       "Wanted: at most 50 ms of one core."},
+       "Wanted: at most 50 ms of one core.", "One core: processor time. All cores: by the clock."},
       {{.caption = "",
         .rows = {{"view", "view"}, {"light", "light"}},
         .columns = {{"picture.drawn.ms_one_core", "one core, ms"},

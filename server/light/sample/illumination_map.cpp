@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/sample/illumination_map.h"
 
-#include <bit>
+#include <algorithm>
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/rgb9e5_simd.h"
 
 namespace wellspring {
 
@@ -136,78 +135,6 @@ float eval_illumination_turn(const IlluminationMap& map, const IlluminationNodes
 
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at) {
   return eval_illumination(map.nodes, taps_at(map, chart, at));
-}
-
-// from[at[i]] in lane i.
-static LaneBits gather_words(const uint32_t* from, const LaneBits& at) {
-#ifdef __AVX2__
-  return LaneBits(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), __m256i(at), 4));
-#else
-  LaneBits words;
-  for (int i = 0; i < lane_count; i++) words[i] = from[at[i]];
-  return words;
-#endif
-}
-
-// Of places in one tile.
-static IlluminationLanes eval_tile(const IlluminationMap& map, const IlluminationTile& tile,
-                                   Lanes u, Lanes v, bool sloped, bool bent) {
-  const Lanes zero{};
-  u = lanes_min(lanes_max(u, zero), all_lanes(1)) * float(tile.columns);
-  v = lanes_min(lanes_max(v, zero), all_lanes(1)) * float(tile.rows);
-  LaneBits i = to_whole(lanes_min(u, all_lanes(float(tile.columns - 1)))),
-           j = to_whole(lanes_min(v, all_lanes(float(tile.rows - 1))));
-  u -= to_float(i), v -= to_float(j);
-  const uint32_t stride = tile.columns + 1u;
-  const LaneBits node = tile.first + j * stride + i;
-  const LaneBits corners[4] = {node, node + 1u, node + stride, node + stride + 1u};
-  const Lanes weights[4] = {(1.0f - u) * (1.0f - v), u * (1.0f - v), (1.0f - u) * v, u * v};
-  IlluminationLanes at{};
-  Lanes least = all_lanes(INFINITY), most{};
-  for (int k = 0; k < 4; k++) {
-    Lanes r, g, b;
-    unpack_rgb9e5(gather_words(map.nodes.light.data(), corners[k]), r, g, b);
-    at.red += weights[k] * r, at.green += weights[k] * g, at.blue += weights[k] * b;
-    least = lanes_min(least, r + g + b), most = lanes_max(most, r + g + b);
-    if (!sloped) continue;
-    unpack_slope(gather_words(map.nodes.slope.data(), corners[k]), r, g, b);
-    at.x += weights[k] * r, at.y += weights[k] * g, at.z += weights[k] * b;
-    if (!bent) continue;
-    unpack_node_normal(gather_words(map.normals->data(), corners[k]), r, g, b);
-    at.own_x += weights[k] * r, at.own_y += weights[k] * g, at.own_z += weights[k] * b;
-  }
-  at.spread = most - least;
-  return at;
-}
-
-IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
-                                    Lanes u, Lanes v, LaneMask asked, bool sloped) {
-  sloped = sloped && !map.nodes.slope.empty();
-  const bool bent = sloped && keeps_normals(map, chart);
-  const Lanes zero{};
-  u = lanes_min(lanes_max(u, zero), all_lanes(float(chart.columns)));
-  v = lanes_min(lanes_max(v, zero), all_lanes(float(chart.rows)));
-  const LaneBits column = to_whole(lanes_min(u, all_lanes(float(chart.columns - 1)))),
-                 row = to_whole(lanes_min(v, all_lanes(float(chart.rows - 1)))),
-                 tile = row * uint32_t(chart.columns) + column;
-  u -= to_float(column), v -= to_float(row);
-  IlluminationLanes light{};
-  // Neighbours mostly lie in one tile, else in two.
-  for (unsigned left = negative_lanes(asked); left != 0;) {
-    const uint32_t first = tile[std::countr_zero(left)];
-    const LaneMask same = (tile == first), here = lanes_of_bits(left) & same;
-    left &= ~negative_lanes(here);
-    const IlluminationTile& at = map.tiles[chart.first_tile + first];
-    if (at.first == no_tile) continue;
-    const IlluminationLanes one = eval_tile(map, at, u, v, sloped, bent);
-    if (negative_lanes(same) == 0xff) return one;
-    auto take = [&](Lanes& to, const Lanes& from) { to = here ? from : to; };
-    take(light.red, one.red), take(light.green, one.green), take(light.blue, one.blue);
-    take(light.spread, one.spread);
-    take(light.x, one.x), take(light.y, one.y), take(light.z, one.z);
-    take(light.own_x, one.own_x), take(light.own_y, one.own_y), take(light.own_z, one.own_z);
-  }
-  return light;
 }
 
 }  // namespace wellspring

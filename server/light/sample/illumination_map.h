@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "base/rgb9e5.h"
-#include "base/simd.h"
 #include "light/material/light_slope.h"
 #include "world/world.h"
 
@@ -130,17 +129,6 @@ float eval_illumination_turn(const IlluminationMap& map, const IlluminationNodes
 // them.
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec3 place);
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at);
-
-// The same of eight places (counted in tiles, as IlluminationChart has it); those that are not
-// `asked` give anything finite. Slopes are read where `sloped`.
-struct IlluminationLanes {
-  Lanes red, green, blue;
-  Lanes spread;               // of the sum of the three, among the nodes around
-  Lanes x, y, z;              // the slope
-  Lanes own_x, own_y, own_z;  // the nodes' normal, where the chart is bent and slopes are read
-};
-IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
-                                    Lanes u, Lanes v, LaneMask asked, bool sloped = false);
 
 // What Sample::known is of light that a map gives: a little more (Sample::raised), so that no ratio
 // to it is without bounds.

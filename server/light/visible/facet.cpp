@@ -24,10 +24,14 @@ FacetPicture place_picture(const World& world, const Facet& facet, const Texture
   return p;
 }
 
-static void place_relief(const World& world, Facet& f) {
+void place_shine(const World& world, Facet& f) {
+  if (!f.shine.known) f.shine = place_picture(world, f, f.material->metallic_roughness_texture);
+}
+
+void place_relief(const World& world, Facet& f) {
   const PlacedMesh& placed = *f.placed;
   const std::vector<vec4>& tangents = placed.mesh->tangents;
-  if (f.material->normal_texture.texture < 0 || tangents.empty()) return;
+  if (f.relief.known || f.material->normal_texture.texture < 0 || tangents.empty()) return;
   vec3 normal = f.normal[0] + f.normal[1] + f.normal[2], tangent(0);
   for (int k = 0; k < 3; k++) tangent += vec3(tangents[f.corner[k]]);
   if (!placed.moving) tangent = mat3(placed.to_world) * tangent;
@@ -64,8 +68,7 @@ Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 
   f.one_normal = f.normal[0] == f.normal[1] && f.normal[0] == f.normal[2];
   f.root_area = std::sqrt(area);
   f.base = place_picture(world, f, f.material->base_color_texture);
-  f.shine = place_picture(world, f, f.material->metallic_roughness_texture);
-  place_relief(world, f);
+  if (f.material->metallic > 0) place_shine(world, f);
   return f;
 }
 

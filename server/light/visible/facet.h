@@ -21,9 +21,11 @@ struct Facet {
   vec3 face{0};         // geometric, unit, on the winding's side
   float root_area = 0;  // of the face, metres
   bool one_normal = false;
-  bool front = false;        // the eye is on the winding's side
-  FacetPicture base, shine;  // base colour; metallic and roughness
-  // The map of normals, and along its u and v on the winding's side, unit; alike all over.
+  bool front = false;  // the eye is on the winding's side
+  // Base colour; metallic and roughness, of what may be metal, or once place_shine() was called.
+  FacetPicture base, shine;
+  // The map of normals, and along its u and v on the winding's side, unit; alike all over. Known
+  // once place_relief() was called, where there is one.
   FacetPicture relief;
   vec3 tangent{0}, bitangent{0};
   // Its light lies here, once somebody has asked: as IlluminationChart has it, counted in tiles.
@@ -33,6 +35,8 @@ struct Facet {
 };
 Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 eye);
 FacetPicture place_picture(const World& world, const Facet& facet, const TextureRef& reference);
+void place_shine(const World& world, Facet& facet);
+void place_relief(const World& world, Facet& facet);
 
 // Facets of late: rows of a picture meet the same triangles one after the other.
 class FacetCache {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that is kept, on a run's pixels: VisibleRun::light(), VisibleRun::known().
-#include <algorithm>
-
+// Light that is kept on what moves, on a run's pixels: VisibleRun::light().
 #include "light/known/skin_light.h"
 #include "light/material/gloss_albedo.h"
 #include "light/visible/visibility_impl.h"
@@ -29,7 +27,7 @@ Lanes VisibleRun::Impl::read_gloss(const RunSurface& surface, int i, Lanes f0, L
 
 // Times as much light as the diffuse layer is lit by comes from about where eight pixels mirror, by
 // the light's slope: of spherical harmonics of two bands, of which a rough lobe leaves a part.
-Lanes VisibleRun::Impl::read_sheen(const RunSurface& surface, const IlluminationLanes& slope, int i,
+Lanes VisibleRun::Impl::read_sheen(const RunSurface& surface, const Lanes3& slope, int i,
                                    float roughness) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   const vec3 way = direction(i), step = view.right * pixel_angle;
@@ -45,6 +43,40 @@ Lanes VisibleRun::Impl::read_sheen(const RunSurface& surface, const Illumination
   return positive_lanes(1.0f - along + sheen_slope * (1 - roughness * roughness) * mirrored);
 }
 
+Lanes eval_turn(const Facet& f, Lanes a, Lanes b, const Lanes3& slope, const Lanes3* relief,
+                const Lanes* own) {
+  const vec3 n = f.normal[0];
+  Lanes nx = all_lanes(n.x), ny = all_lanes(n.y), nz = all_lanes(n.z);
+  if (!f.one_normal) {
+    const vec3 p = f.normal[1] - n, q = f.normal[2] - n;
+    nx += p.x * a + q.x * b, ny += p.y * a + q.y * b, nz += p.z * a + q.z * b;
+  }
+  const Lanes unit = 1.0f / lanes_sqrt(lanes_max(nx * nx + ny * ny + nz * nz, all_lanes(1e-30f)));
+  // How far the slope goes along the mesh's normal, and along that which light is relative to.
+  const float side = f.front ? 1.0f : -1.0f;
+  const Lanes up = (slope.x * nx + slope.y * ny + slope.z * nz) * unit;
+  const Lanes from = own ? *own : side * up;
+  if (!relief) return positive_lanes(1.0f + side * up - from);
+  const Lanes x = relief->x * 2.0f - 1.0f, y = relief->y * 2.0f - 1.0f, z = relief->z * 2.0f - 1.0f;
+  const float scale = f.material->normal_scale;
+  // As steep as the scale says, and as short as the mean over the pixel is.
+  const Lanes flat = x * x + y * y,
+              shrink = lanes_sqrt((flat + z * z) /
+                                  lanes_max(scale * scale * flat + z * z, all_lanes(1e-12f)));
+  auto along = [&](vec3 way) { return slope.x * way.x + slope.y * way.y + slope.z * way.z; };
+  const Lanes seen =
+      scale * shrink * (x * along(f.tangent) + y * along(f.bitangent)) + z * shrink * up;
+  return positive_lanes(1.0f + side * seen - from);
+}
+
+Lanes3 VisibleRun::Impl::read_relief(const PicturePlaces& places, const Material& m, float texels,
+                                     int i, int end) const {
+  Lanes rgb[3];
+  if (!read_lanes(places, m.normal_texture, texels, i, end, rgb))
+    return all_lanes(vec3(0.5f, 0.5f, 1));
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
 uint64_t VisibleRun::light(const SkinLight& skin, const Lights& lights, const RunSurface& surface,
                            RunSkin& to) const {
   if (seen_) return 0;
@@ -54,8 +86,9 @@ uint64_t VisibleRun::light(const SkinLight& skin, const Lights& lights, const Ru
   bool shines = false;
   for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
     if (r.instance[begin] == RasterRun::nothing) continue;
-    const Facet& f = impl_->facet(begin);
+    Facet& f = impl_->facet(begin);
     if (!f.placed->moving) continue;
+    place_relief(impl_->visibility.world, f);
     SkinTriangle light = find_skin(skin, r.instance[begin], f.corner, !f.front);
     GlossFactors gloss = gloss_factors(*f.material);
     shines |= impl_->shines(f);
@@ -65,12 +98,17 @@ uint64_t VisibleRun::light(const SkinLight& skin, const Lights& lights, const Ru
       auto mix = [&](const vec3& a, const vec3& b, const vec3& c, int k) {
         return a[k] + b[k] * u + c[k] * v;
       };
-      IlluminationLanes slopes{};
-      slopes.x = mix(light.slope, light.slope1, light.slope2, 0);
-      slopes.y = mix(light.slope, light.slope1, light.slope2, 1);
-      slopes.z = mix(light.slope, light.slope1, light.slope2, 2);
-      const Lanes factor =
-          f.relief.known ? impl_->read_turn(f, slopes, true, false, i, r.end[p]) : all_lanes(1);
+      const Lanes3 slopes{mix(light.slope, light.slope1, light.slope2, 0),
+                          mix(light.slope, light.slope1, light.slope2, 1),
+                          mix(light.slope, light.slope1, light.slope2, 2)};
+      Lanes factor = all_lanes(1);
+      if (f.relief.known) {
+        PicturePlaces places;
+        places.put(f.relief, u, v, i);
+        const Lanes3 relief = impl_->read_relief(places, *f.material,
+                                                 impl_->relief_texels(f, i, r.end[p]), i, r.end[p]);
+        factor = eval_turn(f, u, v, slopes, &relief, nullptr);
+      }
       const Lanes sheen = impl_->read_sheen(surface, slopes, i, gloss.roughness);
       auto put = [&](int k, float* diffuse, float* shine) {
         const Lanes kept = mix(light.corner, light.edge1, light.edge2, k);
@@ -91,107 +129,6 @@ uint64_t VisibleRun::light(const SkinLight& skin, const Lights& lights, const Ru
                                     load_lanes(share + i)));
   if (shines) impl_->shine(lights, to);
   return moving;
-}
-
-namespace {
-
-// The nodes around a place differ by at most that share of its light, or their light has an edge
-// between them.
-constexpr float most_even_spread = 0.4f;
-
-// Where the light of a triangle lies; false: the charts do not have it.
-bool place_light(const IlluminationCharts& charts, Facet& f) {
-  if (f.charts == &charts) return f.chart != no_chart;
-  f.charts = &charts;
-  f.chart = charts.find(f.instance, f.triangle, f.front);
-  if (f.chart == no_chart) return false;
-  const IlluminationChart& chart = charts.charts[f.chart];
-  const Face face = make_face(*f.placed, f.triangle);
-  auto along = [&](vec3 way) { return vec2(dot(way, chart.along_u), dot(way, chart.along_v)); };
-  f.light_corner = along(face.corner - chart.origin);
-  f.light_edge1 = along(face.edge1), f.light_edge2 = along(face.edge2);
-  return true;
-}
-
-}  // namespace
-
-// Times as much light as the nodes have falls on eight pixels: on their mapped normals where the
-// facet has `relief`, else on the mesh's.
-Lanes VisibleRun::Impl::read_turn(const Facet& f, const IlluminationLanes& light, bool relief,
-                                  bool bent, int i, int end) const {
-  const Material& m = *f.material;
-  const Lanes a = load_lanes(run->u + i), b = load_lanes(run->v + i);
-  vec3 n = f.normal[0];
-  Lanes nx = all_lanes(n.x), ny = all_lanes(n.y), nz = all_lanes(n.z);
-  if (!f.one_normal) {
-    const vec3 p = f.normal[1] - n, q = f.normal[2] - n;
-    nx += p.x * a + q.x * b, ny += p.y * a + q.y * b, nz += p.z * a + q.z * b;
-  }
-  const Lanes unit = 1.0f / lanes_sqrt(lanes_max(nx * nx + ny * ny + nz * nz, all_lanes(1e-30f)));
-  // How far the slope goes along the mesh's normal, and along that which light is relative to.
-  const float side = f.front ? 1.0f : -1.0f;
-  const Lanes up = (light.x * nx + light.y * ny + light.z * nz) * unit;
-  const Lanes own =
-      bent ? light.x * light.own_x + light.y * light.own_y + light.z * light.own_z : side * up;
-  if (!relief) return positive_lanes(1.0f + side * up - own);
-  PicturePlaces places;
-  places.put(f.relief, a, b, i);
-  const int middle = std::min(i + lane_count / 2, end - 1);
-  const float texels =
-      pixel_width(f, run->depth[middle], direction(middle), blurred_angle) * f.relief.texels;
-  Lanes map[3];
-  if (!read_lanes(places, m.normal_texture, texels, i, end, map))
-    return positive_lanes(1.0f + side * up - own);  // floats, or read by the nearest texel
-  const Lanes x = map[0] * 2.0f - 1.0f, y = map[1] * 2.0f - 1.0f, z = map[2] * 2.0f - 1.0f;
-  const float scale = m.normal_scale;
-  // As steep as the scale says, and as short as the mean over the pixel is.
-  const Lanes flat = x * x + y * y,
-              shrink = lanes_sqrt((flat + z * z) /
-                                  lanes_max(scale * scale * flat + z * z, all_lanes(1e-12f)));
-  auto along = [&](vec3 way) { return light.x * way.x + light.y * way.y + light.z * way.z; };
-  const Lanes seen =
-      scale * shrink * (x * along(f.tangent) + y * along(f.bitangent)) + z * shrink * up;
-  return positive_lanes(1.0f + side * seen - own);
-}
-
-uint64_t VisibleRun::known(const IlluminationMap& map, const RunSurface& surface,
-                           RunKnown& to) const {
-  to.plain = 0;
-  if (seen_) return 0;
-  const RasterRun& r = *impl_->run;
-  uint64_t known = 0;
-  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
-    if (r.instance[begin] == RasterRun::nothing) continue;
-    Facet& f = impl_->facet(begin);
-    if (f.placed->moving || !place_light(*map.places, f)) continue;
-    const IlluminationChart& chart = map.places->charts[f.chart];
-    const Lanes more = all_lanes(map.least_known());
-    const bool relief = f.relief.known && !map.nodes.slope.empty(),
-               bent = chart.bent && map.normals;
-    const bool plain = impl_->visibility.plain[size_t(f.placed->mesh->material)] != 0;
-    const GlossFactors gloss = gloss_factors(*f.material);
-    for (int i = begin; i < r.end[p]; i += lane_count) {
-      constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-      const LaneMask here = lane < float(r.end[p] - i);
-      const Lanes a = load_lanes(r.u + i), b = load_lanes(r.v + i);
-      IlluminationLanes light = eval_illumination(
-          map, chart, f.light_corner.x + f.light_edge1.x * a + f.light_edge2.x * b,
-          f.light_corner.y + f.light_edge1.y * a + f.light_edge2.y * b, here, relief || bent);
-      const Lanes factor =
-          relief || bent ? impl_->read_turn(f, light, relief, bent, i, r.end[p]) : all_lanes(1);
-      store_lanes(to.red + i, light.red * factor + more);
-      store_lanes(to.green + i, light.green * factor + more);
-      store_lanes(to.blue + i, light.blue * factor + more);
-      known |= uint64_t(negative_lanes(here)) << i;
-      if (!plain) continue;
-      const Lanes all = light.red + light.green + light.blue;
-      to.plain |= uint64_t(negative_lanes(here & (light.spread <= most_even_spread * all))) << i;
-      store_lanes(to.gloss + i,
-                  impl_->read_gloss(surface, i, all_lanes(gloss.f0), all_lanes(gloss.roughness),
-                                    all_lanes(gloss.share)));
-    }
-  }
-  return known;
 }
 
 }  // namespace wellspring

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What light/visible/visibility.h keeps, for its own units.
 #pragma once
+#include <algorithm>
 #include <vector>
 
+#include "base/simd3.h"
 #include "light/material/gloss_albedo.h"
 #include "light/sample/illumination_map.h"
 #include "light/visible/facet.h"
@@ -57,7 +59,17 @@ struct Stretches {
   int count = 0;
   Stretch of[RasterRun::most];
   PicturePlaces base, shine;
+  void add(const Stretch& s) {
+    if (count > 0 && of[count - 1].goes_on_with(s)) of[count - 1].end = s.end;
+    else of[count++] = s;
+  }
 };
+
+// Times as much light as is kept falls on eight places of a facet, (a, b) on its triangle, as light
+// has `slope`. `relief`: what a map of normals says there, 0 to 1; null: they face as the mesh
+// does. `own`: how far the slope goes along the normal that light is kept for; null: the mesh's.
+Lanes eval_turn(const Facet& f, Lanes a, Lanes b, const Lanes3& slope, const Lanes3* relief,
+                const Lanes* own);
 
 inline constexpr float most_shining = 0.25f;  // roughness
 
@@ -79,10 +91,16 @@ struct VisibleRun::Impl {
   }
   PrimaryHit see(int i) const;
   Lanes read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness, Lanes share) const;
-  Lanes read_turn(const Facet& f, const IlluminationLanes& light, bool relief, bool bent, int i,
-                  int end) const;
-  Lanes read_sheen(const RunSurface& surface, const IlluminationLanes& slope, int i,
-                   float roughness) const;
+  // Across pixels from `i` on, those before `end`, of the facet's map of normals.
+  float relief_texels(const Facet& f, int i, int end) const {
+    const int middle = std::min(i + lane_count / 2, end - 1);
+    return pixel_width(f, run->depth[middle], direction(middle), blurred_angle) * f.relief.texels;
+  }
+  // What a map of normals says of eight pixels; as if there were none where it is of floats, or
+  // read by the nearest texel.
+  Lanes3 read_relief(const PicturePlaces& places, const Material& m, float texels, int i,
+                     int end) const;
+  Lanes read_sheen(const RunSurface& surface, const Lanes3& slope, int i, float roughness) const;
   // Its gloss is smooth enough to show what is around.
   bool shines(const Facet& f) const {
     const GlossFactors gloss = gloss_factors(*f.material);

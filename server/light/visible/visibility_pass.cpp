@@ -114,8 +114,7 @@ bool VisibleRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) 
       if (base) to.base.put(f.base, a, b, i), s.base_texels = width * f.base.texels;
       if (shine) to.shine.put(f.shine, a, b, i), s.emission_texels = width * f.shine.texels;
     }
-    if (to.count > 0 && to.of[to.count - 1].goes_on_with(s)) to.of[to.count - 1].end = s.end;
-    else to.of[to.count++] = s;
+    to.add(s);
   }
   return true;
 }
@@ -195,8 +194,9 @@ void VisibleRun::gloss(uint32_t* codes, uint8_t* metallic) const {
   const RasterRun& r = *impl_->run;
   for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
     if (r.instance[begin] == RasterRun::nothing) continue;
-    const Facet& f = impl_->facet(begin);
+    Facet& f = impl_->facet(begin);
     if (!impl_->visibility.glossy[size_t(f.placed->mesh->material)]) continue;
+    place_shine(impl_->visibility.world, f);
     for (int i = begin; i < r.end[p]; i++) {
       const float width = pixel_width(f, r.depth[i], impl_->direction(i), impl_->blurred_angle);
       Gloss gloss = see_gloss(impl_->visibility.pictures, f, {r.u[i], r.v[i]}, width);

@@ -71,7 +71,8 @@ struct Raster::Impl {
   float near = 0;
   std::vector<RasterPiece> pieces;
   std::vector<Bounds> moving;  // of every instance that moves
-  std::vector<Block> blocks;
+  std::vector<Block> blocks;   // the first `used` are of this picture; memory is kept
+  size_t used = 0;
   std::vector<TilePixels> tiles;
   std::vector<std::vector<EdgeShare>> edges, border_edges;  // of each tile
 
@@ -86,7 +87,7 @@ struct Raster::Impl {
   // body(number) for all triangles of a tile, of blocks from `first` on.
   template <class Body>
   void for_each(int tile, size_t first, const Body& body) const {
-    for (size_t b = first; b < blocks.size(); b++)
+    for (size_t b = first; b < used; b++)
       for (uint32_t i = blocks[b].first[size_t(tile)]; i < blocks[b].first[size_t(tile) + 1]; i++)
         body(uint32_t(b) << block_bits | blocks[b].drawn[i]);
   }
@@ -370,15 +371,16 @@ void Raster::draw(const View& view, const RasterSettings& settings,
     lists->resize(settings.edges ? r.tiles.size() : 0);
     for (std::vector<EdgeShare>& list : *lists) list.clear();
   }
-  r.blocks.clear();
+  r.used = 0;
   std::vector<uint8_t> any_veil(r.tiles.size(), 0);
   auto corner_of = [&](int tile) {
     return ivec2(tile % columns * tile_width, tile / columns * tile_height);
   };
   size_t drawn = 0;  // pieces
   auto fill = [&](size_t pieces) {
-    size_t first = r.blocks.size(), more = (pieces - drawn + block_clusters - 1) / block_clusters;
-    r.blocks.resize(first + more);
+    size_t first = r.used, more = (pieces - drawn + block_clusters - 1) / block_clusters;
+    r.used = first + more;
+    if (r.blocks.size() < r.used) r.blocks.resize(r.used);
     parallel_for(int(more), [&](int i) {
       size_t begin = drawn + size_t(i) * block_clusters,
              end = std::min(begin + block_clusters, pieces);

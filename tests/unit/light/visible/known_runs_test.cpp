@@ -186,5 +186,68 @@ TEST(KnownRuns, OnBentMeshesAreLitAsSamplesAre) {
   }
 }
 
+// Slats of a few pixels: flat, with a map of normals, bent, and both.
+TEST(KnownRuns, OfManyKindsSideBySideAreLitAsSamplesAre) {
+  constexpr int slats = 37;
+  Scene scene = empty_scene();
+  Material m = diffuse(vec3(0.5f));
+  const int smooth = add_material(scene, m);
+  Image image;
+  image.width = image.height = 1;
+  image.texels8 = {191, 110, 237, 255};
+  scene.images.push_back(image);
+  scene.textures.push_back({.image = 0});
+  m.normal_texture.texture = 0;
+  const int rough = add_material(scene, m);
+  for (int i = 0; i < slats; i++) {
+    const float wide = 2.0f / float(slats);
+    const bool bent = i % 4 >= 2;
+    add_quad(scene, i % 2 ? rough : smooth, {-1 + wide * float(i), -1, 0}, {wide, 0, 0}, {0, 2, 0},
+             "slat");
+    Mesh& mesh = scene.meshes.back();
+    for (vec3& n : mesh.normals)
+      if (bent) n = normalize(n + vec3(&n == &mesh.normals[0] ? 0.2f : -0.1f, 0.1f, 0));
+    mesh.uv[0].assign(mesh.positions.size(), vec2(0));
+    mesh.tangents.assign(mesh.positions.size(), vec4(1, 0, 0, 1));
+  }
+  scene.lights.push_back(test::point_light({0.5f, 1, 1.5f}, vec3(9)));
+  test::Baked baked(scene, {.gather_nodes = 600, .direct_nodes = 1200});
+  const auto map = baked.map(2);
+  ASSERT_TRUE(map && map->normals);
+  const Lights lights = make_lights(baked.world);
+  const VisibilityPass visibility(baked.world, lights);
+  Transport transport{baked.world, *lights.tables};
+  transport.maps = map.get();
+  const View view = make_view(baked.scene, {0, 0, 2.5}, 0, 0, 0.7f, width, height);
+  std::atomic<int> judged[4] = {}, differ[4] = {}, turned[4] = {};
+  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
+    RunSurface surface;
+    run.describe(~uint64_t(0) >> (64 - run.count), surface);
+    RunKnown told;
+    const uint64_t bits = run.known(*map, surface, told);
+    for (int i = 0; i < run.count; i++) {
+      const Ray ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
+      const Hit hit = baked.world.intersect(ray);
+      if (!(bits >> i & 1) || !hit.valid()) continue;
+      const Surface at = eval_surface(baked.world, ray, hit);
+      const vec3 wanted = find_known_light(transport, ray, hit, at).unit;
+      const vec3 off = vec3(told.red[i], told.green[i], told.blue[i]) - wanted;
+      const uint32_t chart = map->places->find(hit.instance, hit.triangle, true);
+      const vec3 flat = eval_illumination(*map, map->places->charts[chart], at.position) +
+                        vec3(map->least_known());
+      const uint32_t kind = hit.instance % 4;
+      // A map's tangents are alike all over a triangle, which bent ones show.
+      const float most = kind == 3 ? 0.1f : 0.01f;
+      judged[kind]++, differ[kind] += !(length(off) < most * length(wanted));
+      turned[kind] += length(flat - wanted) > 0.01f * length(wanted);
+    }
+  });
+  for (int kind = 0; kind < 4; kind++) {
+    EXPECT_GT(judged[kind], 300) << kind;
+    EXPECT_LE(differ[kind], judged[kind] / 100) << kind;
+    EXPECT_TRUE(kind == 0 ? turned[kind] == 0 : turned[kind] > judged[kind] / 4) << kind;
+  }
+}
+
 }  // namespace
 }  // namespace wellspring
