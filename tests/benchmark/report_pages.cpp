@@ -249,7 +249,7 @@ ReportPage corrective_page() {
             .rows = {{"visit", "visit"}, {"seconds", "seconds"}},
             .columns = {{"corrective.error.flip", "FLIP"}},
             .across = "order",
-            .most_rows = 12},
+            .most_rows = 8},
            {.caption = "Warping and splatting",
             .rows = {{"cores", "cores"}},
             .columns = {{"corrective.splat.ms", "warp and splat"},

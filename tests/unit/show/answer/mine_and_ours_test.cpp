@@ -123,7 +123,7 @@ TEST_F(MineAndOurs, WhoHidesHerHidesHerFromThemselves) {
     visitor.place.view.position = {-2, 0.3, 2};
     visitor.place.view.yaw = visitor.place.view.pitch = 0;
   }
-  run(2);
+  run(10);  // she is small, so her light takes a while
   // The figure is bright before the wall, which is the picture's upper half.
   auto stands_out = [&](size_t i) {
     const Image8 picture = last_image(i);
