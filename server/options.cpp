@@ -124,8 +124,7 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   add_switch(app, "--background,!--no-background", show.background,
              "pictures are drawn while visitors are shown earlier ones as they look from where "
              "they are now");
-  app.add_option("--display", words.display,
-                 "how light is shown: automatic, points or maps")
+  app.add_option("--display", words.display, "how light is shown: automatic, points or maps")
       ->check(CLI::IsMember(
           std::vector<std::string>(std::begin(display_names), std::end(display_names))));
   add_switch(app, "--bake,!--no-bake", show.bakes,

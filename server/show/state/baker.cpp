@@ -18,8 +18,8 @@ namespace wellspring {
 namespace {
 
 constexpr double look_every = 0.05, save_every = 120, at_a_time = 1;  // seconds
-constexpr float better = 0.97f;         // of the last error
-constexpr uint32_t ahead = 16;          // passes, of what visitors look at
+constexpr float better = 0.97f;                                       // of the last error
+constexpr uint32_t ahead = 16;  // passes, of what visitors look at
 
 // Does the work on all cores, or on a thread to which others leave what they do not need.
 template <class Work>

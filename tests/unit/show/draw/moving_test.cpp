@@ -102,7 +102,8 @@ TEST_F(Moving, IsInWhatIsWarped) {
   EXPECT_GT(shown, 40);
   uint64_t warped = show->totals.warped, drawn = show->totals.drawn;
   ASSERT_TRUE(step_until([&] { return show->totals.warped > warped; }));
-  EXPECT_LE(show->totals.drawn, drawn + 1);
+  // One picture was under way, and a thread that is quicker than this one may draw another.
+  EXPECT_LE(show->totals.drawn, drawn + 2);
   step();
   EXPECT_NEAR(red_at(last_image(), here), shown, 8);
   EXPECT_FALSE(visitor().picture.backdrop);
