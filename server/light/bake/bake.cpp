@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "light/bake/lit_place.h"
+#include "light/walk/known_light.h"
 
 namespace wellspring {
 namespace {
@@ -347,15 +348,12 @@ std::vector<uint32_t> find_tiles(const World& world, const Bake& bake, std::span
   for (const Ray& ray : rays) {
     const Hit hit = world.intersect(ray);
     if (!hit.valid()) continue;
-    const bool front = dot(eval_face(world, hit.instance, hit.triangle), ray.direction) < 0;
-    const uint32_t found = places.find(hit.instance, hit.triangle, front);
-    if (found == no_chart) continue;
-    const IlluminationChart& chart = places.charts[found];
-    const vec2 at = place_in_chart(chart, ray.origin + hit.t * ray.direction);
-    const int column = glm::clamp(int(at.x), 0, chart.columns - 1),
-              row = glm::clamp(int(at.y), 0, chart.rows - 1);
-    const uint32_t tile = chart.first_tile + uint32_t(row * chart.columns + column);
-    if (bake.gather.tiles[tile].first != no_tile) tiles.push_back(tile);
+    const uint32_t chart = find_chart(places, world, ray, hit);
+    if (chart == no_chart) continue;
+    const std::vector<IlluminationTile>& all = bake.gather.tiles;
+    const vec3 place = ray.origin + hit.t * ray.direction;
+    const IlluminationTile* tile = find_tile(places.charts[chart], all, place).tile;
+    if (tile) tiles.push_back(uint32_t(tile - all.data()));
   }
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());

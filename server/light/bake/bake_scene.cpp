@@ -47,7 +47,7 @@ BakeScene make_bake_scene_of_paths(const World& world) {
 // The chart of what the walk met, where coarse light is known.
 static uint32_t find_known_chart(const BakeScene& scene, const Walk& walk, const Hit& hit) {
   if (!scene.known || walk.media.here.count > 0) return no_chart;
-  return find_chart(*scene.known, scene.world, walk.ray, hit);
+  return find_chart(*scene.known->places, scene.world, walk.ray, hit);
 }
 
 static void add_known_light(const BakeScene& scene, uint32_t number, const Ray& ray, const Hit& hit,

@@ -18,9 +18,7 @@ constexpr uint64_t places_seed = 0x68656c64, samples_seed = 0x6f7574;
 
 // False: no chart is there.
 bool describe(const World& world, const IlluminationCharts& charts, HeldOutPlace& place) {
-  const bool front =
-      dot(eval_face(world, place.hit.instance, place.hit.triangle), place.ray.direction) < 0;
-  place.chart = charts.find(place.hit.instance, place.hit.triangle, front);
+  place.chart = find_chart(charts, world, place.ray, place.hit);
   if (place.chart == no_chart) return false;
   const Surface surface = eval_surface(world, place.ray, place.hit);
   place.position = surface.position;

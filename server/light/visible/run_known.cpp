@@ -24,7 +24,7 @@ struct NodePlaces {
   float u[RunSurface::most], v[RunSurface::most];
 };
 
-// Where the light of a triangle lies; false: the charts do not have it.
+// Finds where the light of a triangle lies; false: the charts do not have it.
 bool place_light(const World& world, const IlluminationMap& map, Facet& f) {
   const IlluminationCharts& charts = *map.places;
   if (f.charts == &charts) return f.chart != no_chart;
@@ -40,7 +40,8 @@ bool place_light(const World& world, const IlluminationMap& map, Facet& f) {
   return true;
 }
 
-// Of eight pixels from `i` on, those `asked`, at places of a chart counted in tiles.
+// Finds the nodes of eight pixels from `i` on, of those `asked`, at places of a chart counted in
+// tiles.
 void place_nodes(const IlluminationMap& map, const IlluminationChart& chart, Lanes u, Lanes v,
                  const LaneMask& asked, int i, NodePlaces& to) {
   const Lanes zero{};
@@ -83,7 +84,7 @@ LaneBits gather_words(const uint32_t* from, const LaneBits& at) {
 #endif
 }
 
-// What nodes say of eight places.
+// The nodes around eight places, and how much each counts.
 struct NodeTaps {
   LaneBits node[4];
   Lanes weight[4];
@@ -142,7 +143,7 @@ struct Vectors {
   Lanes3 at(int i) const { return {load_lanes(x + i), load_lanes(y + i), load_lanes(z + i)}; }
 };
 
-// What is known of a run's pixels before light is read.
+// A run's pixels are described by this before light is read.
 struct Mapped {
   // A bit each: plain by their material; with a map of normals; of a bent chart.
   uint64_t pixels = 0, plain = 0, relief = 0, bent = 0;

@@ -96,8 +96,8 @@ struct VisibleRun::Impl {
     const int middle = std::min(i + lane_count / 2, end - 1);
     return pixel_width(f, run->depth[middle], direction(middle), blurred_angle) * f.relief.texels;
   }
-  // What a map of normals says of eight pixels; as if there were none where it is of floats, or
-  // read by the nearest texel.
+  // Reads a map of normals at eight pixels; as if there were none where it is of floats, or read by
+  // the nearest texel.
   Lanes3 read_relief(const PicturePlaces& places, const Material& m, float texels, int i,
                      int end) const;
   Lanes read_sheen(const RunSurface& surface, const Lanes3& slope, int i, float roughness) const;

@@ -26,15 +26,15 @@ bool passes(vec3 a, vec3 b, bool endless, vec3 centre, float radius) {
 
 }  // namespace
 
-uint32_t find_chart(const IlluminationMap& map, const World& world, const Ray& ray,
+uint32_t find_chart(const IlluminationCharts& charts, const World& world, const Ray& ray,
                     const Hit& hit) {
   if (world.is_moving(hit.instance)) return no_chart;
   bool front = dot(eval_face(world, hit.instance, hit.triangle), ray.direction) < 0;
-  return map.places->find(hit.instance, hit.triangle, front);
+  return charts.find(hit.instance, hit.triangle, front);
 }
 
 static uint32_t find_chart(const Transport& transport, const Ray& ray, const Hit& hit) {
-  return transport.maps ? find_chart(*transport.maps, transport.world, ray, hit) : no_chart;
+  return transport.maps ? find_chart(*transport.maps->places, transport.world, ray, hit) : no_chart;
 }
 
 bool has_known_light(const Transport& transport, const Ray& ray, const Hit& hit) {
@@ -75,7 +75,7 @@ bool find_kept_light(const Transport& transport, const Ray& ray, const Hit& hit,
                      vec3& light) {
   if (!transport.known) return false;
   const IlluminationMap& map = *transport.known;
-  const uint32_t chart = find_chart(map, transport.world, ray, hit);
+  const uint32_t chart = find_chart(*map.places, transport.world, ray, hit);
   if (chart == no_chart) return false;
   const vec3 place = ray.origin + hit.t * ray.direction;
   if (sharp && may_be_shaded(transport, place)) return false;

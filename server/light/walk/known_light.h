@@ -16,7 +16,8 @@ struct KnownLight {
   float raised = 0;  // Sample::raised
 };
 // The chart of what a ray has met, on the side that it came from; or no_chart.
-uint32_t find_chart(const IlluminationMap& map, const World& world, const Ray& ray, const Hit& hit);
+uint32_t find_chart(const IlluminationCharts& charts, const World& world, const Ray& ray,
+                    const Hit& hit);
 // Whether a map knows the light of what a ray has met, in air.
 bool has_known_light(const Transport& transport, const Ray& ray, const Hit& hit);
 // Of what a ray has met at `position` in air, as light falls on the mesh.

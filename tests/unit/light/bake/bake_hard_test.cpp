@@ -26,16 +26,21 @@ float light_seen(const World& world, const IlluminationMap& map, vec3 from, vec3
   return known.known ? luminance(known.light) : -1;
 }
 
+PunctualLight add_sun(Scene& scene, vec3 direction) {
+  PunctualLight sun;
+  sun.type = PunctualType::directional;
+  sun.direction = normalize(direction);
+  sun.intensity = vec3(3);
+  scene.lights.push_back(sun);
+  return sun;
+}
+
 // Nodes on a column are as wide as a quarter of it; light falls on each place as its own normal
 // faces.
 TEST(BakeHard, ACurvedSurfaceIsLitByItsOwnNormals) {
   Scene scene = empty_scene();
   add_mesh(scene, test::tube_mesh(add_material(scene, diffuse(vec3(0.5f))), 0.3f, 1, 48), "column");
-  PunctualLight sun;
-  sun.type = PunctualType::directional;
-  sun.direction = normalize(vec3(-1, 0, -0.3f));
-  sun.intensity = vec3(3);
-  scene.lights.push_back(sun);
+  const PunctualLight sun = add_sun(scene, vec3(-1, 0, -0.3f));
   Baked baked(scene, {.gather_nodes = 64, .direct_nodes = 64});
   auto map = baked.map(32);
   ASSERT_TRUE(map);
@@ -68,11 +73,7 @@ TEST(BakeHard, FlatFoldsAreLitEachByItsOwnNormal) {
     fold.triangles.push_back({n, n + 1, n + 2}), fold.triangles.push_back({n, n + 2, n + 3});
   }
   add_mesh(scene, fold, "fold");
-  PunctualLight sun;
-  sun.type = PunctualType::directional;
-  sun.direction = normalize(vec3(-0.5f, 0, -1));
-  sun.intensity = vec3(3);
-  scene.lights.push_back(sun);
+  const PunctualLight sun = add_sun(scene, vec3(-0.5f, 0, -1));
   Baked baked(scene, {.gather_nodes = 200, .direct_nodes = 200});
   auto map = baked.map(16);
   ASSERT_TRUE(map);

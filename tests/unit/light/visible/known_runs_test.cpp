@@ -29,6 +29,40 @@ Scene make_hall() {
   return scene;
 }
 
+// A pixel whose light the map knows, as it is drawn and as a sample of its place is told.
+struct KnownPixel {
+  Ray ray;
+  Hit hit;
+  Surface at;
+  vec3 drawn{0}, wanted{0};
+  bool is_off(float share) const { return !(length(drawn - wanted) < share * length(wanted)); }
+};
+// Calls visit(pixel) on any thread.
+template <class Visit>
+void for_each_known(const World& world, const IlluminationMap& map, const View& view,
+                    const Visit& visit) {
+  const Lights lights = make_lights(world);
+  const VisibilityPass visibility(world, lights);
+  Transport transport{world, *lights.tables};
+  transport.maps = &map;
+  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
+    RunSurface surface;
+    run.describe(~uint64_t(0) >> (64 - run.count), surface);
+    RunKnown told;
+    const uint64_t bits = run.known(map, surface, told);
+    for (int i = 0; i < run.count; i++) {
+      KnownPixel pixel;
+      pixel.ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
+      pixel.hit = world.intersect(pixel.ray);
+      if (!(bits >> i & 1) || !pixel.hit.valid()) continue;
+      pixel.at = eval_surface(world, pixel.ray, pixel.hit);
+      pixel.wanted = find_known_light(transport, pixel.ray, pixel.hit, pixel.at).unit;
+      pixel.drawn = vec3(told.red[i], told.green[i], told.blue[i]);
+      visit(pixel);
+    }
+  });
+}
+
 TEST(KnownRuns, AreLitAsThePlacesThatRaysMeet) {
   Scene scene = make_hall();
   scene.objects.push_back("moving");
@@ -106,36 +140,21 @@ TEST(KnownRuns, OnMapsOfNormalsAreLitAsSamplesAre) {
       for (float scale : {1.0f, 0.5f}) {
         ReliefWall wall(mirrored, scale);
         const World world(wall.scene);
-        const Lights lights = make_lights(world);
-        const VisibilityPass visibility(world, lights);
         IlluminationMap map =
             *test::paint_map(world, 0.1f, {[](vec3 p) { return vec3(1) + 0.2f * p; }});
         IlluminationNodes nodes = map.layers->front();
         nodes.slope.assign(nodes.light.size(), pack_slope({-0.6f, 0.5f, 0.4f}));
         map.layers = std::make_shared<std::vector<IlluminationNodes>>(1, nodes);
         map = sum_of_layers(std::move(map));
-        Transport transport{world, *lights.tables};
-        transport.maps = &map;
         const View view = make_view(wall.scene, {0, 0, 2.5 * double(side)}, side > 0 ? 0 : pi, 0,
                                     0.7f, width, height);
         std::atomic<int> judged = 0, differ = 0, turned = 0;
-        visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
-          RunSurface surface;
-          run.describe(~uint64_t(0) >> (64 - run.count), surface);
-          RunKnown told;
-          const uint64_t bits = run.known(map, surface, told);
-          for (int i = 0; i < run.count; i++) {
-            const Ray ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
-            const Hit hit = world.intersect(ray);
-            if (!(bits >> i & 1) || !hit.valid()) continue;
-            const Surface at = eval_surface(world, ray, hit);
-            if (std::abs(at.position.x) < 0.05f) continue;  // between the two
-            const vec3 wanted = find_known_light(transport, ray, hit, at).unit;
-            const vec3 off = vec3(told.red[i], told.green[i], told.blue[i]) - wanted;
-            judged++, differ += !(length(off) < 0.02f * length(wanted));
-            turned +=
-                std::abs(luminance(wanted) / luminance(vec3(1) + 0.2f * at.position) - 1) > 0.05f;
-          }
+        for_each_known(world, map, view, [&](const KnownPixel& pixel) {
+          const vec3 place = pixel.at.position;
+          if (std::abs(place.x) < 0.05f) return;  // between the two
+          judged++, differ += pixel.is_off(0.02f);
+          const float flat = luminance(vec3(1) + 0.2f * place);
+          turned += std::abs(luminance(pixel.wanted) / flat - 1) > 0.05f;
         });
         EXPECT_GT(judged, 2000);
         EXPECT_GT(turned, judged / 3) << "the map of normals makes a difference";
@@ -155,30 +174,14 @@ TEST(KnownRuns, OnBentMeshesAreLitAsSamplesAre) {
     test::Baked baked(scene, {.gather_nodes = 300, .direct_nodes = 300});
     const auto map = baked.map(4);
     ASSERT_TRUE(map && map->normals);
-    const Lights lights = make_lights(baked.world);
-    const VisibilityPass visibility(baked.world, lights);
-    Transport transport{baked.world, *lights.tables};
-    transport.maps = map.get();
     const View view = make_view(baked.scene, {0, 0, away}, 0, 0, 0.7f, width, height);
     std::atomic<int> judged = 0, differ = 0, turned = 0;
-    visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
-      RunSurface surface;
-      run.describe(~uint64_t(0) >> (64 - run.count), surface);
-      RunKnown told;
-      const uint64_t bits = run.known(*map, surface, told);
-      for (int i = 0; i < run.count; i++) {
-        const Ray ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
-        const Hit hit = baked.world.intersect(ray);
-        if (!(bits >> i & 1) || !hit.valid()) continue;
-        const Surface at = eval_surface(baked.world, ray, hit);
-        const vec3 wanted = find_known_light(transport, ray, hit, at).unit;
-        const vec3 off = vec3(told.red[i], told.green[i], told.blue[i]) - wanted;
-        const bool front = dot(eval_face(baked.world, 0, hit.triangle), ray.direction) < 0;
-        const uint32_t chart = map->places->find(0, hit.triangle, front);
-        const vec3 flat = eval_illumination(*map, map->places->charts[chart], at.position);
-        judged++, differ += !(length(off) < 0.02f * length(wanted));
-        turned += length(flat + vec3(map->least_known()) - wanted) > 0.05f * length(wanted);
-      }
+    for_each_known(baked.world, *map, view, [&](const KnownPixel& pixel) {
+      const uint32_t chart = find_chart(*map->places, baked.world, pixel.ray, pixel.hit);
+      const vec3 flat =
+          known_light(*map, eval_illumination(*map, map->places->charts[chart], pixel.at.position));
+      judged++, differ += pixel.is_off(0.02f);
+      turned += length(flat - pixel.wanted) > 0.05f * length(pixel.wanted);
     });
     EXPECT_GT(judged, 2000);
     EXPECT_GT(turned, judged / 20) << "the normals make a difference";
@@ -214,33 +217,16 @@ TEST(KnownRuns, OfManyKindsSideBySideAreLitAsSamplesAre) {
   test::Baked baked(scene, {.gather_nodes = 600, .direct_nodes = 1200});
   const auto map = baked.map(2);
   ASSERT_TRUE(map && map->normals);
-  const Lights lights = make_lights(baked.world);
-  const VisibilityPass visibility(baked.world, lights);
-  Transport transport{baked.world, *lights.tables};
-  transport.maps = map.get();
   const View view = make_view(baked.scene, {0, 0, 2.5}, 0, 0, 0.7f, width, height);
   std::atomic<int> judged[4] = {}, differ[4] = {}, turned[4] = {};
-  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
-    RunSurface surface;
-    run.describe(~uint64_t(0) >> (64 - run.count), surface);
-    RunKnown told;
-    const uint64_t bits = run.known(*map, surface, told);
-    for (int i = 0; i < run.count; i++) {
-      const Ray ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
-      const Hit hit = baked.world.intersect(ray);
-      if (!(bits >> i & 1) || !hit.valid()) continue;
-      const Surface at = eval_surface(baked.world, ray, hit);
-      const vec3 wanted = find_known_light(transport, ray, hit, at).unit;
-      const vec3 off = vec3(told.red[i], told.green[i], told.blue[i]) - wanted;
-      const uint32_t chart = map->places->find(hit.instance, hit.triangle, true);
-      const vec3 flat = eval_illumination(*map, map->places->charts[chart], at.position) +
-                        vec3(map->least_known());
-      const uint32_t kind = hit.instance % 4;
-      // A map's tangents are alike all over a triangle, which bent ones show.
-      const float most = kind == 3 ? 0.1f : 0.01f;
-      judged[kind]++, differ[kind] += !(length(off) < most * length(wanted));
-      turned[kind] += length(flat - wanted) > 0.01f * length(wanted);
-    }
+  for_each_known(baked.world, *map, view, [&](const KnownPixel& pixel) {
+    const uint32_t chart = find_chart(*map->places, baked.world, pixel.ray, pixel.hit);
+    const vec3 flat =
+        known_light(*map, eval_illumination(*map, map->places->charts[chart], pixel.at.position));
+    const uint32_t kind = pixel.hit.instance % 4;
+    // A map's tangents are alike all over a triangle, which bent ones show.
+    judged[kind]++, differ[kind] += pixel.is_off(kind == 3 ? 0.1f : 0.01f);
+    turned[kind] += length(flat - pixel.wanted) > 0.01f * length(pixel.wanted);
   });
   for (int kind = 0; kind < 4; kind++) {
     EXPECT_GT(judged[kind], 300) << kind;

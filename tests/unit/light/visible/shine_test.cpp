@@ -7,6 +7,7 @@
 #include "light/known/skin_light.h"
 #include "light/visible/visibility.h"
 #include "scenes/scenes.h"
+#include "unit/light/bake/bake_cases.h"
 
 namespace wellspring {
 namespace {
@@ -102,11 +103,7 @@ TEST(Shine, ALampThatIsSeenGlintsWhereItIsMirrored) {
 
 TEST(Shine, ALampWithoutSizeGlintsToo) {
   Eyeball eye;
-  PunctualLight lamp;
-  lamp.type = PunctualType::point;
-  lamp.position = lamp_place;
-  lamp.intensity = vec3(3);
-  eye.scene.lights.push_back(lamp);
+  eye.scene.lights.push_back(test::point_light(lamp_place, vec3(3)));
   eye.begin(0.05f);
   expect_follows(eye);
   // Its energy: a ball mirrors F r^2 / 4 of the irradiance into each direction, whatever size
@@ -122,11 +119,7 @@ TEST(Shine, ALampWithoutSizeGlintsToo) {
 // Rougher gloss shows the light that is kept, and no lamp.
 TEST(Shine, RoughGlossHasNoGlint) {
   Eyeball eye;
-  PunctualLight lamp;
-  lamp.type = PunctualType::point;
-  lamp.position = lamp_place;
-  lamp.intensity = vec3(3);
-  eye.scene.lights.push_back(lamp);
+  eye.scene.lights.push_back(test::point_light(lamp_place, vec3(3)));
   eye.begin(0.5f);
   EXPECT_FALSE(eye.highlight(eye.view_from({0, 0, 1.2f})).z > 0);  // nothing is kept yet
 }
