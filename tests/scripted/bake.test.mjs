@@ -5,7 +5,7 @@ import { existsSync, mkdirSync, mkdtempSync, rmSync, statSync, writeFileSync } f
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
-import { run, start_server, until } from '../server.mjs';
+import { run, source, start_server, until } from '../server.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-bake-'));
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -78,6 +78,13 @@ test('bakes, goes on and keeps what servers look for', async () => {
   const said = await check(floor);
   assert.match(said.stdout, /light\.maps: is stale: .*wellspring bake/);
   assert.ok(passes_of(changed) < passes_of(later));
+});
+
+test('the light of both exhibits is of their scenes as they are', async () => {
+  for (const name of ['castle', 'first-room']) {
+    const said = await check(join(source, 'content', name));
+    assert.match(said.stdout, /good, 0 notes/);
+  }
 });
 
 test('shards are merged into one', async () => {
