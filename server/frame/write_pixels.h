@@ -17,16 +17,6 @@ inline void interleave(const HalfLanes& r, const HalfLanes& g, const HalfLanes& 
   store_lanes(to + 4, __builtin_shufflevector(middle, high, 0, 1, 4, 5));
   store_lanes(to + 8, __builtin_shufflevector(high, b, 6, 2, 3, 7));
 }
-// Eight pixels' channels, which lie one after the other.
-inline void deinterleave(const float* from, Lanes& r, Lanes& g, Lanes& b) {
-  Lanes first = load_lanes(from), second = load_lanes(from + 8), third = load_lanes(from + 16);
-  r = __builtin_shufflevector(first, second, 0, 3, 6, 9, 12, 15, 0, 0);
-  g = __builtin_shufflevector(first, second, 1, 4, 7, 10, 13, 0, 0, 0);
-  b = __builtin_shufflevector(first, second, 2, 5, 8, 11, 14, 0, 0, 0);
-  r = __builtin_shufflevector(r, third, 0, 1, 2, 3, 4, 5, 10, 13);
-  g = __builtin_shufflevector(g, third, 0, 1, 2, 3, 4, 8, 11, 14);
-  b = __builtin_shufflevector(b, third, 0, 1, 2, 3, 4, 9, 12, 15);
-}
 template <int First>
 HalfLanes part(const Lanes& v) {
   return __builtin_shufflevector(v, v, First, First + 1, First + 2, First + 3);

@@ -9,7 +9,6 @@
 #include "picture/drawn_planes.h"
 #include "picture/drawn_run.h"
 #include "picture/nearby_light.h"
-#include "picture/object_light.h"
 #include "picture/own_light.h"
 #include "picture/soften_edges.h"
 
@@ -23,10 +22,6 @@ constexpr float moving_prior_variance = 3;
 constexpr float still_told =
     0.4f;  // at rest: guessed share of the light at which prior variance begins
 constexpr float smooth_prior_variances = 4;  // of these, for smooth light, where chance is larger
-// Of what is so narrow that no cell stands for it: samples that count as much as its surroundings
-// do, in moving pictures and in those at rest; and how much the cells beside it count for that show
-// other objects: nothing to speak of, where any around shows the same.
-constexpr float thin_prior_weight = 1, still_prior_weight = 0.5f, other_object = 1e-4f;
 Lanes under(const Lanes& light, const Lanes& albedo, const Lanes& theirs) {
   return light * rest_ratio(albedo, theirs);
 }
@@ -82,103 +77,46 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
             keep_lanes(same, under(light.b, d.albedo.b, theirs.b))};
 }
 
-// Lit as what is around: the same object, as far as it shows there, else others. Returns whom that
-// told.
-template <class Cell>
-LaneMask light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
-                             const Lanes* weights, const LaneMask& lit, const LaneMask& mirrors,
-                             const Pixels& p, const Lanes& prior_weight, Surroundings& s) {
-  Surroundings a;
-  Lanes used = add_object_light(cells, at, p, lit, mirrors, LightOf::same_object, a);
-  for (int k = 0; k < 4; k++) {
-    const Cell& corner = *corners[k];
-    WideCell c;
-    for (int n = 0; n < 3; n++) {
-      c.smooth[n] = Lanes{} + corner.smooth[n], c.rest[n] = Lanes{} + corner.rest[n];
-      c.albedo[n] = Lanes{} + corner.albedo[n];
-    }
-    c.prior_weight = c.detail = c.noise = Lanes{};
-    // What mirrors show is no light that falls there, and what lamps and the sky emit light with is
-    // neither.
-    LaneMask dark = c.albedo[0] + c.albedo[1] + c.albedo[2] < no_reflectance;
-    Lanes weight = keep_lanes(~dark & (p.object != corner.object), other_object * weights[k]);
-    for (int n = 0; n < 3; n++) c.rest[n] = lanes_min(c.rest[n], most_rest * c.smooth[n]);
-    add(a, weight, c);
-    used += weight;
-  }
-  LaneMask untold = lit & (used <= 0.0f);
-  if (any_lane(untold))
-    used += add_object_light(cells, at, p, untold, mirrors, LightOf::any_object, a);
-  LaneMask told = lit & (used > 0.0f);
-  Lanes share = 1.0f / lanes_max(used, all_lanes(1e-9f));
-  auto take = [&](Lanes& to, const Lanes& from) { to = told ? from : to; };
-  auto take_color = [&](Color& to, const Color& from) {
-    take(to.r, from.r * share), take(to.g, from.g * share), take(to.b, from.b * share);
-  };
-  take_color(s.smooth, a.smooth), take_color(s.rest, a.rest), take_color(s.albedo, a.albedo);
-  // Whatever its own points say beyond that is detail.
-  take(s.prior_weight, prior_weight), take(s.detail, all_lanes(1e6f)), take(s.noise, Lanes{});
-  s.lonely &= ~told;
-  return told;
-}
-
 // The light of a lamp does not end where a picture on the wall does.
-void light_as(Surroundings& around, const LaneMask& mirrors, const Lanes& prior_variances,
-              Drawn& d) {
-  auto rest = [&](const Lanes& rest, const Lanes& smooth, const Lanes& albedo,
-                  const Lanes& theirs) {
-    return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
-  };
-  around.rest = {rest(around.rest.r, around.smooth.r, d.albedo.r, around.albedo.r),
-                 rest(around.rest.g, around.smooth.g, d.albedo.g, around.albedo.g),
-                 rest(around.rest.b, around.smooth.b, d.albedo.b, around.albedo.b)};
-  blend_light(around, d.pixels, prior_variances);
+void light_as(const Surroundings& around, const Lanes& prior_variances, Drawn& d) {
+  Surroundings s = around;
+  s.rest = {under(s.rest.r, d.albedo.r, s.albedo.r), under(s.rest.g, d.albedo.g, s.albedo.g),
+            under(s.rest.b, d.albedo.b, s.albedo.b)};
+  blend_light(s, d.pixels, prior_variances);
 }
 
 // `asked`: lanes that matter.
 template <class Cell, class FindNearby>
-void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
-                 const LaneMask& flat, const Lanes* weights, float prior_variance,
-                 float thin_prior_variance, const LaneMask& asked, const FindNearby& find_nearby,
+void light_group(const Cell* const* corners, const LaneMask& flat, const Lanes* weights,
+                 float prior_variance, const LaneMask& asked, const FindNearby& find_nearby,
                  Drawn& d) {
-  Surroundings around = look_around(corners, flat, weights, d.pixels);
+  Pixels& p = d.pixels;
+  Surroundings around = look_around(corners, flat, weights, p);
   // Where nothing of the surface has a point, and a map knows its light, there is nothing to
   // search.
-  const LaneMask untold = d.mapped & around.lonely & (d.pixels.samples <= 0.0f);
-  LaneMask lonely = asked & around.lonely & ~untold,
-           unsure = asked & (around.known < 1.0f) & ~untold;
+  const LaneMask untold = d.mapped & around.lonely & (p.samples <= 0.0f),
+                 unsure = asked & (around.known < 1.0f) & ~untold;
+  const Lanes known = unsure ? (around.lonely ? Lanes{} : around.known) : all_lanes(1);
   around.lonely = LaneMask{};
   Lanes prior_variances = all_lanes(prior_variance);
   around.prior_weight = lanes_max(around.prior_weight, smooth_prior_variances * prior_variances);
-  auto show_map = [&] {
-    light_as_mapped(untold, d.pixels);
-    for (Lanes* channel : {&d.pixels.rest.r, &d.pixels.rest.g, &d.pixels.rest.b})
-      *channel = untold ? Lanes{} : *channel;
-  };
-  if (!any_lane(unsure)) {
-    light_as(around, LaneMask{}, prior_variances, d);
-    return show_map();
-  }
-  // Narrow things have few points of their own: what these say is weighed against what is around.
-  // Between those and others light passes gradually.
   Drawn thin = d;
-  Surroundings theirs = around;
-  theirs.lonely = unsure;
-  find_nearby(unsure, thin);
-  LaneMask mirrors = unsure & (d.albedo.r + d.albedo.g + d.albedo.b < no_reflectance);
-  Lanes prior_weight = all_lanes(thin_prior_variance);
-  LaneMask told = light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels,
-                                      prior_weight, theirs);
-  light_as(theirs, mirrors, told ? prior_weight : prior_variances, thin);
-  light_as(around, LaneMask{}, prior_variances, d);
-  Lanes known = unsure ? (lonely ? Lanes{} : around.known) : all_lanes(1);
-  Pixels &p = d.pixels, &q = thin.pixels;
-  // Where no point of the surface says otherwise, light is what the map says.
-  light_as_mapped(d.mapped & (q.samples <= 0.0f), q);
-  p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
-  p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
-  p.samples = lonely ? q.samples : p.samples;
-  show_map();
+  light_as(around, prior_variances, d);
+  if (any_lane(unsure)) {
+    // Narrow things are lit by points of their own, found around. Between those and others light
+    // passes gradually.
+    find_nearby(unsure, thin);
+    around.lonely = unsure;
+    light_as(around, prior_variances, thin);
+    const Pixels& q = thin.pixels;
+    // Where no point of the surface says otherwise, light is what the map says.
+    light_as_mapped(d.mapped & (q.samples <= 0.0f), thin.pixels);
+    p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
+    p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
+    p.samples = known > 0.0f ? p.samples : q.samples;
+  }
+  light_as_mapped(untold, p);
+  for (Lanes* channel : {&p.rest.r, &p.rest.g, &p.rest.b}) *channel = keep_lanes(~untold, *channel);
 }
 
 // All that pixels are lit by, and where in them they are seen.
@@ -191,9 +129,8 @@ struct Composer {
   const Frame& light;
   PixelRays rays, light_rays;
   vec2 offset{0.5f};
-  float prior_variance = moving_prior_variance, thin = thin_prior_weight;
-  int left = 0, top = 0;  // where in the picture the light's begins, whole groups
-  float own_counts = 1;   // samples of a pixel's own point, each
+  float prior_variance = moving_prior_variance;
+  float own_counts = 1;  // samples of a pixel's own point, each
   KeptLight kept = {};
   bool passing = false;  // what maps say all of is not asked of points: the picture is soon another
   Shade shade = {};
@@ -214,7 +151,7 @@ struct Composer {
 template <int Scale>
 const CellRows<Scale>& Composer<Scale>::rows_around(const VisibleRun& run) const {
   thread_local CellRows<Scale> rows;
-  int by = (run.y - top + half_group) / group, bx = (run.x - left) / group;  // the lower right cell
+  int by = (run.y + half_group) / group, bx = run.x / group;  // the lower right cell
   int count = parts_of(run) * together<Scale> + 1;
   if (rows.picture != run.picture || rows.first != bx - 1 || rows.row != by - 1 ||
       rows.count < count)
@@ -269,22 +206,20 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
   q.normal2 = lanes_max(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, all_lanes(1e-30f));
   q.x = rays.x(float(x) + offset.x) + rays.inverse_focal * lane;
   q.y = all_lanes(rays.y(float(run.y) + offset.y));
-  int lx = (x - left + half_group) / Scale + packed_start, ly = (run.y - top) / Scale;
+  int lx = (x + half_group) / Scale + packed_start, ly = run.y / Scale;
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
   const CellRows<Scale>& rows = *read;
   constexpr Lanes across = group == lane_count ? lane : Lanes{0, 1, 2, 3, 0, 1, 2, 3};
   const Lanes fx = (across + 0.5f) * (1.0f / group);
-  float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
+  float fy = (float(run.y - (rows.row + 1) * group + half_group) + 0.5f) / group;
   Lanes weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
   const int g = n * together<Scale>;
   using Cell = typename CellRows<Scale>::Cell;
   const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g), &rows.at(1, g + 1)};
   auto find_nearby = [&](const LaneMask& lonely, Drawn& of) { light_thin(lonely, lx, ly, of); };
-  constexpr Lanes beside = together<Scale> == 1 ? Lanes{} : Lanes{0, 0, 0, 0, 1, 1, 1, 1};
-  CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
-  light_group(cells, at, corners, rows.flat[g], weights, prior_variance, thin,
+  light_group(corners, rows.flat[g], weights, prior_variance,
               lanes_of_bits(part.bits() & ~bits_at(emitting.only, i)), find_nearby, d);
 }
 
@@ -373,7 +308,9 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const V
     composer.kept = kept;
     composer.passing = true;
     composer.shade = Shade(view, visibility.moving_bounds());
-    auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
+    auto differ = [&planes](uint32_t pixel, uint32_t step, int count) {
+      return planes.differ(pixel, step, count);
+    };
     return visibility.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
                                 differ);
   };
@@ -431,8 +368,7 @@ void compose_still(const View& view, const VisibilityPass& visibility, vec2 offs
                         PixelRays(view),
                         PixelRays(view),
                         offset,
-                        still_prior_variance(guessed),
-                        still_prior_weight};
+                        still_prior_variance(guessed)};
   composer.kept = kept;
   FramePlanes planes{frame};
   visibility.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
@@ -450,8 +386,7 @@ std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
                         PixelRays(view),
                         PixelRays(view),
                         vec2(0.5f),
-                        still_prior_variance(guessed),
-                        still_prior_weight};
+                        still_prior_variance(guessed)};
   composer.kept = kept;
   return see_moving(view, visibility, {0, 0, view.width, view.height},
                     taker(composer, NearerPlanes{frame}));

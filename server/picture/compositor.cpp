@@ -11,6 +11,7 @@
 #include "picture/read_surface.h"
 #include "picture/relight.h"
 #include "picture/soften_edges.h"
+#include "picture/still/mean_share.h"
 
 namespace wellspring {
 
@@ -18,7 +19,7 @@ namespace wellspring {
 static constexpr int few_samples = 4;
 
 size_t memory_bytes(const CompositorWork& work) {
-  return memory_bytes(work.light) + memory_bytes(work.correction) + bytes_of(work.peaks);
+  return memory_bytes(work.light) + bytes_of(work.peaks, work.shares);
 }
 
 Compositor::Compositor(std::shared_ptr<CompositorWork> shared)
@@ -111,7 +112,7 @@ void Compositor::draw_still(RenderCache& cache, const View& view, const Visibili
     if (corrects) wellspring::invalidate_samples(still_, samples_);
     accumulate_drawn([&](uint32_t object) { return visibility.moves(object); }, changes, pictures_,
                      still_, frame);
-    if (corrects) correct_still(samples_, still_, work_->correction, frame);
+    if (corrects) mix_in_means(samples_, {view.width, view.height}, work_->shares, frame.color);
     soften_edges(edges, frame.color);
   });
 }

@@ -12,7 +12,6 @@
 #include "light/visible/visibility.h"
 #include "picture/cells.h"
 #include "picture/compose_drawn.h"
-#include "picture/still/correct_still.h"
 #include "picture/still/still_image.h"
 #include "picture/still/still_samples.h"
 
@@ -28,9 +27,9 @@ enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what mo
 // What a picture needs and nobody afterwards. Those that are never under way at the same time may
 // share it.
 struct CompositorWork {
-  Frame light;  // packed (picture/surface_image.h)
-  StillCorrection correction;
+  Frame light;                 // packed (picture/surface_image.h)
   std::vector<uint8_t> peaks;  // of a picture for the eye: light beyond white
+  std::vector<float> shares;   // of a picture at rest: picture/still/mean_share.h
 };
 size_t memory_bytes(const CompositorWork& work);
 
@@ -73,7 +72,8 @@ class Compositor {
                    std::span<const Sample> samples);
   void invalidate_samples();  // other light
   // Pictures at rest serve as what reconstruction begins with (picture/still/reconstruct_still.h):
-  // they are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
+  // means of samples are not mixed into them, and while a pixel has few of these, aimed ones count,
+  // too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which
   // `backdrop` is the keyframe; in the light that is kept on its skin, and that of set_dynamic().

@@ -29,8 +29,13 @@ struct LanePart {
 // All planes of a frame.
 struct FramePlanes {
   Frame& frame;
-  int differ(uint32_t pixel, uint32_t other) const {
-    return frame.color[pixel] == frame.color[other] ? 0 : 1 << 16;  // light knows no white
+  Lanes differ(uint32_t pixel, uint32_t step, int count) const {
+    Lanes codes{};
+    for (int k = 0; k < count; k++) {
+      const size_t at = pixel + size_t(k);
+      codes[k] = frame.color[at] == frame.color[at + step] ? 0 : 1 << 16;  // light knows no white
+    }
+    return codes;
   }
   void put(size_t at, LanePart part, const Shown& s) const {
     float cut[3 * lane_count], *color = part.all() ? &frame.color[at].x : cut;
@@ -88,12 +93,21 @@ struct EyePlanes {
   uint8_t *rgb, *peaks;  // codes of what is shown, and eval_peak_codes() of its light
   float* depth;          // null: not wanted
   // In codes, of which light beyond white has more than they show.
-  int differ(uint32_t pixel, uint32_t other) const {
-    const uint8_t *a = rgb + 3 * size_t(pixel), *b = rgb + 3 * size_t(other);
-    int most = 0;
-    for (int k = 0; k < 3; k++) most = std::max(most, std::abs(a[k] - b[k]));
-    float peak = peak_of(std::max(peaks[pixel], peaks[other]));
-    return peak > 1 ? int(float(most) * peak) : most;
+  Lanes differ(uint32_t pixel, uint32_t step, int count) const {
+    uint8_t one[3 * lane_count] = {}, other[3 * lane_count] = {}, peak[lane_count] = {};
+    const uint8_t *a = rgb + 3 * size_t(pixel), *b = a + 3 * size_t(step);
+    std::memcpy(one, a, 3 * size_t(count)), std::memcpy(other, b, 3 * size_t(count));
+    for (int i = 0; i < 3 * lane_count; i++)
+      one[i] = std::max(one[i], other[i]) - std::min(one[i], other[i]);
+    for (int k = 0; k < count; k++)
+      peak[k] = std::max(peaks[pixel + uint32_t(k)], peaks[pixel + step + uint32_t(k)]);
+    Lanes codes;
+    for (int k = 0; k < lane_count; k++)
+      codes[k] = std::max({one[3 * k], one[3 * k + 1], one[3 * k + 2]});
+    if (peak_of(*std::max_element(peak, peak + lane_count)) <= 1) return codes;
+    for (int k = 0; k < lane_count; k++)
+      codes[k] = std::floor(codes[k] * std::max(peak_of(peak[k]), 1.0f));
+    return codes;
   }
   void put(size_t at, LanePart part, const Shown& s) const {
     const Color& c = s.color;

@@ -76,13 +76,6 @@ TexturePyramid make_pyramid(const Image& image) {
   return pyramid;
 }
 
-// The logarithm of the width to base 2, rounded: the exponent of the width over the root of one
-// half.
-int pyramid_level(float texels) {
-  int level = int(std::bit_cast<uint32_t>(texels * 1.41421356f) >> 23 & 255) - 127;
-  return texels > 1 ? level : 0;
-}
-
 namespace {
 
 LaneMask gather(const void* from, LaneMask index) {

@@ -2,6 +2,7 @@
 // Pictures made smaller beforehand (Williams, "Pyramidal Parametrics", 1983), for those who look
 // once a pixel: what is far away neither sparkles nor costs a cache miss a texel.
 #pragma once
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -26,7 +27,12 @@ TexturePyramid make_pyramid(const Image& image);
 
 // Which of the levels is read by a pixel that is `texels` texels of the picture wide; 0: the
 // picture itself.
-int pyramid_level(float texels);
+inline int pyramid_level(float texels) {
+  // The logarithm of the width to base 2, rounded: the exponent of the width over the root of one
+  // half.
+  int level = int(std::bit_cast<uint32_t>(texels * 1.41421356f) >> 23 & 255) - 127;
+  return texels > 1 ? level : 0;
+}
 
 // Linear RGB at (u, v) as seen by a pixel that is `texels` texels of the picture wide. As
 // eval_texture() where that is less than about one and a half.

@@ -60,7 +60,8 @@ Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 
   if (placed.apart) place = mat3(placed.to_world) * place + (vec3(placed.to_world[3]) - eye);
   else if (placed.in_place) place -= eye;
   else place = vec3(placed.to_world * vec4(place, 1)) - eye;
-  f.front = dot(f.face, place) <= 0;
+  const float beyond = dot(f.face, place);
+  f.front = beyond <= 0, f.plane_distance = std::abs(beyond);
   for (int k = 0; k < 3; k++) {
     vec3 n = mesh.normals[f.corner[k]];
     f.normal[k] = placed.in_place ? n : placed.normal_to_world * n;

@@ -17,9 +17,10 @@ struct Facet {
   const PlacedMesh* placed = nullptr;
   const Material* material = nullptr;
   uvec3 corner{0};
-  vec3 normal[3];       // of the mesh at the corners, world, not unit, on the winding's side
-  vec3 face{0};         // geometric, unit, on the winding's side
-  float root_area = 0;  // of the face, metres
+  vec3 normal[3];            // of the mesh at the corners, world, not unit, on the winding's side
+  vec3 face{0};              // geometric, unit, on the winding's side
+  float root_area = 0;       // of the face, metres
+  float plane_distance = 0;  // from the eye to the plane it lies in, metres
   bool one_normal = false;
   bool front = false;  // the eye is on the winding's side
   // Base colour; metallic and roughness, of what may be metal, or once place_shine() was called.
@@ -55,7 +56,7 @@ class FacetCache {
   }
 
  private:
-  static constexpr int bits = 7;
+  static constexpr int bits = 9;
   uint64_t picture_ = ~uint64_t(0);
   Facet facets_[1 << bits];
 };

@@ -55,12 +55,6 @@ Pictures make_pictures(const Scene& scene) {
   return pictures;
 }
 
-float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle) {
-  float length = std::sqrt(dot(direction, direction));
-  float cosine = std::abs(dot(f.face, direction)) / length;
-  return depth * length * pixel_angle / std::sqrt(std::max(cosine, 0.02f));
-}
-
 PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
                      MetalDemodulation metal, const Hit& hit, float pixel) {
   const Material& m = *f.material;

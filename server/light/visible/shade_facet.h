@@ -2,6 +2,8 @@
 // What one pixel sees of the triangle it shows (light/visible/facet.h), pictures averaged over the
 // pixel.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "light/visible/facet.h"
@@ -21,9 +23,11 @@ struct Pictures {
 // All cores.
 Pictures make_pictures(const Scene& scene);
 
-// A pixel's width in metres on the surface it sees: the root of its area there. `direction` leads
-// to it at depth 1.
-float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle);
+// A pixel's width in metres on the surface it sees: the root of its area there.
+inline float pixel_width(const Facet& f, float distance, float pixel_angle) {
+  const float cosine = f.plane_distance / distance;
+  return distance * pixel_angle / std::sqrt(std::max(cosine, 0.02f));
+}
 
 inline bool emits(const Facet& f) {
   return (f.front || f.material->double_sided) && f.material->emission != vec3(0);

@@ -90,8 +90,7 @@ class VisibilityPass {
   // RasterSettings has it.
   std::span<const std::vector<EdgeShare>> see_edges(
       const View& view, vec2 offset, const std::function<void(const VisibleRun&)>& take,
-      RasterShows shows = RasterShows::all,
-      std::function<int(uint32_t pixel, uint32_t other)> differ = {}) const;
+      RasterShows shows = RasterShows::all, PixelsDiffer differ = {}) const;
   // Has anything highlights?
   bool any_gloss() const;
   // Is it of a mesh that moves?

@@ -86,6 +86,12 @@ struct VisibleRun::Impl {
     float x = float(run->x + i) + offset.x - axis.x, y = axis.y - float(run->y) - offset.y;
     return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
   }
+  // From the eye to what pixel i shows.
+  float distance(int i) const {
+    const vec2 axis = axis_place(view);
+    const vec2 aside = pixel_angle * (vec2(float(run->x + i), float(run->y)) + offset - axis);
+    return run->depth[i] * std::sqrt(1 + dot(aside, aside));
+  }
   Facet& facet(int i) const {
     return facets.find(visibility.world, run->instance[i], run->triangle[i], view.position);
   }
@@ -94,7 +100,7 @@ struct VisibleRun::Impl {
   // Across pixels from `i` on, those before `end`, of the facet's map of normals.
   float relief_texels(const Facet& f, int i, int end) const {
     const int middle = std::min(i + lane_count / 2, end - 1);
-    return pixel_width(f, run->depth[middle], direction(middle), blurred_angle) * f.relief.texels;
+    return pixel_width(f, distance(middle), blurred_angle) * f.relief.texels;
   }
   // Reads a map of normals at eight pixels; as if there were none where it is of floats, or read by
   // the nearest texel.

@@ -110,7 +110,7 @@ bool VisibleRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) 
     if (!alone && (base || shine)) {
       Lanes a = load_lanes(run->u + i), b = load_lanes(run->v + i);
       int middle = std::min(i + lane_count / 2, end - 1);
-      float width = pixel_width(f, run->depth[middle], direction(middle), blurred_angle);
+      float width = pixel_width(f, distance(middle), blurred_angle);
       if (base) to.base.put(f.base, a, b, i), s.base_texels = width * f.base.texels;
       if (shine) to.shine.put(f.shine, a, b, i), s.emission_texels = width * f.shine.texels;
     }
@@ -198,7 +198,7 @@ void VisibleRun::gloss(uint32_t* codes, uint8_t* metallic) const {
     if (!impl_->visibility.glossy[size_t(f.placed->mesh->material)]) continue;
     place_shine(impl_->visibility.world, f);
     for (int i = begin; i < r.end[p]; i++) {
-      const float width = pixel_width(f, r.depth[i], impl_->direction(i), impl_->blurred_angle);
+      const float width = pixel_width(f, impl_->distance(i), impl_->blurred_angle);
       Gloss gloss = see_gloss(impl_->visibility.pictures, f, {r.u[i], r.v[i]}, width);
       if (r.veil) gloss.f0 *= r.veil[i].tint;
       const GlossCode packed = pack_gloss(gloss);
@@ -223,7 +223,7 @@ PrimaryHit VisibleRun::Impl::see(int i) const {
       wellspring::see(visibility.world, visibility.lights, std::span(&ray, 1), std::span(&seen, 1));
       return seen;
     }
-    float pixel = pixel_width(f, run->depth[i], direction(i), blurred_angle);
+    float pixel = pixel_width(f, distance(i), blurred_angle);
     seen = see_facet(visibility.pictures, visibility.world, f,
                      visibility.metal_of(f.placed->mesh->material), hit, pixel);
   }
@@ -255,7 +255,7 @@ void VisibilityPass::see(const View& view, vec2 offset,
 
 std::span<const std::vector<EdgeShare>> VisibilityPass::see_edges(
     const View& view, vec2 offset, const std::function<void(const VisibleRun&)>& take,
-    RasterShows shows, std::function<int(uint32_t, uint32_t)> differ) const {
+    RasterShows shows, PixelsDiffer differ) const {
   RasterSettings settings;
   settings.shows = shows;
   settings.offset = offset;

@@ -2,9 +2,8 @@
 // The picture of a view that stands still, from few samples a pixel: learned reconstruction
 // (denoise/denoise.h) of their means; a picture that was drawn in remembered light counts as half a
 // sample of each pixel, and stands where there is none yet. (Half the resolution while samples are
-// fewer than pixels has more error: castle, 0.35 samples a pixel, FLIP 0.177 for 0.161.) The more
-// samples there are, the more of their plain mean the picture is: each region takes the share that
-// has less error by their noise, so that the picture becomes the reference.
+// fewer than pixels has more error: castle, 0.35 samples a pixel, FLIP 0.177 for 0.161.) Their
+// plain mean takes over as samples become many (picture/still/mean_share.h).
 //
 // begin -> Denoiser::advance() until done -> finish. Memory is borrowed from one picture to the
 // next.

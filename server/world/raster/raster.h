@@ -54,10 +54,8 @@ struct RasterSettings {
   // direction: of a ray from the eye that meets it there. Needed where there is one. Several before
   // one place are put together in no order.
   std::function<Veil(const Hit& hit, vec3 direction)> veil;
-  bool edges = false;  // find Raster::edges()
-  // Of two neighbouring pixels that have been taken: by how many codes of 255 they differ. Asked by
-  // many threads; edges that change less than a code or two are left out. Without it none is.
-  std::function<int(uint32_t pixel, uint32_t other)> differ;
+  bool edges = false;   // find Raster::edges()
+  PixelsDiffer differ;  // of pixels that have been taken; asked by many threads
   RasterShows shows = RasterShows::all;
 };
 

@@ -47,8 +47,8 @@ template <class TriangleOf>
 struct EdgeFinder {
   const SurfaceWalk& walk;
   const RasterView& view;
-  int columns;                                           // of tiles
-  const std::function<int(uint32_t, uint32_t)>& differ;  // RasterSettings'
+  int columns;  // of tiles
+  const PixelsDiffer& differ;
   std::span<const TilePixels> tiles;
   TriangleOf triangle_of;  // of a number in the tiles
 
@@ -65,13 +65,17 @@ struct EdgeFinder {
           LaneMask here, there;
           std::memcpy(&here, row + x, sizeof here);
           std::memcpy(&there, row + x + next, sizeof there);
-          unsigned differ = negative_lanes(here != there);
+          unsigned asked = negative_lanes(here != there);
+          const int first = y * tile_width + x, count = std::min(pairs - x, lane_count);
           bool inside = vertical ? y > 0 && y + 2 < size.y : x > 0 && x + lane_count < pairs;
-          if (differ && inside) differ &= ~smooth_pairs(pixels, y * tile_width + x, next);
-          if (pairs - x < lane_count) differ &= (1u << (pairs - x)) - 1;
-          for (; differ != 0; differ &= differ - 1) {
-            int place = y * tile_width + x + __builtin_ctz(differ);
-            look(tile, place, tile, place + next, vertical, found);
+          if (asked && inside) asked &= ~smooth_pairs(pixels, first, next);
+          asked &= (1u << count) - 1;
+          if (!asked) continue;
+          const Lanes codes = codes_between(pixel_at(tile, first), vertical, count);
+          asked &= negative_lanes(LaneMask(codes > alike)) | thin_pairs(pixels, first, next);
+          for (; asked != 0; asked &= asked - 1) {
+            const int k = __builtin_ctz(asked);
+            look(tile, first + k, tile, first + k + next, vertical, codes[k], found);
           }
         }
       }
@@ -86,14 +90,27 @@ struct EdgeFinder {
   }
 
  private:
+  using Kinds = uint16_t __attribute__((vector_size(2 * lane_count)));
+
+  uint32_t pixel_at(int tile, int place) const {
+    const ivec2 at = corner_of(tile) + ivec2(place % tile_width, place / tile_width);
+    return uint32_t(at.y * view.width + at.x);
+  }
+  Lanes codes_between(uint32_t pixel, bool vertical, int count) const {
+    return differ ? differ(pixel, vertical ? uint32_t(view.width) : 1, count) : all_lanes(INFINITY);
+  }
+  // Of eight pixels from `place` on, those that are thin like the next.
+  unsigned thin_pairs(const TilePixels& pixels, int place, int next) const {
+    const Kinds both =
+        load_lanes<Kinds>(pixels.kind + place) & load_lanes<Kinds>(pixels.kind + place + next);
+    return negative_lanes(__builtin_convertvector(both, LaneMask) << 16);
+  }
   // Of eight pixels from `place` on, those that lie with the next and the ones before and behind on
   // one instance's smooth surface: inverse depths of planes have no second differences, and a bend
   // shows in two of them.
   unsigned smooth_pairs(const TilePixels& pixels, int place, int next) const {
-    using Kinds = uint16_t __attribute__((vector_size(2 * lane_count)));
-    Kinds kind, next_kind;
-    std::memcpy(&kind, pixels.kind + place, sizeof kind);
-    std::memcpy(&next_kind, pixels.kind + place + next, sizeof next_kind);
+    const Kinds kind = load_lanes<Kinds>(pixels.kind + place),
+                next_kind = load_lanes<Kinds>(pixels.kind + place + next);
     auto depth = [&](int k) { return load_lanes(pixels.depth + place + k * next); };
     Lanes a = depth(-1), b = depth(0), c = depth(1), d = depth(2);
     Lanes bend = lanes_max(lanes_abs(a - 2 * b + c), lanes_abs(b - 2 * c + d));
@@ -113,12 +130,17 @@ struct EdgeFinder {
   }
   void look(int tile1, int place1, int tile2, int place2, bool vertical,
             std::vector<EdgeShare>& found) const {
+    if (tiles[size_t(tile1)].number[place1] == tiles[size_t(tile2)].number[place2]) return;
+    const Lanes codes = codes_between(pixel_at(tile1, place1), vertical, 1);
+    look(tile1, place1, tile2, place2, vertical, codes[0], found);
+  }
+  // Of two triangles' pixels that differ by so many codes.
+  void look(int tile1, int place1, int tile2, int place2, bool vertical, float codes,
+            std::vector<EdgeShare>& found) const {
     const TilePixels &one = tiles[size_t(tile1)], &other = tiles[size_t(tile2)];
-    if (one.number[place1] == other.number[place2]) return;
-    ivec2 at = corner_of(tile1) + ivec2(place1 % tile_width, place1 / tile_width);
-    uint32_t a = uint32_t(at.y * view.width + at.x), b = a + uint32_t(vertical ? view.width : 1);
+    const uint32_t a = pixel_at(tile1, place1), b = a + uint32_t(vertical ? view.width : 1);
+    const ivec2 at(int(a) % view.width, int(a) / view.width);
     bool thin = (one.kind[place1] & other.kind[place2] & TilePixels::thin_kind) != 0;
-    float codes = differ ? float(differ(a, b)) : INFINITY;
     bool differs = codes > alike;
     if (!thin && !differs) return;
     ivec2 behind(-1);

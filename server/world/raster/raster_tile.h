@@ -105,25 +105,34 @@ inline bool find_edges(const RasterTriangle& t, const RasterView& view, int tile
   return true;
 }
 
-// Where eight rows from y0 + `row` on may be covered: from the first to the last pixel, counted
-// from x0, a pixel early and late for rounding. Nowhere: last < first.
-inline void find_spans(const TileEdges& e, int row, int32_t* first, int32_t* last) {
+// Of eight rows, from the first to the last pixel, counted from x0, rounding included: which may be
+// covered, nowhere if last < first; and which are.
+struct TileSpans {
+  alignas(32) int32_t first[lane_count], last[lane_count], first_inside[lane_count],
+      last_inside[lane_count];
+};
+// Those from y0 + `row` on.
+inline void find_spans(const TileEdges& e, int row, TileSpans& spans) {
   constexpr LaneMask lane{0, 1, 2, 3, 4, 5, 6, 7};
-  Lanes low = all_lanes(0), high = all_lanes(float(e.x1 - e.x0));
+  const float end = float(e.x1 - e.x0);
+  Lanes low = all_lanes(-2), high = all_lanes(end + 2);
   for (int i = 0; i < 3; i++) {
     LaneMask edge = e.edge[i] + e.b[i] * (row + lane);
     if (e.a[i] == 0) {
-      high = edge < 0 ? all_lanes(-2) : high;
+      high = edge < 0 ? all_lanes(-4) : high;
       continue;
     }
     Lanes at = __builtin_convertvector(edge, Lanes) * (-1.0f / float(e.a[i]));
     if (e.a[i] > 0) low = lanes_max(low, at);
     else high = lanes_min(high, at);
   }
-  low = lanes_max(lanes_min(low, all_lanes(tile_width)) - 1, all_lanes(0));
-  high = lanes_min(lanes_max(high, all_lanes(-2)) + 1, all_lanes(float(e.x1 - e.x0)));
-  store_lanes(first, __builtin_convertvector(low, LaneMask));
-  store_lanes(last, __builtin_convertvector(high, LaneMask));
+  low = lanes_min(low, all_lanes(tile_width + 4)), high = lanes_max(high, all_lanes(-4));
+  auto put = [](int32_t* to, const Lanes& x) {
+    store_lanes(to, __builtin_convertvector(x, LaneMask));
+  };
+  put(spans.first, lanes_max(low - 1, all_lanes(0)));
+  put(spans.last, lanes_min(high + 1, all_lanes(end)));
+  put(spans.first_inside, low + 2), put(spans.last_inside, high - 2);
 }
 
 // Calls body(place of eight pixels in the tile, their depths, bit for each that the triangle covers
@@ -162,20 +171,16 @@ template <class Body>
     return;
   }
   // Wide triangles are mostly not where their bounds are.
-  alignas(32) int32_t first[lane_count], last[lane_count];
+  TileSpans spans;
   for (int row = 0; row < rows; row += lane_count) {
-    find_spans(e, row, first, last);
-    for (int k = 0, y = row; k < lane_count && y < rows; k++, y++) {
-      int x = first[k] & ~(lane_count - 1);
-      if (x > last[k]) continue;
-      LaneMask e0 = (e.edge[0] + e.b[0] * y + e.a[0] * x) + across[0],
-               e1 = (e.edge[1] + e.b[1] * y + e.a[1] * x) + across[1],
-               e2 = (e.edge[2] + e.b[2] * y + e.a[2] * x) + across[2];
-      for (; x <= last[k]; x += lane_count) {
-        cover_eight(x, y, e0 | e1 | e2);
-        e0 += e.a[0] * lane_count, e1 += e.a[1] * lane_count, e2 += e.a[2] * lane_count;
+    find_spans(e, row, spans);
+    for (int k = 0, y = row; k < lane_count && y < rows; k++, y++)
+      for (int x = spans.first[k] & ~(lane_count - 1); x <= spans.last[k]; x += lane_count) {
+        LaneMask outside{};
+        if (x < spans.first_inside[k] || x + lane_count - 1 > spans.last_inside[k])
+          for (int i = 0; i < 3; i++) outside |= (e.edge[i] + e.b[i] * y + e.a[i] * x) + across[i];
+        cover_eight(x, y, outside);
       }
-    }
   }
 }
 

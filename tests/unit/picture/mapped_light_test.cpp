@@ -24,9 +24,14 @@ struct MappedStage {
   View view = cornell_view(stage.scene, width, height);
   std::shared_ptr<const IlluminationMap> map;
   explicit MappedStage(const test::PaintedLight& light = painted, bool moves = false)
-      : stage(moves ? Stage(make_cornell_box(), make_pole()) : Stage(make_cornell_box())),
-        map(test::paint_map(*stage.world, 0.03f, {light})) {
-    stage.lights.maps = map;
+      : stage(moves ? Stage(make_cornell_box(), make_pole()) : Stage(make_cornell_box())) {
+    paint(light);
+  }
+  MappedStage(Scene scene, const test::PaintedLight& light) : stage(std::move(scene)) {
+    paint(light);
+  }
+  void paint(const test::PaintedLight& light) {
+    stage.lights.maps = map = test::paint_map(*stage.world, 0.03f, {light});
   }
   static Mesh make_pole() {
     Mesh pole = box_mesh(1, {0.01f, 0.5f, 0.01f});
@@ -96,6 +101,27 @@ TEST(MappedLight, LeavesTheDarkDark) {
       for (int i = 0; i < 4; i++) visit.step(mapped.stage, mapped.view, budget, kind);
       EXPECT_LT(mapped.wrong(visit.frame, 1, 0.05f), 0.1) << technique << int(kind);
     }
+}
+
+// Bars that no cell of points stands for are lit as they are, not as what is behind them.
+TEST(MappedLight, OfNarrowThingsIsTheirOwn) {
+  MappedStage mapped(make_barred_box(vec3(0.7f), 0.012f),
+                     [](vec3 p) { return vec3(p.z > -0.2f ? 2.0f : 0.3f); });
+  for (PictureOf kind : kinds) {
+    DrawnVisit visit = mapped.visit("gather");
+    for (int i = 0; i < 16; i++) visit.step(mapped.stage, mapped.view, pixels / 8, kind);
+    float mean = 0, expected = 0;
+    int bars = 0;
+    for (int i = 0; i < pixels; i++) {
+      const int x = i % width, y = i / width;
+      const uint32_t object = mapped.stage.object_at(mapped.view, float(x) + 0.5f, float(y) + 0.5f);
+      if (mapped.stage.scene.objects[object] != "bar") continue;
+      bars++, mean += luminance(visit.frame.color[size_t(i)]);
+      expected += luminance(mapped.expected(x, y));
+    }
+    ASSERT_GT(bars, 200);
+    EXPECT_NEAR(mean, expected, 0.15 * expected) << int(kind);
+  }
 }
 
 // The eye sees at once what the frame holds.

@@ -206,25 +206,5 @@ TEST(StillDrawn, NothingOfAnotherViewRemainsInTheMean) {
   }
 }
 
-// Bars that no cell of light stands for are lit by their own points.
-TEST(StillDrawn, NarrowThingsHaveTheirOwnLight) {
-  Still stage = make_still();
-  Frame truth = stage.truth();
-  std::vector<bool> bars(pixels, false);
-  for (int i = 0; i < pixels; i++) {
-    Hit hit = stage.world->intersect(
-        view_ray(stage.view, float(i % width) + 0.5f, float(i / width) + 0.5f));
-    bars[size_t(i)] =
-        hit.valid() && stage.scene.objects[stage.world->object_of(hit.instance)] == "bar";
-  }
-  ASSERT_GT(std::count(bars.begin(), bars.end(), true), 200);
-  Visit visit;
-  for (int i = 0; i < 16; i++) visit.step(stage, pixels / 8);
-  double mean = 0, expected = 0;
-  for (size_t i = 0; i < bars.size(); i++)
-    if (bars[i]) mean += luminance(visit.frame.color[i]), expected += luminance(truth.color[i]);
-  EXPECT_NEAR(mean, expected, 0.15 * expected);
-}
-
 }  // namespace
 }  // namespace wellspring
