@@ -48,6 +48,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libSvtAv1Enc.", "SVT-AV1", "BSD-3-Clause-Clear", "video"},
     {"libsystemd.", "systemd", "LGPL-2.1-or-later", "what a service tells its manager"},
     {"libtbb.", "oneTBB", "Apache-2.0", "loops over cores"},
+    {"libtbbmalloc.", "oneTBB", "Apache-2.0", "memory of oneTBB itself"},
     {"libturbojpeg.", "libjpeg-turbo", "IJG AND BSD-3-Clause AND Zlib", "JPEG pictures"},
     {"libutf8proc.", "utf8proc", "MIT AND Unicode-DFS-2016", "names compared by Unicode"},
     {"libvorbis", "Vorbis", "BSD-3-Clause", "recordings, for libsndfile"},

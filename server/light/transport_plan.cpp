@@ -74,9 +74,13 @@ Census take_census(const Scene& scene, std::span<const Mesh* const> moving) {
 }
 
 std::string count_of(size_t n, const char* one, const char* many) {
-  std::string digits = std::to_string(n);
-  for (int i = int(digits.size()) - 3; i > 0; i -= 3) digits.insert(size_t(i), ",");
-  return digits + " " + (n == 1 ? one : many);
+  const std::string digits = std::to_string(n);
+  std::string text;
+  for (size_t i = 0; i < digits.size(); i++) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text + " " + (n == 1 ? one : many);
 }
 
 // As a file names it, short and without anything a terminal would handle.

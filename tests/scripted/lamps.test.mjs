@@ -10,7 +10,7 @@ before(async () => { server = await start_server(); });
 after(async () => { if (server) assert.equal(await server.stop(), 0); });
 
 // A dark picture says less: of the same view its JPEG is smaller at the same quality. Both become
-// finer with time, so that those of one moment are compared, for as long as a busy machine may take.
+// finer with time, so that those of one moment are compared, as long as a busy machine may take.
 async function assert_darker(dark, light) {
   const bytes = (visitor) => ({ size: visitor.last?.jpeg.length, quality: visitor.last?.quality });
   const is_darker = () => bytes(dark).size < 0.8 * bytes(light).size

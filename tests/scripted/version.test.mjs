@@ -40,7 +40,9 @@ test('all that is linked is listed, with licence, version and purpose', async ()
       .map((line) => basename(line.trim().split(' ')[0])).filter((name) => /\.so/.test(name))
       .filter((name) => !name.startsWith('linux-vdso')).sort();
   assert.ok(linked.length > 10, linked.join());
-  assert.deepEqual(listed, linked);
+  // Where it is installed, oneTBB loads its allocator itself.
+  const loads = (name) => name.startsWith('libtbbmalloc.');
+  assert.deepEqual(listed.filter((name) => linked.includes(name) || !loads(name)), linked);
   const needed = [...output('readelf', ['-d', server]).matchAll(/\(NEEDED\).*\[(.+)\]/g)];
   for (const [, name] of needed) assert.ok(listed.includes(name), name);
   for (const one of components) {

@@ -96,7 +96,8 @@ TEST(ConfigFile, NamesEverythingThatIsWrongWithItsLine) {
       "port = 70000\nhots = ::1\n\nport\nframe-rate = fast\ndraw = maybe\nno-draw = true\n"
       "host = a\nhost = b\nconfig = b\nhelp = true\n= 3\n[section]\n");
   ASSERT_EQ(found.size(), 11u);
-  EXPECT_EQ(found[0], "a.conf: line 1: port: Value 70000 not in range 0 to 65535");
+  // The rest are the words of CLI11, which differ from one of its versions to the next.
+  EXPECT_EQ(found[0].find("a.conf: line 1: port: Value 70000 not in range"), 0u) << found[0];
   EXPECT_EQ(found[1], "a.conf: line 2: there is no key 'hots'; did you mean 'host'?");
   EXPECT_EQ(found[2], "a.conf: line 4: is not of the form key = value");
   EXPECT_EQ(found[3], "a.conf: line 5: frame-rate: 'fast' is no value for it");

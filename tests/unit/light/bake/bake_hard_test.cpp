@@ -14,16 +14,19 @@ using namespace scenes;
 using test::Baked;
 
 // Light on what a ray meets, as pictures read it; below 0: no map knows.
-float light_seen(const World& world, const IlluminationMap& map, vec3 from, vec3 towards) {
+vec3 color_seen(const World& world, const IlluminationMap& map, vec3 from, vec3 towards) {
   Lights lights = make_lights(world);
   Transport transport{world, *lights.tables};
   transport.maps = &map;
   Ray ray;
   ray.origin = from, ray.direction = normalize(towards - from);
   const Hit hit = world.intersect(ray);
-  if (!hit.valid()) return -1;
+  if (!hit.valid()) return vec3(-1);
   const KnownLight known = find_known_light(transport, ray, hit, eval_surface(world, ray, hit));
-  return known.known ? luminance(known.light) : -1;
+  return known.known ? known.light : vec3(-1);
+}
+float light_seen(const World& world, const IlluminationMap& map, vec3 from, vec3 towards) {
+  return luminance(color_seen(world, map, from, towards));
 }
 
 PunctualLight add_sun(Scene& scene, vec3 direction) {
@@ -178,6 +181,35 @@ TEST(BakeHard, ALeafIsLitOnBothSides) {
     EXPECT_LT(below, 0.3f);
     EXPECT_LT(light_seen(baked.world, *map, {0.1f, 0.5f, 0.1f}, {0.1f, 0, 0.1f}), 0.1f);
   }
+}
+
+// A closed room of sheets in a closed room: the lamp of each lights its own side of them alone.
+TEST(BakeHard, ARoomInsideARoomHasItsOwnLight) {
+  Scene scene = empty_scene();
+  Material sheet = diffuse(vec3(0.5f));
+  sheet.double_sided = true;
+  const int white = add_material(scene, sheet);
+  for (float size : {4.0f, 1.0f}) add_mesh(scene, box_mesh(white, vec3(size)), "room");
+  scene.lights.push_back(test::point_light({1.2f, 0.1f, 0.2f}, vec3(6, 0, 0)));
+  scene.lights.push_back(test::point_light({0.1f, 0.1f, -0.1f}, vec3(0, 1, 0)));
+  Baked baked(scene, {.gather_nodes = 1500, .direct_nodes = 3000});
+  auto map = baked.map(16);
+  ASSERT_TRUE(map);
+  for (int axis = 0; axis < 3; axis++)
+    for (float sign : {-1.0f, 1.0f})
+      for (float aside : {-0.45f, 0.0f, 0.45f}) {  // edges, too
+        vec3 way(0), wall(aside);
+        way[axis] = sign, wall[axis] = 0.5f * sign;
+        const vec3 inside = color_seen(baked.world, *map, wall - 0.1f * way, wall),
+                   outside = color_seen(baked.world, *map, wall + 0.1f * way, wall),
+                   around = color_seen(baked.world, *map, 1.9f * way, 2.0f * way);
+        EXPECT_GT(inside.y, 0.1f);
+        EXPECT_LT(inside.x, 1e-3f);
+        EXPECT_GT(outside.x, 0.01f);
+        EXPECT_LT(outside.y, 1e-3f);
+        EXPECT_GT(around.x, 0.05f);
+        EXPECT_LT(around.y, 1e-3f);
+      }
 }
 
 // A hall of a million triangles takes as many nodes as were asked for.

@@ -50,6 +50,7 @@ TEST_F(Hour, IsTheExhibitsOwnAtFirstAndNothingMoves) {
 
 TEST_F(Hour, DimsTheSkyAndMovesTheSunForWhoChoseIt) {
   begin(2, "gather");
+  ASSERT_TRUE(show->lights.maps);
   run(1);
   const double noon[2] = {level(0), level(1)};
   hour(16, 0);
