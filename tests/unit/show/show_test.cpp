@@ -81,7 +81,7 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
     error += std::abs(seen(show->renderer.work.frame.color[i]) - seen(reference.color[i]));
     size += seen(reference.color[i]);
   }
-  EXPECT_LT(error / size, 0.08);
+  EXPECT_LT(error / size, 0.1);
   EXPECT_TRUE(last_header().flags & packet_still);
 }
 

@@ -68,7 +68,7 @@ struct StillDeskTest : testing::Test {
 TEST_F(StillDeskTest, WhateverSamplesAreWishedForItGetsThoseThatFit) {
   begin(0.5);
   StillJob wish = job(max_still_spp);
-  wish.width = 640, wish.height = 360;
+  wish.width = 160, wish.height = 90;  // one sample of which fits on any machine
   ask(0, wish);
   EXPECT_LE(desk->status().waiting_seconds, 0.5);
   ask(1, job(3));
