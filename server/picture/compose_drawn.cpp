@@ -109,7 +109,7 @@ void light_group(const Cell* const* corners, const LaneMask& flat, const Lanes* 
     around.lonely = unsure;
     light_as(around, prior_variances, thin);
     const Pixels& q = thin.pixels;
-    // Where no point of the surface says otherwise, light is what the map says.
+    // The map says what light there is as far as no point of the surface says otherwise.
     light_as_mapped(d.mapped & (q.samples <= 0.0f), thin.pixels);
     p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
     p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);

@@ -11,7 +11,6 @@
 #include "picture/read_surface.h"
 #include "picture/relight.h"
 #include "picture/soften_edges.h"
-#include "picture/still/mean_share.h"
 
 namespace wellspring {
 

@@ -29,7 +29,7 @@ enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what mo
 struct CompositorWork {
   Frame light;                 // packed (picture/surface_image.h)
   std::vector<uint8_t> peaks;  // of a picture for the eye: light beyond white
-  std::vector<float> shares;   // of a picture at rest: picture/still/mean_share.h
+  std::vector<float> shares;   // of a picture at rest (mix_in_means())
 };
 size_t memory_bytes(const CompositorWork& work);
 

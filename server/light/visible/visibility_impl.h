@@ -86,7 +86,7 @@ struct VisibleRun::Impl {
     float x = float(run->x + i) + offset.x - axis.x, y = axis.y - float(run->y) - offset.y;
     return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
   }
-  // From the eye to what pixel i shows.
+  // How far what pixel i shows is from the eye.
   float distance(int i) const {
     const vec2 axis = axis_place(view);
     const vec2 aside = pixel_angle * (vec2(float(run->x + i), float(run->y)) + offset - axis);

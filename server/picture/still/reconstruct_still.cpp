@@ -5,17 +5,11 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "cache/packing.h"
-#include "picture/still/mean_share.h"
 
 namespace wellspring {
 namespace {
 
 constexpr float prior_weight = 0.5f;  // samples that the drawn picture counts as
-vec3 mean_of(const StillSamples& samples, size_t pixel) {
-  return unpack_rgb9e5(samples.mean[pixel]);
-}
-
 }  // namespace
 
 size_t memory_bytes(const StillReconstruction& work) {

@@ -3,7 +3,7 @@
 // (denoise/denoise.h) of their means; a picture that was drawn in remembered light counts as half a
 // sample of each pixel, and stands where there is none yet. (Half the resolution while samples are
 // fewer than pixels has more error: castle, 0.35 samples a pixel, FLIP 0.177 for 0.161.) Their
-// plain mean takes over as samples become many (picture/still/mean_share.h).
+// plain mean takes over as samples become many (mix_in_means()).
 //
 // begin -> Denoiser::advance() until done -> finish. Memory is borrowed from one picture to the
 // next.

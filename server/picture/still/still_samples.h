@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "base/vec.h"
+#include "cache/packing.h"
 #include "picture/still/still_image.h"
 
 namespace wellspring {
@@ -27,6 +28,17 @@ void resize_samples(StillSamples& samples, size_t pixels);
 void invalidate_samples(const StillImage& still, StillSamples& samples);
 // `light`: finite, of a place anywhere in the pixel. `random` decides roundings.
 void add_sample(StillSamples& samples, size_t pixel, vec3 light, uint32_t random);
+
+// The mean light of a pixel's samples; 0 without any.
+inline vec3 mean_of(const StillSamples& samples, size_t pixel) {
+  return unpack_rgb9e5(samples.mean[pixel]);
+}
+// The more samples there are, the more of their plain mean their picture is: each region takes the
+// share that has the least error by their noise (James and Stein 1961), so that the picture becomes
+// the reference. Mixes the means into `color`, a picture of `size` pixels; those without a sample
+// stay. `shares`: scratch.
+void mix_in_means(const StillSamples& samples, ivec2 size, std::vector<float>& shares,
+                  std::vector<vec3>& color);
 
 inline size_t samples_bytes(const StillSamples& samples) {
   return bytes_of(samples.mean, samples.deviation, samples.count);

@@ -99,7 +99,7 @@ struct EdgeFinder {
   Lanes codes_between(uint32_t pixel, bool vertical, int count) const {
     return differ ? differ(pixel, vertical ? uint32_t(view.width) : 1, count) : all_lanes(INFINITY);
   }
-  // Of eight pixels from `place` on, those that are thin like the next.
+  // Tells which of eight pixels from `place` on are thin, as the next ones are.
   unsigned thin_pairs(const TilePixels& pixels, int place, int next) const {
     const Kinds both =
         load_lanes<Kinds>(pixels.kind + place) & load_lanes<Kinds>(pixels.kind + place + next);
@@ -134,7 +134,7 @@ struct EdgeFinder {
     const Lanes codes = codes_between(pixel_at(tile1, place1), vertical, 1);
     look(tile1, place1, tile2, place2, vertical, codes[0], found);
   }
-  // Of two triangles' pixels that differ by so many codes.
+  // The two show different triangles, and differ by so many codes.
   void look(int tile1, int place1, int tile2, int place2, bool vertical, float codes,
             std::vector<EdgeShare>& found) const {
     const TilePixels &one = tiles[size_t(tile1)], &other = tiles[size_t(tile2)];

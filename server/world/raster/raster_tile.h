@@ -105,13 +105,13 @@ inline bool find_edges(const RasterTriangle& t, const RasterView& view, int tile
   return true;
 }
 
-// Of eight rows, from the first to the last pixel, counted from x0, rounding included: which may be
-// covered, nowhere if last < first; and which are.
+// Eight rows' pixels, counted from x0: those from `first` to `last` may be covered, none if last <
+// first; those from `first_inside` to `last_inside` are, whatever rounding does.
 struct TileSpans {
   alignas(32) int32_t first[lane_count], last[lane_count], first_inside[lane_count],
       last_inside[lane_count];
 };
-// Those from y0 + `row` on.
+// Finds those of the rows from y0 + `row` on.
 inline void find_spans(const TileEdges& e, int row, TileSpans& spans) {
   constexpr LaneMask lane{0, 1, 2, 3, 4, 5, 6, 7};
   const float end = float(e.x1 - e.x0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the samples of a view at rest say by themselves, and how much of a picture they become.
-#include "picture/still/mean_share.h"
+#include "picture/still/still_samples.h"
 
 #include <gtest/gtest.h>
 
