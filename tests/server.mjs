@@ -25,6 +25,8 @@ export const WebSocket = load_module('ws');
 
 // How many times longer than usual a deadline is: programs built with a sanitizer are slower.
 export const patience = Number(process.env.WELLSPRING_PATIENCE ?? 1);
+// What has not happened by then never will, however busy the machine is.
+export const deadline = 180000 * patience;  // ms
 // What such programs take of memory says nothing of others'.
 export const judges_memory = patience === 1;
 // Where these keep what would take each of them minutes.
@@ -34,7 +36,7 @@ export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 // Until `holds` says so. `what` it is, text or what makes it, is told when it never does.
 export async function until(holds, what = String(holds)) {
-  for (const end = performance.now() + 60000 * patience; performance.now() < end; await sleep(50))
+  for (const end = performance.now() + deadline; performance.now() < end; await sleep(50))
     if (await holds()) return;
   assert.fail(`never: ${what instanceof Function ? what() : what}`);
 }
@@ -44,13 +46,13 @@ export const little_light = ['--technique', 'direct', '--still-technique', 'dire
   '--fps', '10'];
 
 // Runs a program to its end: {status, stdout, stderr}.
-export function run(name, args, { timeout = 60000 } = {}) {
+export function run(name, args, { timeout = deadline } = {}) {
   return new Promise((resolve, reject) => {
     const child = spawn(join(bin, name), args, { stdio: ['ignore', 'pipe', 'pipe'] });
     let stdout = '', stderr = '';
     child.stdout.on('data', (chunk) => { stdout += chunk; });
     child.stderr.on('data', (chunk) => { stderr += chunk; });
-    const timer = setTimeout(() => child.kill('SIGKILL'), patience * timeout);
+    const timer = setTimeout(() => child.kill('SIGKILL'), timeout);
     child.on('error', (error) => {  // there is no such program
       clearTimeout(timer);
       reject(error);
@@ -94,8 +96,8 @@ export function start_server(words = [],
     let stdout = '', stderr = '';
     const timer = setTimeout(() => {
       child.kill('SIGKILL');
-      reject(new Error(`no address within ${60 * patience} s\n${stderr}`));
-    }, 60000 * patience);
+      reject(new Error(`no address within ${deadline} ms\n${stderr}`));
+    }, deadline);
     child.stderr.on('data', (chunk) => { stderr += chunk; });
     child.on('error', reject);  // there is no such program
     child.on('close', (status) => {
@@ -170,7 +172,7 @@ export class Visitor {
     this.socket.on('message', (bytes, binary) => {
       const sound = binary && read_sound(bytes);
       const item = sound ? { sound, at: performance.now() }
-          : binary ? { picture: read_picture(bytes), at: performance.now() }
+          : binary ? { picture: read_picture(bytes), binary: bytes, at: performance.now() }
           : { message: JSON.parse(String(bytes)) };
       if (sound) {
         this.sounds.push(sound);
@@ -190,9 +192,8 @@ export class Visitor {
       this.socket.send(typeof message === 'string' ? message : JSON.stringify(message));
   }
   // Resolves with the first item from now on that `test` accepts.
-  next(test, what = 'an expected message', timeout = 15000) {
+  next(test, what = 'an expected message') {
     return new Promise((resolve, reject) => {
-      const deadline = patience * timeout;
       const late = () => reject(new Error(`no ${what} within ${deadline} ms`));
       const timer = setTimeout(late, deadline);
       this.waiting.push((item) => {
@@ -207,8 +208,8 @@ export class Visitor {
     const wanted = (item) => item.message?.type === type && test(item.message);
     return this.next(wanted, `message ${type}`).then((item) => item.message);
   }
-  picture(test = () => true, timeout = 15000) {
-    return this.next((item) => item.picture && test(item.picture), 'picture', timeout)
+  picture(test = () => true) {
+    return this.next((item) => item.picture && test(item.picture), 'picture')
         .then((item) => item.picture);
   }
   async hello(fields = {}) {

@@ -97,7 +97,7 @@ function(wellspring_script_test file timeout)
   if(WELLSPRING_SANITIZE AND file MATCHES "^structure/|^browser/|/package|/deploy|/version")
     return()  # it runs none of these programs, a browser, or what is to be installed
   endif()
-  math(EXPR limit "2 * ${timeout} * ${WELLSPRING_PATIENCE}")  # other tests take turns with it
+  math(EXPR limit "4 * ${timeout} * ${WELLSPRING_PATIENCE}")  # other tests take turns with it
   add_test(NAME ${label}.${name} COMMAND ${NODE} --test ${PROJECT_SOURCE_DIR}/tests/${file})
   set_tests_properties(${label}.${name} PROPERTIES TIMEOUT ${limit} LABELS ${label}
     SKIP_REGULAR_EXPRESSION "of npm is not installed, so this script is skipped" ENVIRONMENT
@@ -139,6 +139,7 @@ if(NODE)
   wellspring_script_test(scripted/nodes.test.mjs 120 serial)
   wellspring_script_test(scripted/stop.test.mjs 240)
   wellspring_script_test(scripted/visit.test.mjs 180 serial)
+  wellspring_script_test(scripted/display.test.mjs 120)
   wellspring_script_test(scripted/storm.test.mjs 120 serial)
   wellspring_script_test(scripted/line.test.mjs 120 serial)
   wellspring_script_test(scripted/crowd.test.mjs 180 serial)
@@ -156,6 +157,7 @@ if(NODE)
   wellspring_script_test(browser/room.test.mjs 180 serial)
   wellspring_script_test(browser/status.test.mjs 120 serial)
   wellspring_script_test(browser/watch.test.mjs 120 serial)
+  wellspring_script_test(browser/display.test.mjs 120 serial)
   wellspring_script_test(browser/read.test.mjs 180 serial)
   wellspring_script_test(browser/access.test.mjs 900 serial)
   wellspring_script_test(browser/modest.test.mjs 240 serial)

@@ -11,6 +11,9 @@ export const asked_viewpoint = fresh ? asks.get('viewpoint') : null;
 export const asked_story = fresh ? asks.get('story') : null;
 export const asked_group = fresh ? asks.get('group') : null;
 
+// "local": this page draws the picture; "server": it comes finished; null: nothing is asked.
+export const asked_display = asks.get('display');
+
 // #place=x,y,z,yaw,pitch or with roll behind it, in metres and radians: {position, yaw, pitch,
 // roll}; null: none, or a wrong one.
 export function read_place(hash) {

@@ -18,8 +18,27 @@ function read_parts(buffer, view, header, width, height) {
   return parts;
 }
 
-// {frame, seq, time_us, width, height, quality, still, parts, payload: Blob-able bytes} or null.
-// parts: null of a complete picture.
+// Of a keyframe with depth: {color_bytes, cuts, unit, view: as display/view.js}, or null.
+function read_keyframe(buffer, view, header) {
+  if (header < 116) return null;
+  const real = (at) => view.getFloat32(at, true);
+  const triple = (at) => [0, 4, 8].map((more) => real(at + more));
+  const color_bytes = view.getUint32(28, true), unit = real(112);
+  const seen = {
+    eye: [40, 48, 56].map((at) => view.getFloat64(at, true)),
+    right: triple(64), up: triple(76), forward: triple(88),
+    tan_half_fov: real(100), middle: [real(104), real(108)],
+    width: view.getUint16(36, true), height: view.getUint16(38, true),
+  };
+  const numbers = [...seen.eye, ...seen.right, ...seen.up, ...seen.forward, ...seen.middle];
+  const good = header + color_bytes <= buffer.byteLength && seen.width > 0 && seen.height > 0
+    && seen.tan_half_fov > 0 && seen.tan_half_fov < Infinity && unit > 0 && unit < Infinity
+    && numbers.every(Number.isFinite);
+  return good ? { color_bytes, cuts: view.getUint32(32, true), unit, view: seen } : null;
+}
+
+// {frame, seq, time_us, width, height, quality, still, parts, keyframe, payload: Blob-able bytes},
+// or null. parts: null of a complete picture; keyframe: null of one without depth.
 export function read_picture(buffer) {
   if (buffer.byteLength < 28) return null;
   const view = new DataView(buffer);
@@ -30,6 +49,9 @@ export function read_picture(buffer) {
   const flags = view.getUint8(25), complete = (flags & 2) !== 0;
   const parts = complete ? null : read_parts(buffer, view, header, width, height);
   if (!complete && !parts) return null;
+  const deep = complete && (flags & 4) !== 0;
+  const keyframe = deep ? read_keyframe(buffer, view, header) : null;
+  if (deep && !keyframe) return null;
   return {
     frame: view.getUint32(4, true),
     seq: view.getUint32(8, true),
@@ -39,6 +61,7 @@ export function read_picture(buffer) {
     quality: view.getUint8(24),
     still: (flags & 1) !== 0,
     parts,
+    keyframe,
     payload: new Uint8Array(buffer, header),
   };
 }

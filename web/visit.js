@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The visitor's page: joins connection, picture, controls and menu.
-import { asked_exhibit, asked_place, asked_story, asked_viewpoint, read_place }
+import { asked_display, asked_exhibit, asked_place, asked_story, asked_viewpoint, read_place }
   from './address.js';
 import { make_ambience } from './ambience.js';
 import { announce } from './announce.js';
@@ -10,6 +10,7 @@ import { make_comfort } from './comfort.js';
 import { make_connection } from './connection.js';
 import { make_controls } from './controls.js';
 import { make_description } from './describe.js';
+import { make_display } from './display/display.js';
 import { by_id } from './element.js';
 import { make_gamepad } from './gamepad.js';
 import { make_group } from './group.js';
@@ -41,7 +42,7 @@ translate_page(lang);
 by_id('veil-text').textContent = word(lang, 'opening');
 
 const subtitles = make_subtitles(by_id('subtitle'));
-const picture = make_picture(canvas, (shown) => {
+function note_shown(shown) {
   const decoded_ms = Math.round(shown.decoded_ms * 10) / 10;
   connection.send({ type: 'ack', frame: shown.frame, decoded_ms, shown: shown.shown });
   if (!shown.shown) return;
@@ -53,7 +54,13 @@ const picture = make_picture(canvas, (shown) => {
   canvas.dataset.frame = shown.frame;
   canvas.dataset.seq = shown.seq;
   dark.shown(shown.seq);
-});
+}
+
+// What this page draws itself, where it is able to; null: pictures come finished.
+const display = asked_display !== 'local' ? null
+  : make_display(canvas, { on_shown: note_shown, round_trip: () => round_trip });
+document.body.dataset.display = display ? 'local' : 'server';
+const finished = make_picture(canvas, note_shown);
 
 const sound = make_sound(by_id('sound-button'), {
   on_wanted: (on) => connection?.send({ type: 'settings', sound: on }),
@@ -75,7 +82,7 @@ const dark = make_leap(canvas);
 const leap = () => dark.begin(seq);
 
 const hello = () => ({ type: 'hello', exhibit, lang, role: 'visitor', parts: true,
-  ...comfort.size(), resume: of_tab.get(visit_key) ?? '' });
+  ...comfort.size(), resume: of_tab.get(visit_key) ?? '', ...(display && { display: 'local' }) });
 
 // What the address asked for that is not there.
 function say_what_is_unknown(message) {
@@ -97,27 +104,33 @@ const comfort = make_comfort(send_settings, () => places.load());
 const card = make_card({
   story: (story) => connection.send({ type: 'storyteller', story }),
   play: (name, on) => connection.send({ type: 'play', name, on }),
-  around: (object, around) => connection.send({ type: 'go', seq: next(), object, around }),
+  around: (object, around) => order({ type: 'go', object, around }),
 });
 const map = make_map((to) => go({ to }));
 const watch = make_watch(() => state, notice);
 const places = make_places((name) => go_to_viewpoint(name), () => !comfort.saves());
 
+// The message takes the visitor elsewhere, who stands there.
+function order(message) {
+  connection.send({ ...message, seq: next() });
+  display?.walker.sent(seq, [0, 0, 0]);
+}
+
 // fields: at, to or object, as `go` has them.
 function go(fields) {
-  connection.send({ type: 'go', seq: next(), ...fields });
+  order({ type: 'go', ...fields });
   if (comfort.leaps()) leap();
 }
 
 function go_to_viewpoint(name) {
-  connection.send({ type: 'viewpoint', seq: next(), name });
+  order({ type: 'viewpoint', name });
   card.close();
   leap();
 }
 
 // place: as in an address.
 function go_to_place(to) {
-  connection.send({ type: 'camera', seq: next(), ...to });
+  order({ type: 'camera', ...to });
   leap();
 }
 addEventListener('hashchange', () => {
@@ -149,7 +162,7 @@ connection = make_connection({
     if (menu.attention() !== null)
       connection.send({ type: 'settings', attention: menu.attention() });
     if (start_place) go_to_place(start_place);
-    else if (start) connection.send({ type: 'viewpoint', seq: next(), name: start });
+    else if (start) order({ type: 'viewpoint', name: start });
     start = start_place = null;
     if (told) connection.send({ type: 'storyteller', story: told });
     told = null;
@@ -159,6 +172,7 @@ connection = make_connection({
     switch (message.type) {
       case 'welcome':
         walk_speed = message.walk_speed;
+        display?.welcome(message);
         lang = message.lang;
         presence.welcome();
         menu.welcome(message);
@@ -188,9 +202,17 @@ connection = make_connection({
         ambience.moved(message);
         description.state(message);
         menu.figures(
-            `${picture.rate()} fps · ${Math.round(round_trip)} ms · `
+            `${(display ?? finished).rate()} fps · ${Math.round(round_trip)} ms · `
             + `${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} % · `
             + word(lang, `limit_${message.limit}`));
+        break;
+      case 'pose':
+        display?.told(message);
+        for (const [old, sent] of asked) {
+          if (old > message.seq) break;
+          round_trip += (performance.now() - sent - round_trip) * 0.2;
+          asked.delete(old);
+        }
         break;
       case 'went':
         if (message.object) card.open(message.object); else card.close();
@@ -225,7 +247,9 @@ connection = make_connection({
     }
   },
   rests: () => presence.rests(),
-  binary: (buffer) => { if (!sound.receive(buffer)) picture.receive(buffer); },
+  binary(buffer) {
+    if (!sound.receive(buffer) && !display?.receive(buffer)) finished.receive(buffer);
+  },
 });
 
 function next() {
@@ -273,8 +297,11 @@ const ask = make_ask({
 let ring_timer = 0;
 make_controls(canvas, by_id('stick'), by_id('stick-knob'), {
   // A pointer alone changes no picture: nothing to measure a round trip by.
-  send: ({ moved, ...fields }) =>
-      connection.send({ type: 'input', seq: moved ? next() : ++seq, ...fields }),
+  send({ moved, ...fields }) {
+    connection.send({ type: 'input', seq: moved ? next() : ++seq, ...fields });
+    display?.walker.turn(fields.look);
+    display?.walker.sent(seq, fields.move);
+  },
   fov: () => state?.fov ?? 1,
   speed: () => walk_speed,
   place(index) {

@@ -4,20 +4,17 @@
 #include <cstring>
 
 #include "picture/cells.h"
-#include "light/visible/light_view.h"
 #include "picture/pixel_light.h"
 #include "world/raster/raster.h"
 
 namespace wellspring {
 
-// Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which
-// are packed together, and four cells around. Groups begin half a group before a tile. `Scale`:
-// pixels a side of one of the light; where that is 1 two groups lie side by side in the lanes.
-template <int Scale>
-constexpr int group = cell_size* Scale;
-template <int Scale>
-constexpr int together = lane_count / group<Scale>;
-static_assert(cell_size == packed_four && together<light_scale> == 1 && together<1> == 2);
+// Pixels are lit in groups that lie between two columns of cell centres: four pixels, which are
+// packed together, and four cells around. Groups begin half a cell before a tile, and two lie side
+// by side in the lanes.
+constexpr int half_cell = cell_size / 2;
+constexpr int cells_together = lane_count / cell_size;
+static_assert(cell_size == packed_four && cells_together == 2);
 
 // What the lanes of two groups side by side have to the same side of them.
 struct WideCell : CellLightOf<Lanes, LaneBits> {
@@ -34,40 +31,34 @@ inline void spread_cells(const PaintedCell& left, const PaintedCell& right, Wide
   std::memcpy(static_cast<void*>(&to), both, sizeof both);
 }
 
-// Two rows of cells around a tile's blocks. Where groups lie side by side, each as the next but one
-// needs it, too.
-template <int Scale>
+// Two rows of cells around a tile's blocks, each beside the one that the next group needs.
 struct CellRows {
-  using Cell = std::conditional_t<together<Scale> == 1, PaintedCell, WideCell>;
   static constexpr int most = RasterRun::most / cell_size + 3;
   uint64_t picture = 0;
   int first = 0, row = 0, count = 0;
   int above = 0;  // which of the rows
-  Cell cell[2][most];
+  WideCell cell[2][most];
   LaneMask
       flat[most];  // lanes of each group and those beside it that lie between cells in one plane
 
-  const Cell& at(int r, int k) const { return cell[above ^ r][k]; }
+  const WideCell& at(int r, int k) const { return cell[above ^ r][k]; }
   void read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y, int columns);
 
  private:
-  void read_row(const Cells& cells, int y, Cell* to) const;
+  void read_row(const Cells& cells, int y, WideCell* to) const;
 };
 
-template <int Scale>
-void CellRows<Scale>::read_row(const Cells& cells, int y, Cell* to) const {
+inline void CellRows::read_row(const Cells& cells, int y, WideCell* to) const {
   PaintedCell before{}, here;
   for (int k = 0; k < count; k++, before = here) {
     read_cell(cells, first + k, y, here);
     size_t i = nearest_cell(cells, first + k, y);
     for (size_t n = 0; n < 3; n++) here.albedo[n] = cells.albedo[n][i];
-    if constexpr (together<Scale> == 1) to[k] = here;
-    else if (k > 0) spread_cells(before, here, to[k - 1]);
+    if (k > 0) spread_cells(before, here, to[k - 1]);
   }
 }
 
-template <int Scale>
-void CellRows<Scale>::read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y,
+inline void CellRows::read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y,
                            int columns) {
   bool below = picture == of && first == x && row + 1 == y && count == columns;
   picture = of, first = x, row = y, count = columns;
@@ -78,7 +69,7 @@ void CellRows<Scale>::read(const PixelRays& rays, const Cells& cells, uint64_t o
   for (int g = 0; g < count; g += lane_count)
     store_lanes(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
   for (int g = 0; g < count; g++)
-    for (int k = 0; k < lane_count; k++) flat[g][k] = one_plane[g + k / group<Scale>];
+    for (int k = 0; k < lane_count; k++) flat[g][k] = one_plane[g + k / cell_size];
 }
 
 }  // namespace wellspring

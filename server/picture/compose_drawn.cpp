@@ -15,9 +15,9 @@
 namespace wellspring {
 namespace {
 
+constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
-constexpr float filtered_counts = 1 / 64.0f;
 constexpr float moving_prior_variance = 3;
 constexpr float still_told =
     0.4f;  // at rest: guessed share of the light at which prior variance begins
@@ -41,7 +41,6 @@ void light_as_mapped(const LaneMask& which, Pixels& p) {
 }
 
 // Own light of the pixels, as far as their light pixel's point lies on the same surface.
-template <int Scale>
 void take_own(const View& view, const PixelRays& rays, const OwnLight& own, float light_x,
               float light_y, Drawn& d) {
   Pixels& p = d.pixels;
@@ -49,7 +48,7 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
   Lanes samples = to_float((more >> 16) & 255u);
   auto along = [&](vec3 axis) { return p.nx * axis.x + p.ny * axis.y + p.nz * axis.z; };
   Lanes depth = lanes_as<Lanes>(own.plane[plane_depth]);
-  Lanes lx = light_x + Scale * rays.inverse_focal * light_columns<Scale>;
+  Lanes lx = light_x + rays.inverse_focal * lane;
   Lanes off = along(view.right) * (p.depth * p.x - depth * lx) +
               along(view.up) * (p.depth * p.y - depth * light_y) +
               along(view.forward) * (p.depth - depth);
@@ -86,8 +85,8 @@ void light_as(const Surroundings& around, const Lanes& prior_variances, Drawn& d
 }
 
 // `asked`: lanes that matter.
-template <class Cell, class FindNearby>
-void light_group(const Cell* const* corners, const LaneMask& flat, const Lanes* weights,
+template <class FindNearby>
+void light_group(const WideCell* const* corners, const LaneMask& flat, const Lanes* weights,
                  float prior_variance, const LaneMask& asked, const FindNearby& find_nearby,
                  Drawn& d) {
   Pixels& p = d.pixels;
@@ -120,62 +119,53 @@ void light_group(const Cell* const* corners, const LaneMask& flat, const Lanes* 
 }
 
 // All that pixels are lit by, and where in them they are seen.
-template <int Scale>
 struct Composer {
-  static constexpr int group = wellspring::group<Scale>, half_group = group / 2;
   const View& view;
   const Cells& cells;
   bool known;
   const Frame& light;
-  PixelRays rays, light_rays;
+  PixelRays rays;
   vec2 offset{0.5f};
   float prior_variance = moving_prior_variance;
-  float own_counts = 1;  // samples of a pixel's own point, each
   KeptLight kept = {};
   bool passing = false;  // what maps say all of is not asked of points: the picture is soon another
   Shade shade = {};
 
   // Eight lanes each.
   static int parts_of(const VisibleRun& run) {
-    return (run.count + half_group + lane_count - 1) / lane_count;
+    return (run.count + half_cell + lane_count - 1) / lane_count;
   }
-  const CellRows<Scale>& rows_around(const VisibleRun& run) const;
+  const CellRows& rows_around(const VisibleRun& run) const;
   void light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const;
-  void light_run(const RunPixels& p, const VisibleRun& run, const CellRows<Scale>* read,
+  void light_run(const RunPixels& p, const VisibleRun& run, const CellRows* read,
                  const RunGlow& emitting, int n, LanePart part, Drawn& d) const;
   Shown light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
                    const RunMoving& moving, const RunMapped& mapped, const RunDynamic& dynamic,
-                   const CellRows<Scale>* rows, int n, LanePart part) const;
+                   const CellRows* rows, int n, LanePart part) const;
 };
 
-template <int Scale>
-const CellRows<Scale>& Composer<Scale>::rows_around(const VisibleRun& run) const {
-  thread_local CellRows<Scale> rows;
-  int by = (run.y + half_group) / group, bx = run.x / group;  // the lower right cell
-  int count = parts_of(run) * together<Scale> + 1;
+const CellRows& Composer::rows_around(const VisibleRun& run) const {
+  thread_local CellRows rows;
+  int by = (run.y + half_cell) / cell_size, bx = run.x / cell_size;  // the lower right cell
+  int count = parts_of(run) * cells_together + 1;
   if (rows.picture != run.picture || rows.first != bx - 1 || rows.row != by - 1 ||
       rows.count < count)
-    rows.read(light_rays, cells, run.picture, bx - 1, by - 1, count);
+    rows.read(rays, cells, run.picture, bx - 1, by - 1, count);
   return rows;
 }
 
 // Pixels of which no cell knows the surface: light of the points around that lie on it.
-template <int Scale>
-void Composer<Scale>::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const {
+void Composer::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const {
   Pixels& p = d.pixels;
   for (unsigned bits = negative_lanes(lonely); bits != 0; bits &= bits - 1) {
     int k = std::countr_zero(bits);
     if (!(p.depth[k] < 0.5f * infinite_depth)) continue;
     vec3 albedo(d.albedo.r[k], d.albedo.g[k], d.albedo.b[k]);
     if (albedo == vec3(0) && p.samples[k] > 0) continue;  // mirrors are sharp
-    SeenPlace place{lx + k / Scale,
-                    ly,
-                    vec2(p.x[k], p.y[k]),
-                    p.depth[k],
-                    vec3(p.nx[k], p.ny[k], p.nz[k]),
-                    albedo,
-                    p.object[k]};
-    NearbyLight found = find_light_nearby(view, light_rays, light, place);
+    SeenPlace place{
+        lx + k, ly,         vec2(p.x[k], p.y[k]), p.depth[k], vec3(p.nx[k], p.ny[k], p.nz[k]),
+        albedo, p.object[k]};
+    NearbyLight found = find_light_nearby(view, rays, light, place);
     if (found.samples == 0) continue;
     p.samples[k] = found.samples;
     p.deviation[k] = found.deviation;
@@ -186,12 +176,9 @@ void Composer<Scale>::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& 
 
 // The `n`-th eight of the run's pixels, of which `part` lies in the run: beyond it arrays hold
 // anything. What the light of points says of them.
-template <int Scale>
-void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
-                                const CellRows<Scale>* read, const RunGlow& emitting, int n,
-                                LanePart part, Drawn& d) const {
-  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-  int i = n * lane_count - half_group, x = run.x + i;  // the first lane's pixel
+void Composer::light_run(const RunPixels& p, const VisibleRun& run, const CellRows* read,
+                         const RunGlow& emitting, int n, LanePart part, Drawn& d) const {
+  int i = n * lane_count - half_cell, x = run.x + i;  // the first lane's pixel
   Pixels& q = d.pixels;
   if (!known) {  // there is no point
     d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
@@ -206,29 +193,26 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
   q.normal2 = lanes_max(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, all_lanes(1e-30f));
   q.x = rays.x(float(x) + offset.x) + rays.inverse_focal * lane;
   q.y = all_lanes(rays.y(float(run.y) + offset.y));
-  int lx = (x + half_group) / Scale + packed_start, ly = run.y / Scale;
-  take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
-                  light_rays.y(float(ly) + 0.5f), d);
-  q.samples *= own_counts;
-  const CellRows<Scale>& rows = *read;
-  constexpr Lanes across = group == lane_count ? lane : Lanes{0, 1, 2, 3, 0, 1, 2, 3};
-  const Lanes fx = (across + 0.5f) * (1.0f / group);
-  float fy = (float(run.y - (rows.row + 1) * group + half_group) + 0.5f) / group;
+  take_own(view, rays, read_own(light, x, run.y), rays.x(float(x) + 0.5f),
+           rays.y(float(run.y) + 0.5f), d);
+  const CellRows& rows = *read;
+  constexpr Lanes across{0, 1, 2, 3, 0, 1, 2, 3};
+  const Lanes fx = (across + 0.5f) * (1.0f / cell_size);
+  float fy = (float(run.y - (rows.row + 1) * cell_size + half_cell) + 0.5f) / cell_size;
   Lanes weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
-  const int g = n * together<Scale>;
-  using Cell = typename CellRows<Scale>::Cell;
-  const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g), &rows.at(1, g + 1)};
-  auto find_nearby = [&](const LaneMask& lonely, Drawn& of) { light_thin(lonely, lx, ly, of); };
+  const int g = n * cells_together;
+  const WideCell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
+                                &rows.at(1, g + 1)};
+  auto find_nearby = [&](const LaneMask& lonely, Drawn& of) { light_thin(lonely, x, run.y, of); };
   light_group(corners, rows.flat[g], weights, prior_variance,
               lanes_of_bits(part.bits() & ~bits_at(emitting.only, i)), find_nearby, d);
 }
 
-template <int Scale>
-Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
-                                  const RunGlow& emitting, const RunMoving& moving,
-                                  const RunMapped& mapped, const RunDynamic& dynamic,
-                                  const CellRows<Scale>* rows, int n, LanePart part) const {
-  const int i = n * lane_count - half_group;
+Shown Composer::light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
+                           const RunMoving& moving, const RunMapped& mapped,
+                           const RunDynamic& dynamic, const CellRows* rows, int n,
+                           LanePart part) const {
+  const int i = n * lane_count - half_cell;
   const unsigned here = part.bits(), moves = bits_at(moving.pixels, i) & here,
                  plain = bits_at(mapped.plain, i) & here;
   Drawn d;
@@ -261,8 +245,8 @@ Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
 }
 
 // Runs of the picture, put into `planes`.
-template <int Scale, class Planes>
-auto taker(const Composer<Scale>& composer, const Planes& planes) {
+template <class Planes>
+auto taker(const Composer& composer, const Planes& planes) {
   return [&composer, &planes](const VisibleRun& run) {
     RunPixels p;
     RunMoving moving;
@@ -276,12 +260,12 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
                      ~composer.shade.pixels(run, composer.rays, composer.offset);
     const RunDynamic dynamic = find_dynamic(kept.dynamic, composer.view, run, p);
     const uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
-    const CellRows<Scale>* rows = !composer.known || (moving.pixels | mapped.plain) == all
-                                      ? nullptr
-                                      : &composer.rows_around(run);
+    const CellRows* rows = !composer.known || (moving.pixels | mapped.plain) == all
+                               ? nullptr
+                               : &composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
-      int i = n * lane_count - composer.half_group;
+      int i = n * lane_count - half_cell;
       LanePart part{std::max(-i, 0), std::min(run.count - i, lane_count)};
       planes.put(row + size_t(i + part.begin), part,
                  composer.light_part(run, p, emitting, moving, mapped, dynamic, rows, n, part));
@@ -289,8 +273,6 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
   };
 }
 
-using CoarseComposer = Composer<light_scale>;
-using FineComposer = Composer<1>;
 constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs enough
 
 float still_prior_variance(float guessed) {
@@ -298,25 +280,20 @@ float still_prior_variance(float guessed) {
 }
 // A picture that stands for itself. Returns its edges.
 template <class Planes>
-std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
+std::span<const std::vector<EdgeShare>> compose_moment(const View& view,
                                                        const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
                                                        const Frame& light, const KeptLight& kept,
-                                                       bool filtered, const Planes& planes) {
-  auto draw = [&](auto composer) {
-    if (filtered) composer.own_counts = filtered_counts;
-    composer.kept = kept;
-    composer.passing = true;
-    composer.shade = Shade(view, visibility.moving_bounds());
-    auto differ = [&planes](uint32_t pixel, uint32_t step, int count) {
-      return planes.differ(pixel, step, count);
-    };
-    return visibility.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
-                                differ);
+                                                       const Planes& planes) {
+  Composer composer{view, cells, known, light, PixelRays(view)};
+  composer.kept = kept;
+  composer.passing = true;
+  composer.shade = Shade(view, visibility.moving_bounds());
+  auto differ = [&planes](uint32_t pixel, uint32_t step, int count) {
+    return planes.differ(pixel, step, count);
   };
-  PixelRays rays(view);
-  if (lit == view) return draw(FineComposer{view, cells, known, light, rays, rays});
-  return draw(CoarseComposer{view, cells, known, light, rays, PixelRays(lit)});
+  return visibility.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
+                              differ);
 }
 
 // What moves, in runs within the window that show any of it. Returns its edges.
@@ -335,18 +312,15 @@ std::span<const std::vector<EdgeShare>> see_moving(const View& view,
 
 }  // namespace
 
-void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
-                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
-                   Frame& frame) {
+void compose_drawn(const View& view, const VisibilityPass& visibility, const Cells& cells,
+                   bool known, const Frame& light, const KeptLight& kept, Frame& frame) {
   FramePlanes planes{frame};
-  soften_edges(compose_moment(view, lit, visibility, cells, known, light, kept, false, planes),
-               frame.color);
+  soften_edges(compose_moment(view, visibility, cells, known, light, kept, planes), frame.color);
 }
 
-void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
-                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
-                   const Tonemap& tonemap, bool filtered, std::vector<uint8_t>& peaks,
-                   Image8& image, std::vector<float>* depth) {
+void compose_drawn(const View& view, const VisibilityPass& visibility, const Cells& cells,
+                   bool known, const Frame& light, const KeptLight& kept, const Tonemap& tonemap,
+                   std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth) {
   size_t pixels = size_t(view.width) * size_t(view.height);
   image.width = view.width, image.height = view.height;
   image.rgb.resize(3 * pixels);
@@ -354,21 +328,14 @@ void compose_drawn(const View& view, const View& lit, const VisibilityPass& visi
   if (depth) depth->resize(pixels);
   EyePlanes planes{tonemap.exposure, image.rgb.data(), peaks.data(),
                    depth ? depth->data() : nullptr};
-  soften_edges(compose_moment(view, lit, visibility, cells, known, light, kept, filtered, planes),
-               image, peaks);
+  soften_edges(compose_moment(view, visibility, cells, known, light, kept, planes), image, peaks);
 }
 
 void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset,
                    const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
                    float guessed, Frame& frame) {
-  FineComposer composer{view,
-                        cells,
-                        known,
-                        light,
-                        PixelRays(view),
-                        PixelRays(view),
-                        offset,
-                        still_prior_variance(guessed)};
+  Composer composer{
+      view, cells, known, light, PixelRays(view), offset, still_prior_variance(guessed)};
   composer.kept = kept;
   FramePlanes planes{frame};
   visibility.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
@@ -379,14 +346,8 @@ std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
                                                        const Cells& cells, bool known,
                                                        const Frame& light, const KeptLight& kept,
                                                        float guessed, Frame& frame) {
-  FineComposer composer{view,
-                        cells,
-                        known,
-                        light,
-                        PixelRays(view),
-                        PixelRays(view),
-                        vec2(0.5f),
-                        still_prior_variance(guessed)};
+  Composer composer{
+      view, cells, known, light, PixelRays(view), vec2(0.5f), still_prior_variance(guessed)};
   composer.kept = kept;
   return see_moving(view, visibility, {0, 0, view.width, view.height},
                     taker(composer, NearerPlanes{frame}));

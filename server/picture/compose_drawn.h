@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture drawn anew every frame (light/visible/visibility.h) in light that points remember:
-// shapes and reflectances are what has to be sharp, light is smoother than both. Where samples are
-// few it has half of the picture's resolution, as a quarter of the points tells it sooner and costs
-// less.
+// shapes and reflectances are what has to be sharp, light is smoother than both.
 #pragma once
 #include "frame/tonemap.h"
 #include "light/visible/visibility.h"
-#include "light/visible/light_view.h"
 #include "picture/moving_picture.h"
 
 namespace wellspring {
@@ -24,26 +21,21 @@ struct KeptLight {
   const DynamicImage* dynamic = nullptr;
 };
 
-// Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`
-// itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`:
-// what fill_cells() said.
-void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
-                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
-                   Frame& frame);
+// Overwrites all planes of `frame`. `light`: its planes packed as read_surface() leaves them, with
+// `cells` filled from it; `known`: what fill_cells() said.
+void compose_drawn(const View& view, const VisibilityPass& visibility, const Cells& cells,
+                   bool known, const Frame& light, const KeptLight& kept, Frame& frame);
 // The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
 // reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
-// metres along the viewing axis, infinity: nothing there). `filtered`: light is that of the cells,
-// which are means; each point for itself would show as a square where pixels are as large as those
-// of surroundings. `peaks` is scratch: light beyond white, until edges are softened.
-void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
-                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
-                   const Tonemap& tonemap, bool filtered, std::vector<uint8_t>& peaks,
-                   Image8& image, std::vector<float>* depth);
+// metres along the viewing axis, infinity: nothing there). `peaks` is scratch: light beyond white,
+// until edges are softened.
+void compose_drawn(const View& view, const VisibilityPass& visibility, const Cells& cells,
+                   bool known, const Frame& light, const KeptLight& kept, const Tonemap& tonemap,
+                   std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth);
 
-// What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
-// itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures
-// is antialiased. `guessed`: the share of its light that no point tells, by which a pixel's own few
-// samples are doubted as they are while the visitor moves.
+// What does not move of a picture at rest, seen at one place of every pixel, `offset` (0 to 1): the
+// mean over several such pictures is antialiased. `guessed`: the share of its light that no point
+// tells, by which a pixel's own few samples are doubted as they are while the visitor moves.
 void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset,
                    const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
                    float guessed, Frame& frame);

@@ -25,11 +25,6 @@ Compositor::Compositor(std::shared_ptr<CompositorWork> shared)
     : shares_(shared != nullptr),
       work_(shares_ ? std::move(shared) : std::make_shared<CompositorWork>()) {}
 
-// Coarser, unless the view itself was projected.
-View Compositor::light_of(const RenderCache& cache, const View& view) const {
-  return cache.has_projected(view) ? view : light_view(view);
-}
-
 // Of another view nothing is kept.
 void Compositor::begin(const RenderCache& cache) {
   if (projection_ == cache.projection()) return;
@@ -53,17 +48,17 @@ void Compositor::follow_changes(const RenderCache& cache) {
     if (cache.image().renewed[i]) samples_.count[i] = 0;
 }
 
-// Finds the light of `lit`, which is projected, then calls compose() and takes the time.
+// Finds the light of `view`, which is projected, then calls compose() and takes the time.
 template <class Compose>
-void Compositor::draw(RenderCache& cache, const View& lit, const Compose& compose) {
+void Compositor::draw(RenderCache& cache, const View& view, const Compose& compose) {
   Frame& light = work_->light;
-  fit_frame(lit.width, lit.height, light);
+  fit_frame(view.width, view.height, light);
   cache.lend_light();
-  cache.scratch().start(cells_bytes(lit.width, lit.height));
-  take_cells(cells_, lit.width, lit.height, cache.scratch());
-  ShownPoints shown = read_surface(lit, cache.points(), cache.image(), cells_, light);
-  known_ = fill_cells(lit, cells_);
-  if (known_) filter_cells(lit, cells_);
+  cache.scratch().start(cells_bytes(view.width, view.height));
+  take_cells(cells_, view.width, view.height, cache.scratch());
+  ShownPoints shown = read_surface(view, cache.points(), cache.image(), cells_, light);
+  known_ = fill_cells(view, cells_);
+  if (known_) filter_cells(view, cells_);
   const double began = seconds_now();
   compose(float(shown.points) / float(light.color.size()));
   drawing_ms_ = float(1000 * (seconds_now() - began));
@@ -73,24 +68,20 @@ void Compositor::draw(RenderCache& cache, const View& lit, const Compose& compos
 
 void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                       Frame& frame) {
-  View lit = light_of(cache, view);
-  if (!cache.has_projected(lit)) cache.project(lit);
+  if (!cache.has_projected(view)) cache.project(view);
   begin(cache);
   fit_frame(view.width, view.height, frame);
-  draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, visibility, cells_, known_, work_->light, kept_, frame);
-  });
+  draw(cache, view,
+       [&](float) { compose_drawn(view, visibility, cells_, known_, work_->light, kept_, frame); });
 }
 
 void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
-                      const Tonemap& tonemap, Image8& image, std::vector<float>* depth,
-                      bool filtered) {
-  View lit = light_of(cache, view);
-  if (!cache.has_projected(lit)) cache.project(lit);
+                      const Tonemap& tonemap, Image8& image, std::vector<float>* depth) {
+  if (!cache.has_projected(view)) cache.project(view);
   begin(cache);
-  draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, visibility, cells_, known_, work_->light, kept_, tonemap, filtered,
-                  work_->peaks, image, depth);
+  draw(cache, view, [&](float) {
+    compose_drawn(view, visibility, cells_, known_, work_->light, kept_, tonemap, work_->peaks,
+                  image, depth);
   });
 }
 

@@ -51,16 +51,13 @@ class Compositor {
   // Pictures show what lights that move or change add from now on (borrowed; null: nothing); of
   // each view it is to be computed before. Pictures at rest, which become means, are without.
   void set_dynamic(const DynamicImage* image) { kept_.dynamic = image; }
-  // A picture of `view` in the light of `view` or of light_view(view) (picture/compose_drawn.h),
-  // whichever was projected (neither: the latter). The second for the eye at once, and of a `depth`
-  // that is not null metres along the viewing axis, infinity: nothing there. `filtered`: of pixels
-  // so large that a point's own light would show as a square.
+  // A picture of `view`, which is projected if it is not. The second for the eye at once, and of a
+  // `depth` that is not null metres along the viewing axis, infinity: nothing there.
   void draw(RenderCache& cache, const View& view, const VisibilityPass& visibility, Frame& frame);
   void draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
-            const Tonemap& tonemap, Image8& image, std::vector<float>* depth = nullptr,
-            bool filtered = false);
-  // The same at rest, in light of the view's own resolution: what does not move is antialiased in
-  // time, seen at another place of the pixels each time.
+            const Tonemap& tonemap, Image8& image, std::vector<float>* depth = nullptr);
+  // The same at rest: what does not move is antialiased in time, seen at another place of the
+  // pixels each time.
   void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                   Frame& frame, StillShows shows = StillShows::all);
   // At rest, after RenderCache::remember(): samples of pixels whose light it found changed since
@@ -89,9 +86,8 @@ class Compositor {
   size_t memory_bytes() const;                      // without work that is shared
 
  private:
-  View light_of(const RenderCache& cache, const View& view) const;
   template <class Compose>
-  void draw(RenderCache& cache, const View& lit, const Compose& compose);
+  void draw(RenderCache& cache, const View& view, const Compose& compose);
   void begin(const RenderCache& cache);
   void begin_still(const RenderCache& cache);
 

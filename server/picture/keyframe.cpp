@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "frame/disparity_code.h"
 
 namespace wellspring {
 namespace {
@@ -71,6 +72,11 @@ View scaled_view(View view, float scale) {
   view.width = std::max(int(std::lround(scale * float(view.width))), 1);
   view.height = std::max(int(std::lround(scale * float(view.height))), 1);
   return view;
+}
+
+float disparity_unit(const View& view) {
+  const float focal = 0.5f * float(view.height) / view.tan_half_fov;  // pixels
+  return 0.5f / (worst_units * focal);
 }
 
 static vec3 direction_at(const View& view, float across, float down) {  // of the picture, 0 to 1

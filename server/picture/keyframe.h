@@ -44,6 +44,10 @@ View surrounding_view(std::span<const View> views, float share);
 // from 0 to 1, in steps of less than a hundredth.
 float missing_share(const View& drawn, const View& wanted);
 
+// The unit in which a display is told disparities of the view (frame/disparity_code.h): they are
+// off by at most half a pixel of parallax for each metre that the eye moves.
+float disparity_unit(const View& view);
+
 // Reuses the memory of `keyframe`. `depth`: along the viewing axis, one a pixel, as Frame::depth;
 // anything that is not a positive number counts as infinitely far. Throws std::invalid_argument
 // when sizes differ.

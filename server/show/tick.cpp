@@ -36,6 +36,7 @@ namespace {
 
 constexpr double agent_interval = 0.1;  // seconds between agent messages while somebody listens
 constexpr double state_interval = 0.5;
+constexpr double pose_interval = 1 / 30.0;    // while the view changes
 constexpr double heard_state_interval = 0.1;  // while there is sound to be heard from somewhere
 constexpr double behave_interval = 0.04;
 constexpr double idle_before_bake = 5;       // seconds in which nothing was drawn
@@ -307,6 +308,16 @@ void pace_tour(Visitor& visitor) {
   place.glide.most_pace = pace(place.glide.path, place.glide.time);
 }
 
+// A page that moves its own camera is told where it is led, or has to be.
+void send_pose(const Show& show, Visitor& visitor) {
+  const View& view = visitor.place.last_view;
+  if (!visitor.wants.local || view == visitor.posed || show.time - visitor.posed_at < pose_interval)
+    return;
+  visitor.posed = view;
+  visitor.posed_at = show.time;
+  visitor.link->send_text(pose_message(show, visitor));
+}
+
 void send_state(Show& show, Visitor& visitor) {
   double interval = visitor.hearing.utterance != 0 ? heard_state_interval : state_interval;
   if (show.time - visitor.state_sent_at < interval) return;
@@ -371,6 +382,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   if (show.settings.background) present_all(show);
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
+    send_pose(show, visitor);
     send_state(show, visitor);
     send_token(show, visitor);
   }

@@ -114,6 +114,7 @@ struct Hello {
   std::string resume;         // of the last `keep`; empty: a new visit
   std::string token;          // of a kiosk (wire/tokens.h); empty: none is shown
   std::optional<bool> parts;  // packet.h
+  std::string display;        // "local" or "server"; empty: as "server"
   static void list(auto& message, auto& fields) {
     fields.text("exhibit", message.exhibit, "id, empty for the one shown");
     fields.token("resume", message.resume,
@@ -126,6 +127,9 @@ struct Hello {
     fields.integer("height", min_side, max_side, message.height, "16..4096");
     fields.boolean("parts", message.parts,
                    "boolean: pictures may come as parts of the one before; optional");
+    fields.word("display", {"server", "local"}, message.display,
+                "local: pictures come as keyframes with depth, which the page shows from where its "
+                "visitor is by then; server or left out: as they are to be shown");
   }
   bool operator==(const Hello&) const = default;
 };

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wire/packet.h"
 
+#include <bit>
 #include <cassert>
+#include <cmath>
 
 #include "wire/little_endian.h"
 
@@ -37,6 +39,66 @@ void write_packet_header(const PacketHeader& header, std::span<const PicturePart
   }
 }
 
+namespace {
+
+template <class T, class Bits>
+void put_real(std::span<uint8_t> packet, size_t& at, T value) {
+  put(packet, at, std::bit_cast<Bits>(value));
+  at += sizeof(T);
+}
+template <class T, class Bits>
+T get_real(std::span<const uint8_t> packet, size_t& at) {
+  const T value = std::bit_cast<T>(get<Bits>(packet, at));
+  at += sizeof(T);
+  return value;
+}
+
+// Calls real(number) for each number of the view, in the packet's order.
+void each_number(auto& keyframe, const auto& real) {
+  real(keyframe.eye.x), real(keyframe.eye.y), real(keyframe.eye.z);
+  for (auto* axis : {&keyframe.right, &keyframe.up, &keyframe.forward})
+    real(axis->x), real(axis->y), real(axis->z);
+  real(keyframe.tan_half_fov);
+  real(keyframe.middle.x), real(keyframe.middle.y);
+  real(keyframe.unit);
+}
+
+}  // namespace
+
+void write_packet_header(const PacketHeader& header, const KeyframeHeader& keyframe,
+                         std::span<uint8_t> packet) {
+  assert(packet.size() >= keyframe_header_bytes);
+  write_packet_header(header, packet);
+  put(packet, header_length_at, uint16_t(keyframe_header_bytes));
+  put(packet, 28, keyframe.color_bytes);
+  put(packet, 32, keyframe.cuts);
+  put(packet, 36, keyframe.width);
+  put(packet, 38, keyframe.height);
+  size_t at = 40;
+  each_number(keyframe, [&](auto value) {
+    if constexpr (sizeof(value) == 8) put_real<double, uint64_t>(packet, at, value);
+    else put_real<float, uint32_t>(packet, at, value);
+  });
+}
+
+static bool read_keyframe(std::span<const uint8_t> bytes, PacketView& view) {
+  if (bytes.size() - view.payload.size() < keyframe_header_bytes) return false;
+  KeyframeHeader& keyframe = view.keyframe.emplace();
+  keyframe.color_bytes = get<uint32_t>(bytes, 28);
+  keyframe.cuts = get<uint32_t>(bytes, 32);
+  keyframe.width = get<uint16_t>(bytes, 36);
+  keyframe.height = get<uint16_t>(bytes, 38);
+  size_t at = 40;
+  bool finite = true;
+  each_number(keyframe, [&](auto& value) {
+    if constexpr (sizeof(value) == 8) value = get_real<double, uint64_t>(bytes, at);
+    else value = get_real<float, uint32_t>(bytes, at);
+    finite &= bool(std::isfinite(value));
+  });
+  return finite && keyframe.color_bytes <= view.payload.size() && keyframe.width > 0 &&
+         keyframe.height > 0 && keyframe.tan_half_fov > 0 && keyframe.unit > 0;
+}
+
 // False: they are not all there, or not within the picture.
 static bool read_parts(std::span<const uint8_t> bytes, PacketView& view) {
   const size_t header_bytes = bytes.size() - view.payload.size();
@@ -70,7 +132,10 @@ std::optional<PacketView> read_packet(std::span<const uint8_t> bytes) {
   view.header.quality = get<uint8_t>(bytes, 24);
   view.header.flags = get<uint8_t>(bytes, 25);
   view.payload = *payload;
-  if (!(view.header.flags & packet_complete) && !read_parts(bytes, view)) return std::nullopt;
+  const bool complete = view.header.flags & packet_complete;
+  if (!complete && !read_parts(bytes, view)) return std::nullopt;
+  if (complete && (view.header.flags & packet_depth) && !read_keyframe(bytes, view))
+    return std::nullopt;
   return view;
 }
 

@@ -8,17 +8,27 @@
 // which is first scaled to that size where it was of another. Its header goes on: 28 u16 number of
 // parts, then for each from 30 on: u16 x, u16 y, u16 width, u16 height, u32 bytes; the payload is
 // their JPEGs one after the other. No parts: nothing is new but seq.
+//
+// With the flag `depth` a complete picture is a keyframe, for displays that reproject it (hello
+// {display: "local"}). Its header goes on: 28 u32 bytes of the JPEG, 32 u32 camera cuts so far, 36
+// u16 width, 38 u16 height of the depth, 40 f64 x, y, z of the eye, 64 f32 x, y, z of each of the
+// axes to the right, up and forward, 100 f32 half of the picture's height at a depth of 1, 104 f32
+// x, y of its middle there, 112 f32 unit. Behind the JPEG follow disparities in that unit, as
+// frame/disparity_code.h has them.
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "base/vec.h"
+
 namespace wellspring {
 
 inline constexpr uint8_t packet_still =
     1;  // the visitor stands still and this is the refined picture
 inline constexpr uint8_t packet_complete = 2;  // complete picture, not a part
+inline constexpr uint8_t packet_depth = 4;     // complete, and where its pixels are
 
 struct PacketHeader {
   uint32_t frame = 0, seq = 0;
@@ -33,6 +43,19 @@ struct PicturePart {
   uint32_t bytes = 0;                            // of its JPEG
   bool operator==(const PicturePart&) const = default;
 };
+// A keyframe tells the view that it was drawn for, in metres of the exhibit, and what its depth is.
+struct KeyframeHeader {
+  uint32_t color_bytes = 0, cuts = 0;
+  uint16_t width = 0, height = 0;
+  dvec3 eye{0};
+  vec3 right{0}, up{0}, forward{0};
+  float tan_half_fov = 0;
+  vec2 middle{0};
+  float unit = 0;
+  bool operator==(const KeyframeHeader&) const = default;
+};
+inline constexpr size_t keyframe_header_bytes = 116;
+
 inline constexpr size_t max_parts = 16;  // of a picture
 inline constexpr size_t parts_header_bytes(size_t parts) {
   return packet_header_bytes + 2 + 12 * parts;
@@ -46,11 +69,16 @@ void write_packet_header(const PacketHeader& header, std::span<uint8_t> packet);
 // Likewise over the first parts_header_bytes() of it.
 void write_packet_header(const PacketHeader& header, std::span<const PicturePart> parts,
                          std::span<uint8_t> packet);
+// Likewise over the first keyframe_header_bytes of it.
+void write_packet_header(const PacketHeader& header, const KeyframeHeader& keyframe,
+                         std::span<uint8_t> packet);
 // Empty when the bytes are no picture message (short, other magic, header length < 28 or past the
-// end; parts that are past the end, or not within the picture).
+// end; parts that are past the end, or not within the picture; a keyframe of no size, or whose
+// view or unit is no finite number).
 struct PacketView {
   PacketHeader header;
-  std::vector<PicturePart> parts;  // of one that is not complete
+  std::vector<PicturePart> parts;          // of one that is not complete
+  std::optional<KeyframeHeader> keyframe;  // of one with depth
   std::span<const uint8_t> payload;
 };
 std::optional<PacketView> read_packet(std::span<const uint8_t> bytes);

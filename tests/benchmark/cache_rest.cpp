@@ -105,8 +105,8 @@ void stand(BenchReport& report, const BenchOptions& options, const Stand& at,
   for (double seconds : judged_at) {
     if (options.quick && seconds > 2) break;
     for (; frame < int(std::lround(seconds * rate)); frame++) {
-      settled = wants_reference(frame / rate, settled, frame == 0,
-                                float(shown.stats.filled + shown.empty), shown.stats.converged);
+      settled = wants_reference(frame / rate, settled, float(shown.stats.filled + shown.empty),
+                                shown.stats.converged);
       moment.technique = find_technique(settled ? "path" : "gather");
       moment.transport.clamp = settled ? still_clamp : moving_clamp;
       moment.frame = frame;

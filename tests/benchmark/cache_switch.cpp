@@ -97,21 +97,20 @@ struct Onlooker {
     View view = lit.view;
     if (way == Way::moving && pictures % 2 == 0)
       view.position += 0.004f * (pictures % 4 ? -1.0f : 1.0f) * view.right;
-    const View seen = way == Way::moving ? light_view(view) : view;
     uint64_t seed = mix64(uint64_t(++pictures) * 0x9e3779b9u);
     TransportSettings transport;
     transport.max_depth = scene.max_depth;
     transport.clamp = 4;  // as ShowSettings::moving_clamp
     cache.resize(view.width, view.height);
     cache.move_points(*lit.world);
-    cache.project(seen);
+    cache.project(view);
     cache.attend();
-    cache.plan(seen, view.width * view.height / mismatch, seed, requests);
+    cache.plan(view, view.width * view.height / mismatch, seed, requests);
     samples.resize(requests.size());
     trace(*find_technique(scene.technique), *lit.world, lit.lights, transport, requests, samples);
-    cache.remember(seen, requests, samples);
+    cache.remember(view, requests, samples);
     compositor.follow_changes(cache);
-    compositor.add_samples(seen, requests, samples);
+    compositor.add_samples(view, requests, samples);
     if (way == Way::moving) compositor.draw(cache, view, *lit.visibility, frame);
     else compositor.draw_still(cache, view, *lit.visibility, frame);
   }

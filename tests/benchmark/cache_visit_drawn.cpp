@@ -12,7 +12,6 @@
 #include "picture/still/plan_still.h"
 #include "picture/still/reconstruct_still.h"
 #include "picture/still/still_guides.h"
-#include "show/draw/sample_budget.h"
 #include "show/draw/steer.h"
 #include "show/state/lamps.h"
 #include "show/state/picture_job.h"
@@ -20,7 +19,6 @@
 namespace wellspring {
 namespace {
 
-constexpr double displayed_rate = 60;  // frames a second
 // As the show has them.
 constexpr float predicted_frames = 2, barely_covered = 0.1f;
 constexpr double predicted_share = 0.3;                     // of the budget, at most
@@ -60,9 +58,7 @@ class Drawn : public VisitMethod {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
     const bool passing = moment.frame - moved_ < still_after;
-    const double pixels = double(moment.view.width) * double(moment.view.height);
-    const bool coarse = passing && !affords_fine_light(budget * displayed_rate / pixels, false);
-    const View view = coarse ? light_view(moment.view) : moment.view;
+    const View& view = moment.view;
     follow_light(moment);
     land(broker_.collect(), *moment.world, uint64_t(moment.frame), cache_);
     cache_.project(view);
@@ -72,11 +68,11 @@ class Drawn : public VisitMethod {
     plan(moment, view, passing, late ? int(more_asked * budget) : budget);
     if (late) ask(moment, view, budget);
     else trace_at_once(moment, view, passing);
-    if (passing) compositor_.draw(cache_, moment.view, visibility(moment), shown.frame);
+    if (passing) compositor_.draw(cache_, view, visibility(moment), shown.frame);
     else if (passed_ == 0)
       compositor_.draw_still(cache_, moment.view, visibility(moment), shown.frame);
     if (learns_ && !reconstruct(moment, shown.frame) && passed_ > 0) cache_.end_frame();
-    if (way_.steers && moment.frame % analysed_every == 0) steer(moment, view, coarse, shown.frame);
+    if (way_.steers && moment.frame % analysed_every == 0) steer(moment, shown.frame);
     shown.stats = cache_.stats();
     shown.empty = shown.stats.empty;
     if (way_.answers != Answers::waited_for) return;
@@ -144,12 +140,11 @@ class Drawn : public VisitMethod {
     if (!passing) compositor_.add_samples(view, requests_, samples_);
   }
   // As show/draw/steer.cpp, of the picture just drawn, for the next.
-  void steer(const VisitMoment& moment, const View& lit, bool coarse, const Frame& frame) {
+  void steer(const VisitMoment& moment, const Frame& frame) {
     PictureJob job;
     job.view = moment.view;
-    job.coarse = coarse;
     tonemap(frame, {}, image_);
-    analysis_.cause = {note_seen(job, lit, image_, cache_), {}, task_weight, objects_.known};
+    analysis_.cause = {note_seen(job, image_, cache_), {}, task_weight, objects_.known};
     if (!analysis_.cause.seen) return;
     analyse(analysis_);
     cache_.set_weights(*analysis_.weights);

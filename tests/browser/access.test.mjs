@@ -12,7 +12,6 @@ import { launch, pictures, skip } from './chromium.mjs';
 
 const axe = load_module('axe-core').source;
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-access-'));
-const patience = { timeout: 60000 };
 const rules = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
 const sizes = {
   phone: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
@@ -43,7 +42,6 @@ after(async () => {
 async function open(path, options = sizes.laptop) {
   const context = await browser.newContext({ locale: 'en-GB', ...options });
   const page = await context.newPage();
-  page.setDefaultTimeout(patience.timeout);
   await page.goto(server.url + path);
   return page;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The browser of the tests: Debian's Chromium, without a screen, by Playwright.
 import { existsSync } from 'node:fs';
-import { load_module } from '../server.mjs';
+import { deadline, load_module } from '../server.mjs';
 
 const executable = [
   '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
@@ -10,8 +10,18 @@ export const skip = !executable && 'no Chromium on this machine';
 // a folder for screenshots, for people to look at
 export const pictures = process.env.WELLSPRING_PICTURES;
 
-export const launch = () => load_module('playwright-core').chromium.launch({
-  executablePath: executable,
-  args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+// `drawing`: what says by which it draws in three dimensions, if at all.
+export async function launch(drawing = ['--disable-gpu']) {
+  const browser = await load_module('playwright-core').chromium.launch({
+    executablePath: executable,
+    args: ['--no-sandbox', ...drawing, '--disable-quic', '--no-first-run',
       '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-});
+  });
+  const make = browser.newContext.bind(browser);
+  browser.newContext = async (options) => {
+    const context = await make(options);
+    context.setDefaultTimeout(deadline);
+    return context;
+  };
+  return browser;
+}

@@ -65,7 +65,7 @@ before(async () => {
   ({ context } = await driver.ask('browsingContext.create', { type: 'tab' }));
   await driver.ask('browsingContext.setViewport',
       { context, viewport: { width: 960, height: 540 } });
-}, { timeout: 90000 });
+});
 after(async () => {
   driver?.close();
   if (firefox) {

@@ -2,17 +2,13 @@
 // The kiosk's screen in headless Chromium, before a server that the test plays: every stage, every
 // control, at the sizes that kiosks have.
 import assert from 'node:assert/strict';
-import { existsSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { start_screen_server } from '../screen_server.mjs';
-import { load_module, sleep, source } from '../server.mjs';
+import { sleep, source } from '../server.mjs';
+import { launch, pictures, skip } from './chromium.mjs';
 
-const { chromium } = load_module('playwright-core');
-const executable = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']
-    .find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
-const pictures = process.env.WELLSPRING_PICTURES;
 const poster = readFileSync(join(source, 'content/castle/poster.jpg'));
 
 const all = (text) => ({ en: text, de: `${text} (de)`, sk: `${text} (sk)` });
@@ -39,8 +35,7 @@ let server, browser;
 before(async () => {
   if (skip) return;
   server = await start_screen_server(exhibit);
-  browser = await chromium.launch({ executablePath: executable,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-3d-apis'] });
+  browser = await launch(['--disable-gpu', '--disable-3d-apis']);
 });
 const opened = [];
 afterEach(async () => { for (const page of opened.splice(0)) await page.close(); });
@@ -414,15 +409,13 @@ test('ten thousand random touches and observations leave no broken state', { ski
 
 test('the water is drawn: dark asleep, light awake, moved by a touch, back after a lost context',
     { skip }, async () => {
-  const drawing = await chromium.launch({ executablePath: executable,
-    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+  const drawing = await launch(['--use-angle=swiftshader', '--enable-unsafe-swiftshader']);
   const { page, problems } = await open([480, 640],
       { from: drawing, address: '/kiosk?lang=en&pixels=30000', stage: 'sleep' });
   const more_pictures = async (n = 3) => {
     const now = Number(await page.getAttribute('#well', 'data-pictures'));
     await page.waitForFunction((wanted) =>
-      Number(document.getElementById('well').dataset.pictures) >= wanted, now + n,
-    { timeout: 60000 });
+      Number(document.getElementById('well').dataset.pictures) >= wanted, now + n);
   };
   // Mean level of the middle, read while the picture is still there.
   const level = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => {
@@ -438,8 +431,7 @@ test('the water is drawn: dark asleep, light awake, moved by a touch, back after
     for (let i = 0; i < 12; i++) most = Math.max(most, await level());
     return most;
   };
-  await page.waitForFunction(() => 'pictures' in document.getElementById('well').dataset, null,
-      { timeout: 60000 });
+  await page.waitForFunction(() => 'pictures' in document.getElementById('well').dataset, null);
   await more_pictures(5);
   const dark = await brightest();
   kiosk('awake');

@@ -7,15 +7,10 @@ import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } 
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { data, load_module, source, start_server } from '../server.mjs';
+import { data, source, start_server } from '../server.mjs';
+import { launch, skip } from './chromium.mjs';
 
-const { chromium } = load_module('playwright-core');
-const executable = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']
-    .find(existsSync);
-const patience = 60000;
-
-test('from sleep to farewell by touch alone', { skip: !executable && 'no Chromium here' },
-    async (context) => {
+test('from sleep to farewell by touch alone', { skip }, async (context) => {
   // The castle, whose kiosk does not wait long for somebody who has gone.
   const content = mkdtempSync(join(tmpdir(), 'wellspring-visit-'));
   context.after(() => rmSync(content, { recursive: true }));
@@ -27,11 +22,9 @@ test('from sleep to farewell by touch alone', { skip: !executable && 'no Chromiu
   writeFileSync(file, JSON.stringify(exhibit));
   const server = await start_server([], { content });
   context.after(() => server.stop());
-  const browser = await chromium.launch({ executablePath: executable,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-3d-apis'] });
+  const browser = await launch(['--disable-gpu', '--disable-3d-apis']);
   context.after(() => browser.close());
   const page = await browser.newPage({ viewport: { width: 1080, height: 1920 } });
-  page.setDefaultTimeout(patience);
   const problems = [];
   page.on('pageerror', (error) => problems.push(String(error)));
   await page.goto(`${server.url}/kiosk?kiosk=hall&lang=en`);

@@ -31,7 +31,6 @@ async function open(lose = () => {}, path = '/', options = {}) {
   const page = await context.newPage();
   page.problems = [];
   page.requests = [];
-  page.setDefaultTimeout(60000);
   page.on('pageerror', (error) => page.problems.push(String(error)));
   page.on('requestfinished', (request) => page.requests.push(request));
   await page.addInitScript(lose);

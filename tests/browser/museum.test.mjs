@@ -49,7 +49,7 @@ async function close(page) {
   await page.context().close();
 }
 const pictured = (page) => page.waitForFunction(
-    () => Number(document.getElementById('picture').dataset.frame) > 2, null, { timeout: 30000 });
+    () => Number(document.getElementById('picture').dataset.frame) > 2);
 async function message(page, type, fits = () => true, from = 0) {
   for (const end = performance.now() + 20000; performance.now() < end; await sleep(50)) {
     const found = page.heard.slice(from).find((one) => one.type === type && fits(one));
@@ -73,8 +73,7 @@ test('the front door shows every exhibit, and leads into it', { skip }, async ()
     // The castle's own poster, and a still where there is none.
     await page.waitForFunction(() =>
         [...document.images].every((image) => image.complete)
-        && [...document.images].map((image) => image.naturalWidth).join() === '1280,640', null,
-    { timeout: 60000 });
+        && [...document.images].map((image) => image.naturalWidth).join() === '1280,640', null);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
     assert.ok(!wide, 'nothing sticks out');
     await shot(page, `front-${name}`);
@@ -138,7 +137,7 @@ test('a question is answered by the storyteller', { skip }, async () => {
   const reply = await message(page, 'reply');
   assert.equal(reply.found, 'sure');
   await page.waitForFunction(() => document.getElementById('subtitle').textContent
-      .includes('Seventy metres'), null, { timeout: 20000 });
+      .includes('Seventy metres'));
   assert.ok(await page.locator('#menu').isHidden(), 'the menu is out of the way');
   await shot(page, 'answer');
   await close(page);

@@ -5,31 +5,20 @@ import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, load_module, sleep, start_server, until } from '../server.mjs';
+import { Visitor, sleep, start_server, until } from '../server.mjs';
+import { launch, pictures, skip } from './chromium.mjs';
 
-const { chromium } = load_module('playwright-core');
-const executable = [
-  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
-].find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
-// a folder for screenshots, for people to look at
-const pictures = process.env.WELLSPRING_PICTURES;
-
-let server, browser;
+let server, chromium, browser;  // the latter: all pages share what they keep
 // with what one process keeps for the next: the key of visits' tokens among it
 const cache = ['--cache', mkdtempSync(join(tmpdir(), 'wellspring-cache-'))];
 before(async () => {
   if (skip) return;
   server = await start_server(cache);
-  const profile = mkdtempSync(join(tmpdir(), 'wellspring-chromium-'));
-  browser = await chromium.launchPersistentContext(profile, {
-    executablePath: executable, headless: true, viewport: { width: 960, height: 540 },
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-        '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  chromium = await launch();
+  browser = await chromium.newContext({ viewport: { width: 960, height: 540 } });
 });
 after(async () => {
-  if (browser) await browser.close();
+  await chromium?.close();
   if (server) await server.stop();
   rmSync(cache[1], { recursive: true, force: true });
 });
@@ -44,8 +33,7 @@ async function open(path = '/', size) {
   });
   if (size) await page.setViewportSize(size);
   await page.goto(server.url + path);
-  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3,
-      null, { timeout: 30000 });
+  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3);
   return { page, problems };
 }
 
@@ -179,8 +167,7 @@ test('the storyteller is heard after the first touch, from where she stands, and
   assert.equal(await button.getAttribute('aria-pressed'), 'true');
   await page.locator('#stories button').first().click();
   await page.waitForFunction(
-      () => Number(document.getElementById('sound-button').dataset.pieces) >= 6, null,
-      { timeout: 30000 });
+      () => Number(document.getElementById('sound-button').dataset.pieces) >= 6, null);
   assert.ok(Math.abs(Number(await button.getAttribute('data-slip'))) < 60,
       `pieces ${await button.getAttribute('data-slip')} ms off`);
   await shot(page, 'sound');
@@ -324,10 +311,8 @@ test('the page comes back after a server restart, where the visitor stood', { sk
   await page.waitForFunction(() => !document.getElementById('notice').hidden);
   await shot(page, 'lost');
   server = await start_server(cache, { port });
-  await page.waitForFunction(() => document.getElementById('notice').hidden, null,
-      { timeout: 30000 });
-  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3,
-      null, { timeout: 20000 });
+  await page.waitForFunction(() => document.getElementById('notice').hidden, null);
+  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3);
   await until(async () => difference(before_restart, await look(page)) < 12,
       'the same place is shown');
   await page.close();

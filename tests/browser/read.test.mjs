@@ -26,7 +26,6 @@ after(async () => {
 
 async function open(path, locale = 'en-GB', route = async () => {}) {
   const context = await browser.newContext({ locale }), page = await context.newPage();
-  page.setDefaultTimeout(60000);
   page.problems = [];
   page.on('pageerror', (error) => page.problems.push(String(error)));
   await route(page);

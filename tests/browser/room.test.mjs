@@ -36,8 +36,7 @@ async function open(options) {
     socket.on('framereceived', note(page.heard));
   });
   await page.goto(server.url);
-  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3,
-      null, { timeout: 30000 });
+  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3);
   return page;
 }
 async function close(page) {

@@ -2,19 +2,14 @@
 // The technician's page in headless Chromium: what is wrong in words, tables, and the chart of
 // speed against error.
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, load_module, run, sleep, start_server } from '../server.mjs';
+import { Visitor, run, sleep, start_server } from '../server.mjs';
+import { launch, pictures, skip } from './chromium.mjs';
 import { write_pyramid } from '../scripted/pyramid.mjs';
 
-const { chromium } = load_module('playwright-core');
-const executable = [
-  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
-].find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
-const pictures = process.env.WELLSPRING_PICTURES;  // a folder for screenshots, to be looked at
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-status-'));
 const bench = join(folder, 'last.json');
 const weights = process.env.WELLSPRING_WEIGHTS;
@@ -31,11 +26,7 @@ before(async () => {
       { content });
   delete process.env.WELLSPRING_ADMIN_TOKEN;
   if (weights) process.env.WELLSPRING_WEIGHTS = weights;
-  browser = await chromium.launch({
-    executablePath: executable, headless: true,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-      '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();
@@ -65,7 +56,7 @@ async function shots(name) {
   }
 }
 const says = (page, id, words) => page.waitForFunction(([where, part]) =>
-  document.getElementById(where).textContent.includes(part), [id, words], { timeout: 10000 });
+  document.getElementById(where).textContent.includes(part), [id, words]);
 
 test('what is missing is said, with what to do, and figures', { skip }, async () => {
   const { page, problems } = await open();

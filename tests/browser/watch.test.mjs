@@ -2,19 +2,14 @@
 // A curator's page in headless Chromium: it comes back at the same place, shows mistakes, and
 // copies a viewpoint that exhibit.json takes.
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { load_module, run, start_server } from '../server.mjs';
+import { run, start_server } from '../server.mjs';
+import { launch, pictures, skip } from './chromium.mjs';
 import { write_pyramid } from '../scripted/pyramid.mjs';
 
-const { chromium } = load_module('playwright-core');
-const executable = [
-  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
-].find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
-const pictures = process.env.WELLSPRING_PICTURES;  // a folder for screenshots, to be looked at
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-curators-page-'));
 const content = join(folder, 'content'), model = write_pyramid(folder);
@@ -24,11 +19,7 @@ before(async () => {
   if (skip) return;
   await run('wellspring_new', ['giza', model, '--content', content]);
   server = await start_server(['--exhibit', 'giza', '--watch'], { content });
-  browser = await chromium.launch({
-    executablePath: executable, headless: true,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-      '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();
@@ -42,7 +33,7 @@ async function open() {
   const page = await context.newPage();
   await page.goto(server.url);
   await page.waitForFunction(() =>
-    Number(document.getElementById('picture').dataset.frame) > 3, null, { timeout: 30000 });
+    Number(document.getElementById('picture').dataset.frame) > 3);
   return page;
 }
 async function copied(page) {
@@ -65,7 +56,7 @@ test('the place is copied, pasted, and kept over changes', { skip }, async () =>
   const exhibit = JSON.parse(text);
   exhibit.viewpoints.push(place);
   writeFileSync(file, JSON.stringify(exhibit));
-  await page.waitForSelector(`#places [data-viewpoint="${place.name}"]`, { timeout: 20000 });
+  await page.waitForSelector(`#places [data-viewpoint="${place.name}"]`);
   await page.waitForTimeout(1500);
   const { name, ...later } = await copied(page), { name: before_name, ...now } = place;
   assert.notEqual(name, before_name, 'that name is taken by now');
@@ -77,12 +68,12 @@ test('mistakes stand over the picture until they are mended', { skip }, async ()
   const page = await open(), text = readFileSync(file, 'utf8');
   assert.equal(await page.locator('#problems').count(), 0);
   writeFileSync(file, text.replace('"viewpoints"', '"vewpoints"'));
-  await page.waitForSelector('#problems', { timeout: 20000 });
+  await page.waitForSelector('#problems');
   const words = await page.textContent('#problems');
   assert.match(words, /exhibit\.json/);
   assert.match(words, /did you mean 'viewpoints'\?/);
   if (pictures) await page.screenshot({ path: join(pictures, 'watch_problems.png') });
   writeFileSync(file, text);
-  await page.waitForSelector('#problems', { state: 'detached', timeout: 20000 });
+  await page.waitForSelector('#problems', { state: 'detached' });
   await page.context().close();
 });

@@ -39,8 +39,7 @@ async function open({ path = '/', options = laptop, script } = {}) {
   });
   if (script) await page.addInitScript(script);
   await page.goto(server.url + path);
-  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3,
-      null, { timeout: 30000 });
+  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3);
   return page;
 }
 async function close(page) {
@@ -181,8 +180,7 @@ test('all places fit at 1280 pixels, and the row scrolls by wheel where they do 
   });
   // One preview after the other, each small.
   await page.waitForFunction(() =>
-      [...document.querySelectorAll('#places img')].some((image) => image.naturalWidth > 0),
-      null, { timeout: 30000 });
+      [...document.querySelectorAll('#places img')].some((image) => image.naturalWidth > 0));
   await page.keyboard.press('0');
   const tenth = await page.evaluate(() =>
       document.getElementById('places').children[9].dataset.viewpoint);
@@ -276,7 +274,7 @@ test('subtitles stay while controls fade, and give way to no hands', { skip }, a
   const player = await page.locator('#player').boundingBox();
   assert.ok(above <= player.y + 1, `subtitle down to ${above}, player from ${player.y}`);
   await page.evaluate(() => document.activeElement.blur());
-  await page.waitForSelector('body.quiet', { timeout: 15000 });
+  await page.waitForSelector('body.quiet');
   await page.waitForSelector('#subtitle:not([hidden])');
   await sleep(900);
   assert.equal(await page.evaluate(() => getComputedStyle(

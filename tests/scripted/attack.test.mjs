@@ -84,11 +84,11 @@ const end_all = async (list) => {
 async function others_go_on(address = '127.0.0.77') {
   assert.equal((await fetch(`${server.url}/healthz`)).status, 200);
   const seq = ++watcher.seq || (watcher.seq = 2);
-  const next = watcher.picture((picture) => picture.seq === seq, 60000);
+  const next = watcher.picture((picture) => picture.seq === seq);
   watcher.send({ type: 'input', seq, move: [0, 0, 0], look: [0.1, 0] });
   await next;
   const newcomer = new Visitor(server, { options: { localAddress: address } });
-  const welcome = newcomer.next((item) => item.message?.type === 'welcome', 'welcome', 60000);
+  const welcome = newcomer.next((item) => item.message?.type === 'welcome', 'welcome');
   await newcomer.opened;
   newcomer.send(
       { type: 'hello', exhibit: '', width: 160, height: 90, lang: 'en', role: 'visitor' });
@@ -219,7 +219,7 @@ test('without descriptors nobody new comes in, and then again', async () => {
     stranger(`127.0.5.${i}`, 'GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n'));
   await until(() => /Too many open files/.test(server.log()), 'it is said');
   const seq = ++watcher.seq;
-  const next = watcher.picture((picture) => picture.seq === seq, 60000);
+  const next = watcher.picture((picture) => picture.seq === seq);
   watcher.send({ type: 'input', seq, move: [0, 0, 0], look: [0.1, 0] });
   await next;
   execFileSync('prlimit', ['--pid', pid, `--nofile=${before}`]);

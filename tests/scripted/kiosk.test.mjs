@@ -157,7 +157,7 @@ test('the synthetic camera brings a person, and the kiosk program survives a ser
   await page.hello({ role: 'kiosk' });
   const kiosk = start_kiosk('synthetic');
   const greeting = await page.next((item) => item.message?.type === 'subtitle' && item.message.text,
-      'greeting', 40000);
+      'greeting');
   assert.ok(greeting.message.text.length > 0);
   const seen = kiosk.observations.find((one) => one.state === 'person');
   assert.ok(seen && seen.people.length === 1 && seen.people[0].position[2] > 0.2);
@@ -193,7 +193,7 @@ test('a kiosk\'s camera and screen find one another by name, and the eye hears w
   assert.deepEqual(await needs, { type: 'kiosk', stage: 'sleep',
     needs: { faces: false, expression: false, gestures: false } });
   attic.send({ type: 'kiosk', showing: 'book', touched: true });
-  await attic.next((item) => item.message?.stage === 'engaged', 'engaged', 5000);
+  await attic.next((item) => item.message?.stage === 'engaged', 'engaged');
   await until(async () => /^wellspring_kiosk_stage\{kiosk="attic",stage="engaged"\} 1$/m
       .test(await (await fetch(`${server.url}/metrics`)).text()));
   await Promise.all([camera.close(), hall.close(), attic.close()]);
@@ -216,7 +216,7 @@ test('a filmed man: the storyteller\'s gaze follows his head',
   context.after(() => kiosk.stop());
   // What she says before he is seen is for somebody else, of whom she still takes leave.
   const says = (item) => item.message?.type === 'subtitle' && item.message.text;
-  do await page.next(says, 'greeting', 40000);
+  do await page.next(says, 'greeting');
   while (!kiosk.observations.some((one) => one.state === 'person'));
   await Promise.race([kiosk.ended, sleep(30000)]);
   assert.ok(pairs.length > 20, `${pairs.length} pairs of head and gaze`);

@@ -95,7 +95,7 @@ test('memory of those who have left goes back to the system', { skip: !judges_me
     await page.hello({ role: 'kiosk', kiosk: `kiosk ${i}`, width: 640, height: 360 });
     for (let seq = 1; seq <= 3; seq++) {
       page.send({ type: 'input', seq, move: [0, 0, 0.3], look: [0.3, 0] });
-      await page.picture((picture) => picture.seq === seq, 60000);
+      await page.picture((picture) => picture.seq === seq);
     }
   }));
   const most = resident();

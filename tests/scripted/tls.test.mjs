@@ -11,7 +11,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import tls from 'node:tls';
 import { launch, skip } from '../browser/chromium.mjs';
-import { Visitor, patience, run, source, start_server, until } from '../server.mjs';
+import { Visitor, run, source, start_server, until } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-tls-'));
@@ -126,11 +126,11 @@ test('the page opens its visit over TLS, too', { skip }, async () => {
     const problems = [];
     page.on('pageerror', (error) => problems.push(String(error)));
     page.on('console', (said) => { if (said.type() === 'error') problems.push(said.text()); });
-    const visit = page.waitForEvent('websocket', { timeout: 60000 * patience });
+    const visit = page.waitForEvent('websocket');
     await page.goto(`${server.url}/`);
     const socket = await visit;
     assert.ok(socket.url().startsWith('wss://127.0.0.1'), socket.url());
-    await socket.waitForEvent('framereceived', { timeout: 60000 * patience,
+    await socket.waitForEvent('framereceived', {
       predicate: ({ payload }) => payload.subarray?.(0, 4).toString('latin1') === 'WSF1' });
     assert.deepEqual(problems, []);
   } finally {

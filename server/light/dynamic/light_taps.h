@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/visible/light_view.h"
 #include "light/visible/pixel_grid.h"
 #include "light/visible/surface_buffer.h"
 
@@ -13,10 +12,15 @@ namespace wellspring {
 
 // Pixels of a picture above which the light has half of its resolution.
 inline constexpr size_t fine_dynamic_pixels = 320 * 1024;
-// The view in which light for pictures of `view` is computed: light_view() of large ones.
+inline constexpr int light_scale = 2;  // pixels of such a picture a side of one pixel of its light
+// The view in which light for pictures of `view` is computed.
 inline View dynamic_light_view(const View& view) {
-  const bool fine = size_t(view.width) * size_t(view.height) <= fine_dynamic_pixels;
-  return fine ? view : light_view(view);
+  if (size_t(view.width) * size_t(view.height) <= fine_dynamic_pixels) return view;
+  View light = view;
+  light.width = (view.width + light_scale - 1) / light_scale;
+  light.height = (view.height + light_scale - 1) / light_scale;
+  light.tan_half_fov = view.tan_half_fov * float(light.height * light_scale) / float(view.height);
+  return light;
 }
 
 // The two pixels of the light around the middle of pixel `at` of a picture's row or column, and how

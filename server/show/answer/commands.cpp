@@ -76,6 +76,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   if (Answer wrong = set_size(visitor, show.settings, hello.width, hello.height))
     visitor.link->send_text(write_error(*wrong));
   visitor.wants.parts = hello.parts.value_or(false);
+  visitor.wants.local = hello.display == "local" && show.settings.background;
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);

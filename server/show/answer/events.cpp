@@ -153,6 +153,28 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+std::string pose_message(const Show& show, const Visitor& visitor) {
+  const VisitorPlace& place = visitor.place;
+  const View& view = place.last_view;
+  const vec3 forward = view.forward;
+  const float yaw = std::atan2(-forward.x, -forward.z);
+  const vec3 level(std::cos(yaw), 0, -std::sin(yaw));
+  const bool led = place.around.point >= 0 || place.glide.path || leader_of(show, visitor) ||
+                   place.tour.state == TourRide::State::playing || place.tour.pace > 0;
+  return json{{"type", "pose"},
+              {"seq", place.seq},
+              {"position", triple(show.exhibit.scene.origin + dvec3(view.position))},
+              {"yaw", yaw},
+              {"pitch", std::asin(std::clamp(forward.y, -1.0f, 1.0f))},
+              {"roll", std::atan2(dot(view.right, cross(level, forward)), dot(view.right, level))},
+              {"fov", 2 * std::atan(view.tan_half_fov)},
+              {"width", view.width},
+              {"height", view.height},
+              {"cut", place.camera_cuts},
+              {"led", led}}
+      .dump();
+}
+
 std::string went_message(uint32_t seq, const std::string& object, dvec3 place, double seconds) {
   json message = {{"type", "went"},
                   {"seq", seq},

@@ -63,13 +63,12 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   float guessed = seen ? picture.stats.filled + picture.stats.empty : 1;
   const bool points = show.settings.display == Display::points;
   job.learns = show.pass.denoiser && in_steps(job) && !points;
-  job.settled = job.learns
-                    ? picture.rest.samples >= settled_samples
-                    : wants_reference(show.time - place.moved_at, seen && before.settled,
-                                      !seen || before.coarse, guessed, picture.stats.converged);
+  job.settled = job.learns ? picture.rest.samples >= settled_samples
+                           : wants_reference(show.time - place.moved_at, seen && before.settled,
+                                             guessed, picture.stats.converged);
   job.reconstruct = job.learns && purpose == Purpose::reconstruction;
   job.samples_only = job.learns && purpose == Purpose::samples;
-  bool fine = job.learns || wants_fine_light(job.still, !seen || before.coarse, guessed);
+  job.passing = !job.learns && !job.still;
   job.attention = visitor.wants.attention;
   job.weights = visitor.looks.weights;
   job.note_seen = wants_seen(show, visitor);
@@ -81,22 +80,18 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   DrawingCosts costs = drawing_costs(show, visitor);
   double factor = keyframe_cost(job.scale) / keyframe_cost(before.scale);
   costs.drawing_seconds *= factor, costs.light_seconds *= factor;
-  job.samples = sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, fine);
+  job.samples =
+      sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, !job.passing);
   // When all is known, what changes is looked for.
   if (job.samples_only && has_all_samples(picture.rest))
     job.samples = samples_to_watch(job.samples);
-  // Who moves is shown shapes and reflectances as they are, in light of half their resolution where
-  // samples are few; who stops, until more is known.
   double interval = 1 / drawing_rate(show, visitor);
-  double seen_for = std::max(interval, 0.001 * double(visitor.times.interval));
-  job.passing = !fine;
-  job.coarse =
-      job.passing && !points &&
-      !affords_fine_light(job.samples / (seen_for * pixels), before.passing && !before.coarse);
   if (moves) {
     // It is seen from when it is finished until the next one is.
-    interval = seen_for;
+    interval = std::max(interval, 0.001 * double(visitor.times.interval));
     double seen_in = 0.001 * double(visitor.times.whole) + 0.5 * interval;
+    // The page goes on by itself, without waiting for the line.
+    if (visitor.wants.local) seen_in += double(visitor.shown.flow.line_trip);
     job.expected = expected_view(place.heading, now, seen_in);
     job.ahead = expected_view(place.heading, now, seen_in + interval);
     float turn = expected_turn(place.heading, now, 0.5 * interval);

@@ -55,18 +55,18 @@ void light_dynamically(Show& show, const PictureJob& job, const View& view, Visi
 }
 
 DrawingStep plan_picture(Show& show, const PictureJob& job, const Technique& technique,
-                         const View& lit, Visitor& visitor) {
+                         Visitor& visitor) {
   DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs = {};
   costs.asked = job.rest.asked, costs.kept_samples = job.rest.samples;
   double began = seconds_now();
   const double cores_began = process_seconds_now();
-  plan_samples(show, job, technique, lit, work, visitor);
+  plan_samples(show, job, technique, work, visitor);
   double planned = seconds_now();
   costs.core_seconds = process_seconds_now() - cores_began;
   costs.display = float(1000 * (planned - began));
   bool more = false;
-  if (begin_samples(show, job, technique, lit, work, visitor) && !show.renderer.given_up) {
+  if (begin_samples(show, job, technique, work, visitor) && !show.renderer.given_up) {
     more = trace_slice(show, job, technique, work);
   }
   costs.trace = float(1000 * (seconds_now() - planned));
@@ -91,14 +91,14 @@ void paint_points(RenderCache& cache, const View& view, Frame& frame) {
 }
 
 DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& technique,
-                          const View& lit, Visitor& visitor) {
+                          Visitor& visitor) {
   RenderCache& cache = visitor.picture.cache;
   Compositor& compositor = visitor.picture.compositor;
   DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs;
   double began = seconds_now();
   const double cores_began = process_seconds_now();
-  remember_traced(show, job, technique, lit, work, visitor);
+  remember_traced(show, job, technique, work, visitor);
   if (job.samples_only) {
     cache.end_frame();
     return DrawingStep::done;
@@ -122,7 +122,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   }
   double painted = seconds_now();
   if (!passing) tonemap(work.frame, curve, work.picture);
-  work.seen = job.note_seen ? note_seen(job, lit, work.picture, cache) : nullptr;
+  work.seen = job.note_seen ? note_seen(job, work.picture, cache) : nullptr;
   if (job.keep)
     make_keyframe(job.view, work.picture, passing ? work.depth : work.frame.depth, work.keyframe);
   double finished = seconds_now();
@@ -156,18 +156,17 @@ DrawingStep find_guides(Show& show, const PictureJob& job, VisitorPicture& pictu
 DrawingStep draw_step(Show& show, const PictureJob& job, DrawingStep step, Visitor& visitor) {
   double began = seconds_now();
   const Technique& technique = job.settled ? *show.still_technique : *show.technique;
-  const View lit = job.coarse ? light_view(job.view) : job.view;
   if (step == DrawingStep::plan) {
-    step = plan_picture(show, job, technique, lit, visitor);
+    step = plan_picture(show, job, technique, visitor);
   } else if (show.renderer.given_up) {
     if (step != DrawingStep::guide)
-      remember_traced(show, job, technique, lit, show.renderer.work, visitor);
+      remember_traced(show, job, technique, show.renderer.work, visitor);
     visitor.picture.costs.given_up = true;
     step = DrawingStep::done;
   } else if (step == DrawingStep::trace) {
     step = trace_more(show, job, technique, visitor);
   } else if (step == DrawingStep::draw) {
-    step = paint_picture(show, job, technique, lit, visitor);
+    step = paint_picture(show, job, technique, visitor);
   } else {
     step = find_guides(show, job, visitor.picture);
   }
@@ -266,7 +265,7 @@ void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   take_answers(show, picture);
   light_dynamically(show, job, *job.around, visitor);
   picture.compositor.draw(picture.cache, *job.around, *show.visibility,
-                          Tonemap{show.exhibit.exposure}, work.picture, &work.depth, true);
+                          Tonemap{show.exhibit.exposure}, work.picture, &work.depth);
   make_keyframe(*job.around, work.picture, work.depth, work.around);
 }
 

@@ -97,23 +97,21 @@ void take_answers(const Show& show, VisitorPicture& picture) {
   land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
 }
 
-void plan_samples(Show& show, const PictureJob& job, const Technique& technique, const View& lit,
-                  DrawingWork& work, Visitor& visitor) {
+void plan_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
+                  Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   RenderCache& cache = picture.cache;
   follow_lamps(show, visitor);
-  View ahead = job.coarse ? light_view(job.ahead) : job.ahead;
   cache.set_attention(job.attention);
   cache.set_weights(job.weights ? std::span(*job.weights) : std::span<const float>());
   cache.set_reference(job.settled);
   picture.compositor.set_reconstructed(job.learns);
-  // What is around has light of half its size.
   cache.resize(job.expected.width, job.expected.height);
   cache.move_points(*show.world);
   take_answers(show, picture);
-  cache.project(lit);
+  cache.project(job.view);
   if (technique.finish_pass) {
-    work.pass = pass_view(lit, job.samples);
+    work.pass = pass_view(job.view, job.samples);
     return plan_pass(work.pass, visitor.link->id, uint32_t(job.tick), work.requests);
   }
   cache.attend();
@@ -121,33 +119,31 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   bool late = !job.still && may_be_late(show, cache, technique, most_asked);
   int asked = late ? most_asked : job.samples;
   work.ahead.clear();
-  if (ahead != lit && !technique.begin_pass)
-    cache.predict(ahead, int(predicted_share * float(asked)), job.seed, work.ahead);
+  if (job.ahead != job.view && !technique.begin_pass)
+    cache.predict(job.ahead, int(predicted_share * float(asked)), job.seed, work.ahead);
   const int planned = asked - int(work.ahead.size());
   const bool spread = spreads_samples(job, technique);
   const int aimed = spread ? samples_to_watch(planned) : planned;
-  cache.plan(lit, aimed, job.seed, work.requests);
-  if (spread) {
-    spread_samples(lit, planned - aimed, visitor, work.requests);
-  }
+  cache.plan(job.view, aimed, job.seed, work.requests);
+  if (spread) spread_samples(job.view, planned - aimed, visitor, work.requests);
   work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
   picture.costs.late = late;
 }
 
-bool begin_samples(Show& show, const PictureJob& job, const Technique& technique, const View& lit,
-                   DrawingWork& work, Visitor& visitor) {
+bool begin_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
+                   Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   work.samples.clear();
   work.traced = 0;
   if (picture.costs.late) {
-    picture.broker.ask(lit, {&technique, transport_of(show, job)}, work.requests);
+    picture.broker.ask(job.view, {&technique, transport_of(show, job)}, work.requests);
     return false;
   }
   picture.broker.forget();  // what was asked for on the way
   work.pose = show.pose_number;
   if (technique.begin_pass)
     technique.begin_pass(*show.world, transport_of(show, job),
-                         technique.finish_pass ? work.pass : lit, pass_seed(visitor.link->id),
+                         technique.finish_pass ? work.pass : job.view, pass_seed(visitor.link->id),
                          uint32_t(job.tick), show.lights);
   return true;
 }
@@ -166,22 +162,22 @@ bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, 
 }
 
 void remember_traced(const Show& show, const PictureJob& job, const Technique& technique,
-                     const View& lit, DrawingWork& work, Visitor& visitor) {
+                     DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   if (picture.costs.late) return;
   work.requests.resize(work.traced);
   work.samples.resize(work.traced);
-  if (technique.finish_pass) name_pixels(lit, work.requests);
+  if (technique.finish_pass) name_pixels(job.view, work.requests);
   if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
   if (show.settings.display == Display::points)
     for (Sample& sample : work.samples) sample.glow = vec3(0);  // points show all light
-  picture.cache.remember(lit, work.requests, work.samples);
+  picture.cache.remember(job.view, work.requests, work.samples);
   picture.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
   bool kept_long = !job.passing && picture.cache.is_still();
-  if (!job.still || job.coarse || !(job.learns || kept_long)) return;
+  if (!job.still || !(job.learns || kept_long)) return;
   picture.compositor.follow_changes(picture.cache);
-  picture.compositor.add_samples(lit, work.requests, work.samples);
+  picture.compositor.add_samples(job.view, work.requests, work.samples);
   picture.costs.kept_samples = mean_count(picture.compositor.samples());
 }
 

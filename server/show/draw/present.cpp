@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/process_clock.h"
+#include "frame/disparity_code.h"
 #include "frame/jpeg.h"
 #include "frame/shrink.h"
 #include "show/draw/moving.h"
@@ -48,31 +49,42 @@ void publish(Encoder& encoder, Link& link, std::shared_ptr<Packet> packet, doubl
   else link.send_picture(std::move(packet));
 }
 
+// The depth comes behind the JPEG of a keyframe's packet.
+void add_depth(const PacketHeader& header, KeyframeHeader keyframe,
+               std::span<const float> disparity, Packet& packet) {
+  keyframe.color_bytes = uint32_t(packet.size() - keyframe_header_bytes);
+  write_packet_header(header, keyframe, packet);
+  encode_disparity(disparity, keyframe.width, keyframe.height, keyframe.unit, packet);
+}
+
 // On another thread: the tick goes on meanwhile, and waits before it touches the image again.
 // The image of one that stands comes anew from its keyframe, should there be another: it is not
 // kept, but for a browser that takes parts while these are made of it.
-// eighths: of the image's size, which is that of the header's.
+// eighths: of the image's size, which is that of the header's. keyframe: what its packet says of
+// it, where it is one; the encoder has its disparities.
 void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, bool full_chroma,
-                     int eighths) {
+                     int eighths, const std::optional<KeyframeHeader>& keyframe) {
   Encoder* encoder = visitor.shown.encoder.get();
   encoder->quality = header.quality;
   encoder->full_chroma = full_chroma;
   const Image8& whole = encoder->image;
   encoder->pixels = counted_pixels(double(whole.width) * whole.height, eighths);
   const bool keeps = visitor.wants.parts && stands(show, visitor);
-  encoder->task.run(
-      [encoder, link = visitor.link, header, full_chroma, eighths, keeps, now = show.time] {
-        double began = seconds_now(), processor_began = thread_seconds_now();
-        auto packet = std::make_shared<Packet>(packet_header_bytes);
-        write_packet_header(header, *packet);
-        const Image8& image = encoder->image;
-        encode_jpeg(eighths < 8 ? shrink(image, header.width, header.height) : image,
-                    header.quality, full_chroma, *packet, packet_header_bytes);
-        if (keeps) note_complete(image, header.quality, eighths == 8, now, encoder->has);
-        else encoder->has = {};
-        if ((header.flags & packet_still) && !keeps) encoder->image = Image8{};
-        publish(*encoder, *link, std::move(packet), began, processor_began);
-      });
+  encoder->task.run([encoder, link = visitor.link, header, full_chroma, eighths, keeps, keyframe,
+                     now = show.time] {
+    double began = seconds_now(), processor_began = thread_seconds_now();
+    const size_t header_bytes = keyframe ? keyframe_header_bytes : packet_header_bytes;
+    auto packet = std::make_shared<Packet>(header_bytes);
+    write_packet_header(header, *packet);
+    const Image8& image = encoder->image;
+    encode_jpeg(eighths < 8 ? shrink(image, header.width, header.height) : image, header.quality,
+                full_chroma, *packet, header_bytes);
+    if (keyframe) add_depth(header, *keyframe, encoder->disparity, *packet);
+    if (keeps) note_complete(image, header.quality, eighths == 8, now, encoder->has);
+    else encoder->has = {};
+    if ((header.flags & packet_still) && !keeps) encoder->image = Image8{};
+    publish(*encoder, *link, std::move(packet), began, processor_began);
+  });
 }
 
 void encode_parts(Visitor& visitor, const PacketHeader& header, const PartsOrder& order) {
@@ -130,6 +142,21 @@ PacketHeader next_header(Show& show, Visitor& visitor, uint32_t seq, bool still)
   return header;
 }
 
+// A display that reprojects is told this of the visitor's keyframe.
+KeyframeHeader keyframe_header(const Show& show, const Visitor& visitor) {
+  const View& view = visitor.picture.keyframe.view;
+  return {.cuts = visitor.picture.job.camera_cuts,
+          .width = uint16_t(view.width),
+          .height = uint16_t(view.height),
+          .eye = show.exhibit.scene.origin + dvec3(view.position),
+          .right = view.right,
+          .up = view.up,
+          .forward = view.forward,
+          .tan_half_fov = view.tan_half_fov,
+          .middle = view.middle,
+          .unit = disparity_unit(view)};
+}
+
 void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader header) {
   PicturePlan plan = picture_plan(show, visitor);
   const bool still = header.flags & packet_still;
@@ -139,7 +166,13 @@ void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader 
   header.width = side_of(view.width, plan.eighths);
   header.height = side_of(view.height, plan.eighths);
   header.quality = uint8_t(plan.quality);
-  encode_complete(show, visitor, header, fine, plan.eighths);
+  std::optional<KeyframeHeader> keyframe;
+  if (visitor.wants.local) {
+    keyframe = keyframe_header(show, visitor);
+    header.flags |= packet_depth;
+    visitor.shown.encoder->disparity = visitor.picture.keyframe.disparity;
+  }
+  encode_complete(show, visitor, header, fine, plan.eighths, keyframe);
   visitor.shown.lost = false;
   show.totals.pictures++;
 }
@@ -252,6 +285,21 @@ void note_deliveries(Show& show, Visitor& visitor) {
   update(shown.way, shown.flow, flow_wishes(show, visitor), visitor.times.encode, show.time);
 }
 
+// Sends the newest keyframe as it is, or what is new of it where the page has it: the page shows it
+// from where its visitor is by then.
+static void present_keyframe(Show& show, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
+  picture.fade = {};  // the page passes from one to the next
+  if (!picture.unshown) return refine(show, visitor);
+  if (show.renderer.posed == &visitor) return;
+  const PictureJob& job = picture.job;
+  const View& view = job.view;
+  copy_colors(picture.keyframe, {0, 0, view.width, view.height}, visitor.shown.encoder->image);
+  if (!picture.moving.empty()) lay_over(picture.moving, visitor.shown.encoder->image);
+  const bool stood = job.still && view == visitor.place.last_view;
+  send(show, visitor, view, stood ? visitor.place.seq : job.seq, stood);
+}
+
 void present(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   VisitorDelivery& shown = visitor.shown;
@@ -261,6 +309,10 @@ void present(Show& show, Visitor& visitor) {
   // it draws itself, they do anyway.
   if (!show.settings.background) shown.encoder->task.wait();
   if (!may_take(show, visitor) || shown.encoder->task.busy()) return;
+  if (visitor.wants.local) {
+    note_encoded(show, visitor);
+    return present_keyframe(show, visitor);
+  }
   const View view = visitor.place.last_view;
   bool stood = job.still && job.view == view;
   bool fades = !picture.fade.from.rgb.empty() && show.time - shown.sent_at >= 1 / fade_rate;
@@ -315,8 +367,9 @@ void present_all(Show& show) {
 
 bool has_to_show(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = visitor.picture;
-  return is_shown(visitor) && (picture.unshown || !picture.fade.from.rgb.empty() ||
-                               visitor.place.last_view != visitor.shown.view);
+  return is_shown(visitor) &&
+         (picture.unshown || !picture.fade.from.rgb.empty() ||
+          (visitor.place.last_view != visitor.shown.view && !visitor.wants.local));
 }
 
 }  // namespace wellspring

@@ -7,18 +7,14 @@
 namespace wellspring {
 namespace {
 
-constexpr double unmeasured_light = 0.4;  // of the display's time, where light is coarser
+constexpr double unmeasured_light = 0.4;  // of the display's time, for who moves
 constexpr double least_light = 0.25;      // of the time goes to light, whatever is drawn
 constexpr double least_samples = 1000;    // a picture, however slow the machine
 constexpr double most_a_pixel = 0.5;
 constexpr double aimed_share = 0.0625;  // of the samples at rest
-// Samples a second for each pixel, from which on finer light shows who moves less error, though
-// most of its pixels have no point.
-constexpr double enter_fine = 0.4, leave_fine = 0.25;
-constexpr float few_guessed = 0.25f;  // of the pixels of coarser light: some 1.4 samples each
-constexpr float nearly_none = 0.1f;   // of the picture's pixels
-constexpr float most_known = 0.5f;    // likewise
-constexpr double settled_after = 2;   // seconds
+constexpr float nearly_none = 0.1f;     // of the picture's pixels
+constexpr float most_known = 0.5f;      // likewise
+constexpr double settled_after = 2;     // seconds
 constexpr float keyframe_scales[] = {1, 0.75f, 0.5f, 0.375f};
 // Seconds from keyframe to keyframe. Beyond a tenth turns and near things uncover much.
 constexpr double shortest_period = 1 / 30.0, longest_period = 1 / 10.0;
@@ -28,13 +24,13 @@ constexpr float most_uncovered = 0.2f;  // of a picture's width, by a tour's tur
 
 }  // namespace
 
-int sample_budget(double seconds, size_t pixels, const DrawingCosts& costs, bool fine) {
+int sample_budget(double seconds, size_t pixels, const DrawingCosts& costs, bool stands) {
   double display = costs.display_seconds;
-  if (!fine) display = costs.light_seconds > 0 ? costs.light_seconds : unmeasured_light * display;
+  if (!stands) display = costs.light_seconds > 0 ? costs.light_seconds : unmeasured_light * display;
   double tracing = std::max(seconds + costs.display_seconds - display - costs.drawing_seconds,
                             least_light * seconds);
   // Who stands gains by light what fewer pictures cost; who moves, by pictures.
-  if (fine)
+  if (stands)
     tracing =
         std::max(tracing, least_light / (1 - least_light) * (display + costs.drawing_seconds));
   double samples =
@@ -43,14 +39,6 @@ int sample_budget(double seconds, size_t pixels, const DrawingCosts& costs, bool
 }
 
 int samples_to_watch(int samples) { return int(aimed_share * samples); }
-
-bool wants_fine_light(bool stands, bool coarse, float guessed) {
-  return stands && !(coarse && guessed > few_guessed);
-}
-
-bool affords_fine_light(double samples, bool before) {
-  return samples >= (before ? leave_fine : enter_fine);
-}
 
 double keyframe_cost(float scale) { return double(scale); }
 
@@ -68,8 +56,8 @@ float tour_pace(float turn, float fov) {
   return turn > most ? most / turn : 1.0f;
 }
 
-bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed, float known) {
-  if (seconds_at_rest <= settled_after || coarse) return false;
+bool wants_reference(double seconds_at_rest, bool before, float guessed, float known) {
+  if (seconds_at_rest <= settled_after) return false;
   return before || (guessed <= nearly_none && known >= most_known);
 }
 

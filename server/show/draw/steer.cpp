@@ -8,7 +8,6 @@
 #include "base/parallel.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
-#include "light/visible/light_view.h"
 #include "show/draw/pace.h"
 #include "show/kiosk/screen_window.h"
 #include "show/state/in_view.h"
@@ -153,9 +152,9 @@ bool wants_seen(const Show& show, const Visitor& visitor) {
          asks_for_samples(show, visitor);
 }
 
-std::shared_ptr<const SeenPicture> note_seen(const PictureJob& job, const View& lit,
-                                             const Image8& image, const RenderCache& cache) {
-  if (!cache.has_projected(lit) || image.width <= 0 || image.height <= 0) return nullptr;
+std::shared_ptr<const SeenPicture> note_seen(const PictureJob& job, const Image8& image,
+                                             const RenderCache& cache) {
+  if (!cache.has_projected(job.view) || image.width <= 0 || image.height <= 0) return nullptr;
   auto seen = std::make_shared<SeenPicture>();
   seen->view = job.view;
   const int scale = seen->scale = (image.width + widest_seen - 1) / widest_seen;
@@ -164,14 +163,12 @@ std::shared_ptr<const SeenPicture> note_seen(const PictureJob& job, const View& 
   if (small.height < 1) return nullptr;
   small.rgb.resize(size_t(small.width) * size_t(small.height) * 3);
   seen->object.resize(size_t(small.width) * size_t(small.height));
-  const int light = job.coarse ? light_scale : 1;  // pixels of the picture a side of a point's
   parallel_ranges(small.height, 8, [&](int begin, int end) {
     for (int y = begin; y < end; y++) {
       reduce_row(image, scale, y, small);
       for (int x = 0; x < small.width; x++)
-        seen->object[size_t(y) * size_t(small.width) + size_t(x)] =
-            find_object(cache.points(), cache.image(), (x * scale + scale / 2) / light,
-                        (y * scale + scale / 2) / light, scale / (2 * light));
+        seen->object[size_t(y) * size_t(small.width) + size_t(x)] = find_object(
+            cache.points(), cache.image(), x * scale + scale / 2, y * scale + scale / 2, scale / 2);
     }
   });
   return seen;

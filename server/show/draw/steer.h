@@ -19,10 +19,10 @@ inline constexpr double pointer_lifetime = 5;  // seconds without news, after wh
 
 // Is a job's picture to be noted? By the tick.
 bool wants_seen(const Show& show, const Visitor& visitor);
-// Of the picture in `image`, of job.view, and of the points in the visitor's cache, projected for
-// `lit`. By the renderer.
-std::shared_ptr<const SeenPicture> note_seen(const PictureJob& job, const View& lit,
-                                             const Image8& image, const RenderCache& cache);
+// The picture in `image`, of job.view, and the points in the visitor's cache, projected for it. By
+// the renderer.
+std::shared_ptr<const SeenPicture> note_seen(const PictureJob& job, const Image8& image,
+                                             const RenderCache& cache);
 // Takes what is finished and begins what is due, for one visitor a call. By the tick; never waits
 // but without a background.
 void steer(Show& show);

@@ -107,6 +107,9 @@ std::string describe_api() {
     "problems": {"list": "[{file, where, what}]: what is wrong with the files of a watched exhibit, which goes on as it was; empty: nothing any more"},
     "announce": {"id": "number, grows", "text": "{language tag: text}; empty: the last is taken back",
                  "seconds": "that it stays", "urgent": "boolean: over everything"},
+    "pose": {"seq": "of the last input that it includes", "position": "[x, y, z] m", "yaw": "radians", "pitch": "radians", "roll": "radians", "fov": "radians of the picture's height",
+             "width": "px", "height": "px: of the picture to be shown",
+             "cut": "number: another one, another place", "led": "boolean: a tour, a glide or a leader moves the visitor, not their own input (only after hello.display local)"},
     "error": {"code": "word, full (so many wait already) and storyteller_busy among them: the one storyteller of all visitors is taken; no_way, nothing_there, unknown_object: to go; not_trusted: a kiosk's token is needed; no_room: for larger pictures, which stay as they are",
               "message": "sentence"}},
   "binary": {
@@ -114,11 +117,18 @@ std::string describe_api() {
       {"offset": 4, "type": "u32", "name": "frame"}, {"offset": 8, "type": "u32", "name": "seq"},
       {"offset": 12, "type": "u64", "name": "server time, microseconds"}, {"offset": 20, "type": "u16", "name": "width"},
       {"offset": 22, "type": "u16", "name": "height"}, {"offset": 24, "type": "u8", "name": "quality"},
-      {"offset": 25, "type": "u8", "name": "flags: 1 still, 2 complete picture"},
+      {"offset": 25, "type": "u8", "name": "flags: 1 still, 2 complete picture, 4 a keyframe with depth"},
       {"offset": 26, "type": "u16", "name": "header length, 28 or more"}], "payload": "JPEG, perhaps smaller than was asked for: it is shown as large all the same",
       "parts": {"when": "the picture is not complete (only after hello.parts): all else is as in the picture before, scaled to this width and height", "fields": [
         {"offset": 28, "type": "u16", "name": "number of parts; 0: nothing is new but seq"},
-        {"offset": 30, "type": "12 bytes a part", "name": "u16 x, u16 y, u16 width, u16 height, u32 bytes"}], "payload": "their JPEGs, one after the other"}},
+        {"offset": 30, "type": "12 bytes a part", "name": "u16 x, u16 y, u16 width, u16 height, u32 bytes"}], "payload": "their JPEGs, one after the other"},
+      "keyframe": {"when": "flag 4 (only after hello.display local): a complete picture that the page shows from where its visitor is by then", "fields": [
+        {"offset": 28, "type": "u32", "name": "bytes of the JPEG"}, {"offset": 32, "type": "u32", "name": "camera cuts so far: another number, another place"},
+        {"offset": 36, "type": "u16", "name": "width of the depth"}, {"offset": 38, "type": "u16", "name": "height of the depth"},
+        {"offset": 40, "type": "3 x f64", "name": "place of the eye, m"}, {"offset": 64, "type": "9 x f32", "name": "its axes to the right, up and forward, 1 long"},
+        {"offset": 100, "type": "f32", "name": "half of the picture's height at a depth of 1"}, {"offset": 104, "type": "2 x f32", "name": "where the picture's middle lies at a depth of 1, to the right of the axis and above it"},
+        {"offset": 112, "type": "f32", "name": "disparity (1 / depth along the axis, 1/m) of one unit"}],
+        "payload": "the JPEG, then the disparities' code: u32 runs, planes, values and long lengths, then a zlib stream of arrays (numbers of 16 bits: all their low bytes, then all their high bytes): u8 kind of each run, u8 length of each run, u16 long lengths, of each plane u16 units at its first pixel and s16 slopes across and down in units / 256, u16 values. Rows are cut into runs. Kind, by what the row above has over the run's first pixel: 0 the plane of the run there, 1 of the run after that, 2 the plane of the run before the last one in this row, 3 the next plane, which begins here, 4 none: its pixels are the next values. Length of kinds 0 and 1: how much farther it ends than that run above, zigzag; else pixels less one; 255: the next long length"}},
     "sound": {"magic": "WSA1", "fields": [
       {"offset": 4, "type": "u32", "name": "utterance"},
       {"offset": 8, "type": "u32", "name": "first sample of this piece within the utterance"},

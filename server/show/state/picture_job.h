@@ -36,7 +36,6 @@ struct PictureJob {
   bool samples_only = false;  // nothing is drawn
   bool settled = false;       // for long: the reference takes over
   bool passing = false;       // drawn for a moment, and some around (picture/compose_drawn.h)
-  bool coarse = false;        // that in coarser light
   RestState rest;             // of the visitor, by then
   float scale = 1;            // sides of its view, in pixels, over those of the visitor's picture
   bool attention = true;

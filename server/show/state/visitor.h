@@ -39,10 +39,11 @@ inline void smooth(float& value, float sample, float share = 0.1f) {
 // The JPEG made while the next tick begins.
 struct Encoder {
   Image8 image;
-  BrowserPicture has;   // of a browser that takes parts
-  uint32_t frame = 0;   // of the last picture
-  bool unsent = false;  // nothing had changed: it was none
-  double pixels = 0;    // of it, as they count for bytes; 0: of parts, which tell nothing of others
+  std::vector<float> disparity;  // of a keyframe; empty: it is none
+  BrowserPicture has;            // of a browser that takes parts
+  uint32_t frame = 0;            // of the last picture
+  bool unsent = false;           // nothing had changed: it was none
+  double pixels = 0;  // of it, as they count for bytes; 0: of parts, which tell nothing of others
   int quality = 0;
   bool full_chroma = false;
   float milliseconds = 0;
@@ -114,6 +115,8 @@ struct Visitor {
   VisitorDelivery shown;   // show/draw/present.h
   StageTimes times;
   int counted_tour = -1;  // show/count
+  View posed;             // was told to the page (pose_message())
+  double posed_at = -1e9;
 };
 
 // Gets pictures: has said hello, and its page is not hidden.

@@ -29,6 +29,7 @@ struct PictureWishes {
   double bandwidth = 0;                       // bytes a second for pictures; 0: no limit
   bool saver = false;                         // nothing is sent that can be done without
   bool parts = false;                         // of pictures at rest, packet.h
+  bool local = false;                         // keyframes with depth, packet.h
   int best_quality = 82, still_quality = 92;  // of JPEGs, in motion and at rest
   bool attention = true;                      // CacheSettings::attention
   // Of attention (attention/attended.h): 0 what catches the eye, 1 what the visitor looks at.

@@ -8,13 +8,11 @@
 #include "light/technique/technique.h"
 #include "picture/compose_drawn.h"
 #include "picture/read_surface.h"
-#include "show/draw/sample_budget.h"
 #include "show/exhibit/eye_places.h"
 
 namespace wellspring {
 namespace {
 
-constexpr double rate = 60;      // pictures a second
 constexpr int still_after = 15;  // pictures, as the show's quarter of a second
 
 }  // namespace
@@ -56,50 +54,47 @@ void CorrectedVisit::show(const View& view, int budget, int frame, Frame& shown)
   if (frame == 0 || view != last_) moved_ = frame;
   last_ = view;
   const bool passing = frame - moved_ < still_after;
-  const double pixels = double(view.width) * double(view.height);
-  const bool coarse = passing && !affords_fine_light(budget * rate / pixels, false);
-  const View lit = coarse ? light_view(view) : view;
   const uint64_t seed = mix64(uint64_t(frame + 1) * 0x9e3779b9u);
   cache_.resize(view.width, view.height);
   cache_.move_points(stage_.world);
-  cache_.project(lit);
+  cache_.project(view);
   cache_.attend();
   corrective_.clear();
   const bool corrects = way_.order != CorrectedWay::Order::none && (passing || way_.at_rest);
   if (corrects) {
     const int most = int(way_.share * float(budget));
-    corrections_.begin(lit, *stage_.visibility, stage_.shining);
+    corrections_.begin(view, *stage_.visibility, stage_.shining);
     if (way_.order == CorrectedWay::Order::corrective)
       corrections_.request({}, most, seed, corrective_);
     else corrections_.request_evenly(most, seed, corrective_);
   }
-  cache_.plan(lit, budget - int(corrective_.size()), seed, requests_);
+  cache_.plan(view, budget - int(corrective_.size()), seed, requests_);
   requests_.insert(requests_.end(), corrective_.begin(), corrective_.end());
   samples_.resize(requests_.size());
   TransportSettings transport;
   transport.max_depth = 8, transport.clamp = 4;
   trace(*find_technique("gather"), stage_.world, stage_.lights, transport, requests_, samples_);
-  cache_.remember(lit, requests_, samples_);
-  if (corrects) corrections_.remember(lit, requests_, samples_);
-  if (passing) return draw(view, lit, shown);
+  cache_.remember(view, requests_, samples_);
+  if (corrects) corrections_.remember(view, requests_, samples_);
+  if (passing) return draw(view, shown);
   compositor_.follow_changes(cache_);
   compositor_.add_samples(view, requests_, samples_);
   compositor_.draw_still(cache_, view, *stage_.visibility, shown);
 }
 
 // As Compositor::draw(), with the samples of what shines.
-void CorrectedVisit::draw(const View& view, const View& lit, Frame& shown) {
+void CorrectedVisit::draw(const View& view, Frame& shown) {
   fit_frame(view.width, view.height, shown);
-  fit_frame(lit.width, lit.height, light_);
+  fit_frame(view.width, view.height, light_);
   cache_.lend_light();
-  cache_.scratch().start(cells_bytes(lit.width, lit.height));
-  take_cells(cells_, lit.width, lit.height, cache_.scratch());
-  const ShownPoints points = read_surface(lit, cache_.points(), cache_.image(), cells_, light_);
-  corrections_.show(lit, light_);
-  const bool known = fill_cells(lit, cells_);
-  filter_cells(lit, cells_);
-  compose_drawn(view, lit, *stage_.visibility, cells_, known, light_,
-                {.maps = stage_.lights.maps.get()}, shown);
+  cache_.scratch().start(cells_bytes(view.width, view.height));
+  take_cells(cells_, view.width, view.height, cache_.scratch());
+  const ShownPoints points = read_surface(view, cache_.points(), cache_.image(), cells_, light_);
+  corrections_.show(view, light_);
+  const bool known = fill_cells(view, cells_);
+  filter_cells(view, cells_);
+  compose_drawn(view, *stage_.visibility, cells_, known, light_, {.maps = stage_.lights.maps.get()},
+                shown);
   cache_.end_frame(points);
 }
 

@@ -45,7 +45,7 @@ class CorrectedVisit {
   void show(const View& view, int budget, int frame, Frame& shown);
 
  private:
-  void draw(const View& view, const View& lit, Frame& shown);
+  void draw(const View& view, Frame& shown);
 
   const CorrectedStage& stage_;
   const CorrectedWay& way_;

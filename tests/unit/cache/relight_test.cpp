@@ -118,13 +118,12 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
     View view = box.view();
     if (shown == PictureOf::moving && (pictures - i) % 2 == 0)
       view.position.x += 0.004f;  // the last is seen from the place
-    const View seen = shown == PictureOf::moving ? light_view(view) : view;
     if (i == 0 && told) visit.cache.relight(everywhere);
     visit.transport = box.transport;
-    visit.sample(box, view.width, view.height, seen, view.width * view.height / mismatch);
-    visit.cache.remember(seen, visit.requests, visit.samples);
+    visit.sample(box, view, view.width * view.height / mismatch);
+    visit.cache.remember(view, visit.requests, visit.samples);
     visit.compositor.follow_changes(visit.cache);
-    visit.compositor.add_samples(seen, visit.requests, visit.samples);
+    visit.compositor.add_samples(view, visit.requests, visit.samples);
     if (shown == PictureOf::moving)
       visit.compositor.draw(visit.cache, view, *box.visibility, visit.frame);
     else visit.compositor.draw_still(visit.cache, view, *box.visibility, visit.frame);
@@ -141,8 +140,7 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
   return float(right) / float(std::max(affected, 1));
 }
 
-// Nine in ten of those that a switch changes, at one sample for 16 pixels; who moves has light of
-// half the resolution.
+// Nine in ten of those that a switch changes, at one sample for 16 pixels.
 TEST(Relight, DrawnPicturesAreRightInHalfASecond) {
   Box dark(false), lit(true);
   std::vector<vec3> without = dark.truth().color, with = lit.truth().color;

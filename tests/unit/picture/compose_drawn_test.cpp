@@ -91,34 +91,26 @@ void expect_same_for_the_eye(DrawnVisit& drawn, const View& view,
   }
 }
 
-// Of a place that nothing was known of a moment ago; odd sizes too: tiles, blocks and light pixels
-// end anywhere.
+// Of a place that nothing was known of a moment ago; odd sizes too: tiles and blocks end
+// anywhere.
 TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
   for (ivec2 size : {ivec2(160, 120), ivec2(151, 97)}) {
     Stage stage = make_room_with_ball();
-    DrawnVisit drawn, fine;
+    DrawnVisit drawn;
     int count = size.x * size.y;
     View view;
     for (int i = 0; i < 24; i++) {
       stage.push_ball(0.004f);
       view = view_from(stage, 0.002 * i + (i >= 12 ? 0.1 : 0), size.x, size.y);
       drawn.step(stage, view, count / 60, PictureOf::moving);
-      fine.step(stage, view, count / 60, PictureOf::moving_fine);
     }
     ASSERT_EQ(drawn.frame.color.size(), size_t(count));
     expect_same_for_the_eye(drawn, view, *stage.visibility);
     EXPECT_LT(count_wrong(stage, view, drawn.frame), count / 1000);
     for (size_t i = 0; i < drawn.frame.object.size(); i++)
       ASSERT_EQ(drawn.frame.object[i] == 0, std::isinf(drawn.frame.depth[i])) << i;
-    // The same shapes, whatever light is on them.
-    EXPECT_EQ(fine.frame.object, drawn.frame.object);
-    EXPECT_EQ(fine.frame.depth, drawn.frame.depth);
-    Frame truth = stage.truth(view, 32);
-    for (DrawnVisit* shown : {&drawn, &fine}) {
-      EXPECT_LT(rmse(shown->frame, truth), 0.21) << size.x;
-      expect_light(shown->frame);
-      expect_same_for_the_eye(*shown, view, *stage.visibility);
-    }
+    EXPECT_LT(rmse(drawn.frame, stage.truth(view, 32)), 0.21) << size.x;
+    expect_light(drawn.frame);
   }
 }
 
@@ -148,63 +140,16 @@ TEST(Drawn, DarkBarsBeforeABrightSkyAreThoseOfAllOfThePixel) {
   EXPECT_LT(error, 9);
 }
 
-// Light of cells is as bright as that with each point's own, but neighbours differ less, as few
-// samples are noisy.
-TEST(Drawn, LightOfCellsIsAsBrightAndLessNoisy) {
-  Stage stage(make_room());
-  DrawnVisit drawn;
-  View view = view_from(stage, 0, width, height);
-  for (int i = 0; i < 6; i++) drawn.step(stage, view, pixels / 20, PictureOf::moving);
-  Image8 own, filtered;
-  drawn.compositor.draw(drawn.cache, view, *stage.visibility, Tonemap{1}, own);
-  drawn.compositor.draw(drawn.cache, view, *stage.visibility, Tonemap{1}, filtered, nullptr, true);
-  auto sum = [](const Image8& image) {
-    double sum = 0;
-    for (uint8_t c : image.rgb) sum += c;
-    return sum;
-  };
-  // Across light pixels of two, where the surface goes on as it does in the picture without noise.
-  Image8 truth;
-  tonemap(stage.truth(view, 256), {1}, truth);
-  auto roughness = [&](const Image8& image) {
-    double sum = 0;
-    for (int y = 0; y < height; y++)
-      for (int x = 0; x + 2 < width; x++) {
-        size_t i = 3 * size_t(y * width + x);
-        if (std::abs(truth.rgb[i] - truth.rgb[i + 6]) < 8)
-          sum += std::abs(image.rgb[i] - image.rgb[i + 6]);
-      }
-    return sum;
-  };
-  EXPECT_NEAR(sum(filtered), sum(own), 0.03 * sum(own));
-  EXPECT_LT(roughness(filtered), 0.8 * roughness(own));
-}
-
-// Light of the picture's own resolution is nearer to what is there.
-TEST(Drawn, FineLightShowsWhoMovesMore) {
-  Stage stage(make_room());
-  for (int budget : {pixels / 32, pixels / 128}) {
-    DrawnVisit coarse, fine;
-    View view;
-    for (int i = 0; i < 48; i++) {
-      view = view_from(stage, 0.004 * i, width, height);
-      coarse.step(stage, view, budget, PictureOf::moving);
-      fine.step(stage, view, budget, PictureOf::moving_fine);
-    }
-    Frame truth = stage.truth(view, 128);
-    EXPECT_LT(flip(fine.frame, truth), 0.95 * flip(coarse.frame, truth)) << budget;
-  }
-}
-
 // What lies around a picture has a larger image for as long as it is drawn, and no more points.
-TEST(Drawn, SurroundingsInFineLightCostNoPoint) {
+TEST(Drawn, SurroundingsCostNoPoint) {
   Stage stage(make_room());
   DrawnVisit drawn;
   View view = view_from(stage, 0, width, height), around = view;
   around.width += 64, around.height += 32;
   around.tan_half_fov *= float(around.height) / float(view.height);
+  drawn.cache.resize(width, height);
   auto step = [&](const View& seen, PictureOf kind, int budget) {
-    drawn.sample(stage, width, height, seen, budget);  // of that size, whatever is drawn
+    drawn.sample_within(stage, seen, budget);
     drawn.cache.remember(seen, drawn.requests, drawn.samples);
     if (kind == PictureOf::still)
       drawn.compositor.draw_still(drawn.cache, seen, *stage.visibility, drawn.frame);
@@ -212,11 +157,11 @@ TEST(Drawn, SurroundingsInFineLightCostNoPoint) {
     EXPECT_EQ(drawn.frame.width, seen.width);
     expect_light(drawn.frame);
   };
-  for (int i = 0; i < 8; i++) step(view, PictureOf::moving_fine, pixels / 8);
+  for (int i = 0; i < 8; i++) step(view, PictureOf::moving, pixels / 8);
   float points = drawn.cache.stats().points;
-  for (int i = 0; i < 8; i++) step(around, PictureOf::moving_fine, 1);
+  for (int i = 0; i < 8; i++) step(around, PictureOf::moving, 1);
   EXPECT_GE(drawn.cache.stats().points, 0.99f * points);  // none was lost
-  for (int i = 0; i < 64; i++) step(around, PictureOf::moving_fine, pixels / 8);
+  for (int i = 0; i < 64; i++) step(around, PictureOf::moving, pixels / 8);
   EXPECT_LE(drawn.cache.stats().points, 1.1f * float(pixels));
   for (int i = 0; i < 4; i++) step(around, PictureOf::still, pixels / 8);
   for (int i = 0; i < 4; i++) step(view, PictureOf::still, pixels / 8);

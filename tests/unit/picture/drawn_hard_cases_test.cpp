@@ -93,7 +93,7 @@ TEST(DrawnHardCases, AFullTurnInThreeTenthsOfASecond) {
   }
   EXPECT_GT(visitor.cache.stats().reprojected, 0.1);  // not all is forgotten
   // Back where it began nothing is worse than if the visitor had stood.
-  for (int i = 0; i < 5; i++) visitor.step(stage, turned(18), pixels / 16);
+  for (int i = 0; i < 10; i++) visitor.step(stage, turned(18), pixels / 16);
   EXPECT_LT(shown_error(visitor.frame, truth), 1.15 * before);
 }
 

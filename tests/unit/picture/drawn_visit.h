@@ -84,8 +84,8 @@ inline Mesh add_ball(Scene& scene, vec3 place) {
   return ball;
 }
 
-// draw() in coarser light and in fine, draw_still()
-enum class PictureOf { moving, moving_fine, still };
+// draw(), draw_still()
+enum class PictureOf { moving, still };
 
 struct DrawnVisit {
   RenderCache cache;
@@ -100,22 +100,24 @@ struct DrawnVisit {
   size_t memory_bytes() const { return cache.memory_bytes() + compositor.memory_bytes(); }
 
   void step(const Stage& stage, const View& view, int budget, PictureOf kind) {
-    View light = kind == PictureOf::moving ? light_view(view) : view;
-    sample(stage, view.width, view.height, light, budget);
-    cache.remember(light, requests, samples);
+    sample(stage, view, budget);
+    cache.remember(view, requests, samples);
     compositor.follow_changes(cache);
-    if (kind == PictureOf::still) compositor.add_samples(light, requests, samples);
+    if (kind == PictureOf::still) compositor.add_samples(view, requests, samples);
     if (kind == PictureOf::still) compositor.draw_still(cache, view, *stage.visibility, frame);
     else compositor.draw(cache, view, *stage.visibility, frame);
   }
-  // All before the samples are remembered. `light`: the view in the resolution of its light, in a
-  // picture of `width` x `height` pixels.
-  void sample(const Stage& stage, int width, int height, const View& light, int budget) {
-    cache.resize(width, height);
+  // All before the samples are remembered.
+  void sample(const Stage& stage, const View& view, int budget) {
+    cache.resize(view.width, view.height);
+    sample_within(stage, view, budget);
+  }
+  // The same in a cache of the size that it has.
+  void sample_within(const Stage& stage, const View& view, int budget) {
     cache.move_points(*stage.world);
-    cache.project(light);
+    cache.project(view);
     cache.attend();
-    cache.plan(light, budget, tick++, requests);
+    cache.plan(view, budget, tick++, requests);
     samples.resize(requests.size());
     trace(*find_technique(technique), *stage.world, stage.lights, transport, requests, samples);
   }

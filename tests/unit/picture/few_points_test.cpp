@@ -24,7 +24,7 @@ Shown stroll(const Stage& stage, int pixels_a_sample) {
   Shown shown;
   for (int i = 0; i < 30; i++) {
     shown.view = make_view(stage.scene, {0.002 * i, 0.25, 0.6}, 0, 0, 0.7f, width, height);
-    visit.step(stage, shown.view, pixels / pixels_a_sample, PictureOf::moving_fine);
+    visit.step(stage, shown.view, pixels / pixels_a_sample, PictureOf::moving);
   }
   shown.frame = visit.frame;
   shown.truth = stage.truth(shown.view, 256);

@@ -67,7 +67,7 @@ TEST(Glow, IsAddedToTheLightThatFallsThere) {
   Stage stage(make_board());
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);
   Frame truth = stage.truth(view, 64);
-  for (PictureOf kind : {PictureOf::moving, PictureOf::moving_fine, PictureOf::still}) {
+  for (PictureOf kind : {PictureOf::moving, PictureOf::still}) {
     DrawnVisit visit;
     for (int i = 0; i < 24; i++) visit.step(stage, view, size * size / 4, kind);
     for (int stripe = 0; stripe < 4; stripe++) {
@@ -89,12 +89,12 @@ TEST(Glow, FollowsTheLampThatIsSwitched) {
   Stage stage(std::move(scene));
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);
   DrawnVisit visit;
-  for (int i = 0; i < 40; i++) visit.step(stage, view, size * size, PictureOf::moving_fine);
+  for (int i = 0; i < 40; i++) visit.step(stage, view, size * size, PictureOf::moving);
   float lit = compare(visit.frame, visit.frame, view, 3).shown.x;
   EXPECT_GT(lit, 2);
   stage.world->set_lamp(0, 0);
   visit.cache.relight([](const RenderCache::Surface&, vec3&, vec3&) { return true; });
-  visit.step(stage, view, 0, PictureOf::moving_fine);
+  visit.step(stage, view, 0, PictureOf::moving);
   EXPECT_NEAR(compare(visit.frame, visit.frame, view, 3).shown.x, 0.5f, 0.05f);
 }
 

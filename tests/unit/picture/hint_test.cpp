@@ -15,7 +15,7 @@ Frame show(const Stage& stage, const View& view, bool told) {
   DrawnVisit visit;
   visit.technique = "gather";
   for (int i = 0; i < 5; i++) {
-    visit.sample(stage, view.width, view.height, view, view.width * view.height / 25);
+    visit.sample(stage, view, view.width * view.height / 25);
     for (Sample& sample : visit.samples)
       if (!told) sample.flags &= uint8_t(~sample_sure);
     visit.cache.remember(view, visit.requests, visit.samples);

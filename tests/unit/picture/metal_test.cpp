@@ -59,7 +59,7 @@ void expect_board(Scene scene, float most) {
   Stage stage(std::move(scene));
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);
   Frame truth = stage.truth(view, 256);
-  for (PictureOf kind : {PictureOf::moving, PictureOf::moving_fine, PictureOf::still}) {
+  for (PictureOf kind : {PictureOf::moving, PictureOf::still}) {
     DrawnVisit visit;
     for (int i = 0; i < 24; i++) visit.step(stage, view, size * size / 16, kind);
     Error error = compare(visit.frame, truth);

@@ -293,7 +293,7 @@ TEST(MovingPicture, IsLitByItsSkinAlone) {
   View view = view_of(stage);
   SkinLight skin = make_skin_light(*stage.world);
   std::fill(skin.light.begin(), skin.light.end(), vec4(0, 2, 0, 1));
-  for (PictureOf kind : {PictureOf::moving, PictureOf::moving_fine, PictureOf::still}) {
+  for (PictureOf kind : {PictureOf::moving, PictureOf::still}) {
     DrawnVisit visit;
     visit.compositor.set_skin(&skin, &stage.lights);
     for (int i = 0; i < 3; i++) visit.step(stage, view, pixels / 4, kind);

@@ -109,3 +109,53 @@ TEST(Packet, parts_that_cannot_be_are_refused) {
     EXPECT_FALSE(read_packet(packet)) << at;
   }
 }
+
+static constexpr KeyframeHeader golden_keyframe{.color_bytes = 4,
+                                                .cuts = 3,
+                                                .width = 8,
+                                                .height = 4,
+                                                .eye = {1.5, -2.25, 1024.5},
+                                                .right = {1, 0, 0},
+                                                .up = {0, 1, 0},
+                                                .forward = {0, 0, -1},
+                                                .tan_half_fov = 0.5f,
+                                                .middle = {0.25f, -0.125f},
+                                                .unit = 0.5f};
+
+TEST(Packet, keyframes_are_written_and_read_as_the_golden_bytes) {
+  const PacketHeader header{.frame = 9,
+                            .seq = 10,
+                            .time_us = 11,
+                            .width = 16,
+                            .height = 8,
+                            .quality = 85,
+                            .flags = packet_complete | packet_depth};
+  const Packet golden = test::read_golden("keyframe.hex");
+  Packet packet = golden;
+  std::fill_n(packet.begin(), keyframe_header_bytes, uint8_t(0xee));
+  write_packet_header(header, golden_keyframe, packet);
+  EXPECT_EQ(packet, golden);
+  const auto view = read_packet(golden);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->keyframe, golden_keyframe);
+  EXPECT_EQ(view->payload[0], 0xff);
+}
+
+TEST(Packet, keyframes_that_cannot_be_are_refused) {
+  const Packet golden = test::read_golden("keyframe.hex");
+  for (size_t size = 0; size < keyframe_header_bytes + golden_keyframe.color_bytes; size++)
+    EXPECT_FALSE(read_packet({golden.data(), size})) << size;
+  struct {
+    size_t at;
+    uint8_t value;
+  } const wrong[] = {{26, 115},  {31, 1},     {36, 0},     {38, 0},     {47, 0x7f},
+                     {67, 0x7f}, {103, 0xbf}, {103, 0x7f}, {107, 0x7f}, {115, 0}};
+  for (const auto& [at, value] : wrong) {
+    Packet packet = golden;
+    packet[at] = value;
+    if (at == 47 || at == 67 || at == 107) packet[at - 1] = 0xf0 | 0x0f;  // not a finite number
+    if (at == 103 && value == 0x7f) packet[at - 1] = 0xff;
+    if (at == 115) packet[at - 1] = 0;
+    EXPECT_FALSE(read_packet(packet)) << at;
+  }
+}

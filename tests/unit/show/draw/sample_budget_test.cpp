@@ -18,7 +18,7 @@ TEST(SampleBudget, SpendsTheTimeThereIs) {
       double spent = samples / costs.samples_per_second + costs.drawing_seconds;
       // Light keeps a quarter of the time even where drawing slows pictures down.
       double slowed = std::max(0.0, costs.drawing_seconds - 0.75 * seconds);
-      double saved = 0.6 * costs.display_seconds;  // by coarser light
+      double saved = 0.6 * costs.display_seconds;  // by a picture for who moves
       EXPECT_LE(spent, seconds + saved + slowed + 1000 / costs.samples_per_second + 1e-9);
       EXPECT_GE(samples, 1000);
       if (seconds > 2 * costs.drawing_seconds) {
@@ -42,8 +42,8 @@ TEST(SampleBudget, WhoStandsGetsAQuarterInLight) {
   }
 }
 
-// What a picture takes in coarser light is what counts once it is known.
-TEST(SampleBudget, FollowsWhatCoarserLightTakes) {
+// What a picture for who moves takes is what counts once it is known.
+TEST(SampleBudget, FollowsWhatPassingPicturesTake) {
   DrawingCosts costs{1e5, 0.02, 0.1, 0};
   int guessed = sample_budget(0.1, pixels, costs, false);
   costs.light_seconds = 0.005;
@@ -58,23 +58,6 @@ TEST(SampleBudget, SmallPicturesNeedNoMoreSamplesThanTheyHavePixels) {
   EXPECT_EQ(sample_budget(0, 64, slow, false), 64);
   EXPECT_EQ(sample_budget(1, 96 * 64, quick, true), 96 * 64 / 2);
   EXPECT_EQ(sample_budget(1, 0, quick, true), 0);
-}
-
-TEST(SampleBudget, LightBecomesFineWhenItIsKnown) {
-  EXPECT_FALSE(wants_fine_light(false, true, 0));
-  EXPECT_FALSE(wants_fine_light(false, false, 0));  // moves again
-  EXPECT_FALSE(wants_fine_light(true, true, 0.9f));
-  EXPECT_TRUE(wants_fine_light(true, true, 0.1f));
-  EXPECT_TRUE(wants_fine_light(true, false, 0.9f));  // and stays so
-}
-
-TEST(SampleBudget, WhoMovesHasFineLightWhereSamplesAreNotFew) {
-  EXPECT_FALSE(affords_fine_light(0, false));
-  EXPECT_FALSE(affords_fine_light(0.2, true));
-  EXPECT_TRUE(affords_fine_light(0.5, false));
-  // It costs samples, which is no reason to give it up again.
-  EXPECT_FALSE(affords_fine_light(0.35, false));
-  EXPECT_TRUE(affords_fine_light(0.35, true));
 }
 
 TEST(PlanKeyframe, ResolutionFallsBeforeKeyframesComeLate) {
@@ -122,15 +105,13 @@ TEST(TourPace, SlowsDownWhereAKeyframeWouldMissAFifth) {
 }
 
 TEST(SampleBudget, TheReferenceComesLast) {
-  EXPECT_FALSE(wants_reference(1, false, false, 0, 1));
-  EXPECT_FALSE(wants_reference(30, false, true, 0, 1));  // light is coarse yet
-  EXPECT_FALSE(wants_reference(30, false, false, 0.4f, 0.6f));
-  EXPECT_FALSE(
-      wants_reference(30, false, false, 0.05f, 0.3f));  // of few samples its noise would show
-  EXPECT_TRUE(wants_reference(30, false, false, 0.05f, 0.6f));
+  EXPECT_FALSE(wants_reference(1, false, 0, 1));
+  EXPECT_FALSE(wants_reference(30, false, 0.4f, 0.6f));
+  EXPECT_FALSE(wants_reference(30, false, 0.05f, 0.3f));  // of few samples its noise would show
+  EXPECT_TRUE(wants_reference(30, false, 0.05f, 0.6f));
   EXPECT_TRUE(
-      wants_reference(30, true, false, 0.15f, 0.4f));  // the storyteller moves: what she hid is new
-  EXPECT_FALSE(wants_reference(0.5, true, false, 0, 1));  // walks again
+      wants_reference(30, true, 0.15f, 0.4f));     // the storyteller moves: what she hid is new
+  EXPECT_FALSE(wants_reference(0.5, true, 0, 1));  // walks again
 }
 
 TEST(SampleBudget, NothingMeasuredYetIsNoDivisionByZero) {

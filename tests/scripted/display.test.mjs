@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keyframes with depth, as pages that draw for themselves get them, and the camera of such a page.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { decode_disparity } from '../../web/display/disparity.js';
+import { make_mapping } from '../../web/display/view.js';
+import { make_walker } from '../../web/display/walker.js';
+import { read_picture } from '../../web/packet.js';
+import { Visitor, source, start_server, until } from '../server.mjs';
+
+let server;
+before(async () => { server = await start_server(['--exhibit', 'first-room']); });
+after(async () => { if (server) assert.equal(await server.stop(), 0); });
+
+const golden = () => {
+  const lines = readFileSync(join(source, 'tests/protocol/keyframe.hex'), 'utf8').split('\n');
+  const words = lines.filter((line) => !line.startsWith('#')).join(' ').trim().split(/\s+/);
+  return Uint8Array.from(words, (word) => parseInt(word, 16));
+};
+const depth_of = ({ payload, keyframe: { color_bytes, view } }) =>
+  decode_disparity(payload.subarray(color_bytes), view.width, view.height);
+
+test('the page reads a keyframe as it is documented', async () => {
+  const picture = read_picture(golden().buffer);
+  assert.deepEqual(picture.keyframe, { color_bytes: 4, cuts: 3, unit: 0.5,
+    view: { eye: [1.5, -2.25, 1024.5], right: [1, 0, 0], up: [0, 1, 0], forward: [0, 0, -1],
+      tan_half_fov: 0.5, middle: [0.25, -0.125], width: 8, height: 4 } });
+  assert.deepEqual([...await depth_of(picture)],
+      [10, 15, 20, 25, 30, 35, 300, 7, 20, 25, 30, 35, 40, 45, 300, 7, 30, 35, 40, 45, 50, 55, 60,
+        9, 40, 45, 50, 55, 60, 65, 70, 65535]);
+});
+
+test('what is no keyframe is refused before it takes memory', async () => {
+  const good = golden();
+  for (let length = 0; length < 120; length++)
+    assert.equal(read_picture(good.slice(0, length).buffer), null, `${length} bytes`);
+  for (const [at, value] of [[26, 115], [31, 255], [36, 0], [38, 0], [103, 0xbf], [115, 0xff]]) {
+    const bad = good.slice();
+    bad[at] = value;
+    assert.equal(read_picture(bad.buffer), null, `byte ${at}`);
+  }
+  const { payload } = read_picture(good.buffer), code = payload.subarray(4);
+  await assert.rejects(decode_disparity(code, 8, 5), /depth/);
+  await assert.rejects(decode_disparity(code, 7, 4), /depth/);
+  for (let length = 0; length < code.length; length++)
+    await assert.rejects(decode_disparity(code.subarray(0, length), 8, 4));
+  for (let at = 0; at < 16; at++) {  // more runs than pixels, or other counts than there are
+    const bad = code.slice();
+    bad[at] ^= 0x81;
+    await assert.rejects(decode_disparity(bad, 8, 4), `byte ${at}`);
+  }
+});
+
+// The share of the pixels of `from` whose places have the same depth in `to`, of those in it.
+function share_alike(from, to) {
+  const { one, across, down, baseline } = make_mapping(from.view, to.view);
+  const { width, height } = from.view;
+  let alike = 0, all = 0;
+  for (let y = 0; y < height; y += 3)
+    for (let x = 0; x < width; x += 3) {
+      const w = from.units[y * width + x] * from.unit;
+      const at = [0, 1, 2].map((i) =>
+        one[i] + (x + 0.5) * across[i] + (y + 0.5) * down[i] + w * baseline[i]);
+      const [px, py] = [at[0] / at[2], at[1] / at[2]].map(Math.floor);
+      if (!(at[2] > 0 && px >= 0 && py >= 0 && px < to.view.width && py < to.view.height)) continue;
+      all++;
+      const there = to.units[py * to.view.width + px] * to.unit;
+      alike += Math.abs(w / at[2] - there) < 6 * to.unit + 0.01 * there ? 1 : 0;
+    }
+  assert.ok(all > 500, `${all} places are in both`);
+  return alike / all;
+}
+
+async function next_keyframe(visitor, wanted = () => true) {
+  let found = null;
+  await visitor.next((item) => {
+    if (!item.binary) return false;
+    const { buffer, byteOffset, length } = item.binary;
+    const picture = read_picture(buffer.slice(byteOffset, byteOffset + length));
+    if (!picture?.keyframe || !wanted(picture)) return false;
+    found = picture;
+    return true;
+  }, 'keyframe');
+  const { view, unit } = found.keyframe;
+  return { ...found, view, unit, units: await depth_of(found) };
+}
+
+test('keyframes of a walk show the same places', async () => {
+  const visitor = new Visitor(server);
+  const first = next_keyframe(visitor);
+  await visitor.hello({ display: 'local', parts: true });
+  const before_turn = await first;
+  assert.deepEqual([...before_turn.payload.subarray(0, 2)], [0xff, 0xd8]);
+  assert.ok(before_turn.view.width >= 320 && before_turn.view.height >= 176);
+  const pose = visitor.message('pose', ({ seq }) => seq === 1);
+  visitor.send({ type: 'input', seq: 1, move: [0.4, 0, 0.4], look: [0.15, 0.05] });
+  const turned = await next_keyframe(visitor, ({ seq, keyframe }) =>
+    seq === 1 && Math.hypot(...keyframe.view.eye.map((v, i) => v - before_turn.view.eye[i])) > 0.1);
+  visitor.send({ type: 'input', seq: 2, move: [0, 0, 0], look: [0, 0] });
+  const { led, cut, position } = await pose;
+  assert.equal(led, false);
+  assert.equal(cut, turned.keyframe.cuts);
+  assert.equal(position.length, 3);
+  assert.ok(share_alike(before_turn, turned) > 0.85, 'places are found again');
+  assert.ok(share_alike(turned, before_turn) > 0.85, 'and the other way round');
+  // At rest what has changed of it comes in parts.
+  await visitor.picture(({ parts, flags }) => parts?.length > 0 && !(flags & 4));
+  await visitor.close();
+});
+
+test('who asks for nothing gets finished pictures', async () => {
+  const visitor = new Visitor(server);
+  await visitor.hello();
+  const picture = await visitor.picture();
+  assert.equal(picture.flags & 4, 0);
+  assert.equal(picture.header, 28);
+  await until(() => visitor.pictures > 2);
+  assert.ok(visitor.messages.every(({ type }) => type !== 'pose'));
+  await visitor.close();
+});
+
+// A server that walks as ours does, `away` ms there and back, whose visitor comes to a wall at
+// x = 2. Returns how far the page's camera was from the server's when that had heard all, and the
+// farthest that it ever went back, metres.
+function walk_with(away, { stalls = false, wall = Infinity } = {}) {
+  const walker = make_walker(), there = { position: [0, 1.6, 0], velocity: 0, move: 0, seq: 0 };
+  walker.set_ground({ free: (x) => x < wall });
+  const tell = () => ({ seq: there.seq, position: [...there.position], yaw: -Math.PI / 2, pitch: 0,
+    roll: 0, fov: 1, cut: 0, led: false });
+  const to_server = [], to_page = [{ at: 0, pose: tell() }];
+  let back = 0, farthest = 0, blocked_until = 0;
+  for (let now = 0, seq = 0; now <= 6000; now += 10) {
+    if (now === 1000 || now === 3000) {
+      const move = now === 1000 ? 1.4 : 0;
+      walker.sent(++seq, [0, 0, move]);
+      to_server.push({ at: now + away / 2, seq, move });
+    }
+    while (to_server[0]?.at <= now) Object.assign(there, to_server.shift());
+    there.velocity += (there.move - there.velocity) * (1 - Math.exp(-0.01 / 0.09));
+    const next = there.position[0] + 0.01 * there.velocity;
+    if (next < wall) there.position[0] = next;
+    if (stalls && now % 1000 === 500) blocked_until = now + 400;  // a packet was lost
+    if (now % 30 === 0) to_page.push({ at: Math.max(now + away / 2, blocked_until), pose: tell() });
+    while (to_page[0]?.at <= now) walker.told(to_page.shift().pose, now, away);
+    walker.advance(0.01, now);
+    const [x] = walker.pose()?.position ?? [0];
+    farthest = Math.max(farthest, x);
+    back = Math.max(back, farthest - x);
+  }
+  return { apart: Math.abs(walker.pose().position[0] - there.position[0]), back, farthest };
+}
+
+test('the camera walks at once and ends where the server has it', () => {
+  for (const away of [0, 50, 150, 300]) {
+    const { apart, back } = walk_with(away);
+    assert.ok(apart < 0.005, `${apart} m apart after ${away} ms`);
+    assert.ok(back < 0.03, `${back} m back after ${away} ms`);
+    const stalled = walk_with(away, { stalls: true });
+    assert.ok(stalled.apart < 0.005, `${stalled.apart} m apart after stalls and ${away} ms`);
+  }
+});
+
+test('a wall does not throw the camera back', () => {
+  for (const away of [0, 50, 150, 300]) {
+    const { apart, back, farthest } = walk_with(away, { wall: 2 });
+    assert.ok(farthest < 2.02 && apart < 0.02 && back < 0.03, `${away} ms: ${farthest} ${back}`);
+  }
+});
+
+test('a turn is seen at once, and not again when the server has heard of it', () => {
+  const walker = make_walker();
+  const told = (seq, yaw) => ({ seq, position: [0, 0, 0], yaw, pitch: 0, roll: 0, fov: 1, cut: 0,
+    led: false });
+  walker.told(told(0, 0), 0, 100);
+  walker.turn([0.5, 2]);
+  walker.sent(1, [0, 0, 0]);
+  assert.equal(walker.pose().yaw, 0.5);
+  assert.ok(walker.pose().pitch < 1.5);  // as far up as one can look
+  walker.turn([0.25, -1]);
+  walker.sent(2, [0, 0, 0]);
+  walker.told({ ...told(1, 0.5), pitch: 1.45 }, 100, 100);
+  for (let now = 100; now < 400; now += 16) walker.advance(0.016, now);
+  assert.ok(Math.abs(walker.pose().yaw - 0.75) < 1e-9);
+  // Another place is shown at once, and a led camera goes where it is led.
+  walker.told({ ...told(2, 1), position: [5, 0, 0], cut: 1 }, 400, 100);
+  assert.deepEqual(walker.pose().position, [5, 0, 0]);
+  for (let now = 400, x = 5; now < 1400; now += 20, x += 0.02) {
+    walker.told({ ...told(2, 1), position: [x, 0, 0], cut: 1, led: true }, now, 100);
+    walker.advance(0.02, now);
+  }
+  assert.ok(Math.abs(walker.pose().position[0] - 6) < 0.06, `${walker.pose().position[0]}`);
+});

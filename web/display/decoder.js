@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// This worker decodes keyframes: {id, color, depth, width, height} becomes {id, bitmap, units,
+// blocks} or {id, problem}. `blocks` has the farthest and the nearest units of each block of
+// pixels and those around them, row after row.
+import { decode_disparity } from './disparity.js';
+import { block } from './view.js';
+
+function bound_blocks(units, width, height) {
+  const columns = Math.ceil(width / block), rows = Math.ceil(height / block);
+  const out = new Uint16Array(2 * columns * rows);
+  for (let row = 0; row < rows; row++)
+    for (let column = 0; column < columns; column++) {
+      const x0 = Math.max(column * block - 1, 0), x1 = Math.min((column + 1) * block + 1, width);
+      const y1 = Math.min((row + 1) * block + 1, height);
+      let low = 65535, high = 0;
+      for (let y = Math.max(row * block - 1, 0); y < y1; y++)
+        for (let i = y * width + x0; i < y * width + x1; i++) {
+          if (units[i] < low) low = units[i];
+          if (units[i] > high) high = units[i];
+        }
+      out[2 * (row * columns + column)] = low;
+      out[2 * (row * columns + column) + 1] = high;
+    }
+  return out;
+}
+
+self.onmessage = async ({ data: { id, color, depth, width, height } }) => {
+  try {
+    const [bitmap, units] = await Promise.all([
+      createImageBitmap(new Blob([color], { type: 'image/jpeg' }),
+          { premultiplyAlpha: 'none', colorSpaceConversion: 'none' }),
+      decode_disparity(depth, width, height),
+    ]);
+    const blocks = bound_blocks(units, width, height);
+    /** @type {any} */ (self).postMessage({ id, bitmap, units, blocks },
+        [bitmap, units.buffer, blocks.buffer]);
+  } catch (problem) {
+    self.postMessage({ id, problem: String(problem) });
+  }
+};
