@@ -51,7 +51,7 @@ void publish(Encoder& encoder, Link& link, std::shared_ptr<Packet> packet, doubl
 
 // The depth comes behind the JPEG of a keyframe's packet.
 void add_depth(const PacketHeader& header, KeyframeHeader keyframe,
-               std::span<const float> disparity, Packet& packet) {
+               const std::vector<float>& disparity, Packet& packet) {
   keyframe.color_bytes = uint32_t(packet.size() - keyframe_header_bytes);
   write_packet_header(header, keyframe, packet);
   encode_disparity(disparity, keyframe.width, keyframe.height, keyframe.unit, packet);
@@ -79,7 +79,7 @@ void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, b
     const Image8& image = encoder->image;
     encode_jpeg(eighths < 8 ? shrink(image, header.width, header.height) : image, header.quality,
                 full_chroma, *packet, header_bytes);
-    if (keyframe) add_depth(header, *keyframe, encoder->disparity, *packet);
+    if (keyframe) add_depth(header, *keyframe, std::exchange(encoder->disparity, {}), *packet);
     if (keeps) note_complete(image, header.quality, eighths == 8, now, encoder->has);
     else encoder->has = {};
     if ((header.flags & packet_still) && !keeps) encoder->image = Image8{};

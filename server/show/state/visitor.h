@@ -39,7 +39,7 @@ inline void smooth(float& value, float sample, float share = 0.1f) {
 // The JPEG made while the next tick begins.
 struct Encoder {
   Image8 image;
-  std::vector<float> disparity;  // of a keyframe; empty: it is none
+  std::vector<float> disparity;  // of a keyframe, until it is encoded
   BrowserPicture has;            // of a browser that takes parts
   uint32_t frame = 0;            // of the last picture
   bool unsent = false;           // nothing had changed: it was none
