@@ -195,7 +195,7 @@ export class Visitor {
   next(test, what = 'an expected message') {
     return new Promise((resolve, reject) => {
       const late = () => reject(new Error(`no ${what} within ${deadline} ms`));
-      const timer = setTimeout(late, deadline);
+      const timer = setTimeout(late, deadline).unref();  // who waits no more is not waited for
       this.waiting.push((item) => {
         if (!test(item)) return false;
         clearTimeout(timer);
@@ -218,7 +218,8 @@ export class Visitor {
     this.send({
       type: 'hello', exhibit: '', width: 320, height: 180, lang: 'en', role: 'visitor', ...fields,
     });
-    return welcome;
+    const closed = this.closed.then(({ code }) => { throw new Error(`closed with ${code}`); });
+    return Promise.race([welcome, closed]);
   }
   close() { this.socket.close(); return this.closed; }
 }
