@@ -18,7 +18,7 @@ function read_parts(buffer, view, header, width, height) {
   return parts;
 }
 
-// Of a keyframe with depth: {color_bytes, cuts, unit, view: as display/view.js}, or null.
+// Reads a keyframe's header: {color_bytes, cuts, unit, view: as display/view.js}, or null.
 function read_keyframe(buffer, view, header) {
   if (header < 116) return null;
   const real = (at) => view.getFloat32(at, true);

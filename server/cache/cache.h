@@ -43,8 +43,8 @@ class RenderCache {
   // Points on moving meshes follow their triangles, and are forgotten where these were repainted;
   // ages advance. Call once a frame after World::commit().
   void move_points(const World& world);
-  // Where every point falls in `view`; depth cull. Views of less than the room there is cost no
-  // memory and no point. Those of up to twice as many pixels have a larger
+  // Finds where every point falls in `view`, and which of them are hidden. Views of less than the
+  // room there is cost no memory and no point. Those of up to twice as many pixels have a larger
   // image, and larger ones room for more points.
   void project(const View& view);
   // About the share of pixels that a point shows in, from every eighth row.

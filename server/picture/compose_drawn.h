@@ -33,9 +33,9 @@ void compose_drawn(const View& view, const VisibilityPass& visibility, const Cel
                    bool known, const Frame& light, const KeptLight& kept, const Tonemap& tonemap,
                    std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth);
 
-// What does not move of a picture at rest, seen at one place of every pixel, `offset` (0 to 1): the
-// mean over several such pictures is antialiased. `guessed`: the share of its light that no point
-// tells, by which a pixel's own few samples are doubted as they are while the visitor moves.
+// Draws what does not move of a picture at rest, seen at one place of every pixel, `offset` (0 to
+// 1): the mean over several such pictures is antialiased. `guessed`: the share of its light that no
+// point tells, by which a pixel's own few samples are doubted as they are while the visitor moves.
 void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset,
                    const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
                    float guessed, Frame& frame);

@@ -11,7 +11,7 @@ namespace wellspring {
 struct OwnLight {
   LaneBits plane[surface_planes];
 };
-// Of eight pixels not all are in the picture.
+// Reads eight pixels, not all of which are in the picture.
 [[gnu::noinline]] inline void read_cut(const Frame& light, int lx, int ly,
                                        uint32_t (*words)[lane_count]) {
   for (int p = 0; p < surface_planes; p++)

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <type_traits>
 
 #include "wire/little_endian.h"
 
@@ -41,17 +42,8 @@ void write_packet_header(const PacketHeader& header, std::span<const PicturePart
 
 namespace {
 
-template <class T, class Bits>
-void put_real(std::span<uint8_t> packet, size_t& at, T value) {
-  put(packet, at, std::bit_cast<Bits>(value));
-  at += sizeof(T);
-}
-template <class T, class Bits>
-T get_real(std::span<const uint8_t> packet, size_t& at) {
-  const T value = std::bit_cast<T>(get<Bits>(packet, at));
-  at += sizeof(T);
-  return value;
-}
+template <class T>
+using BitsOf = std::conditional_t<sizeof(T) == 8, uint64_t, uint32_t>;
 
 // Calls real(number) for each number of the view, in the packet's order.
 void each_number(auto& keyframe, const auto& real) {
@@ -76,8 +68,8 @@ void write_packet_header(const PacketHeader& header, const KeyframeHeader& keyfr
   put(packet, 38, keyframe.height);
   size_t at = 40;
   each_number(keyframe, [&](auto value) {
-    if constexpr (sizeof(value) == 8) put_real<double, uint64_t>(packet, at, value);
-    else put_real<float, uint32_t>(packet, at, value);
+    put(packet, at, std::bit_cast<BitsOf<decltype(value)>>(value));
+    at += sizeof value;
   });
 }
 
@@ -91,8 +83,9 @@ static bool read_keyframe(std::span<const uint8_t> bytes, PacketView& view) {
   size_t at = 40;
   bool finite = true;
   each_number(keyframe, [&](auto& value) {
-    if constexpr (sizeof(value) == 8) value = get_real<double, uint64_t>(bytes, at);
-    else value = get_real<float, uint32_t>(bytes, at);
+    using T = std::remove_reference_t<decltype(value)>;
+    value = std::bit_cast<T>(get<BitsOf<T>>(bytes, at));
+    at += sizeof value;
     finite &= bool(std::isfinite(value));
   });
   return finite && keyframe.color_bytes <= view.payload.size() && keyframe.width > 0 &&

@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { start_server, until } from '../server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
+import { difference } from './pixels.mjs';
 
 let server, browser;
 before(async () => {
@@ -43,8 +44,6 @@ const shot = async (page) => {
     return [...context.getImageData(0, 0, 48, 13).data];
   }, bytes.toString('base64'));
 };
-const difference = (a, b) =>
-  a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
 
 // The page once nothing fades and no turn goes on.
 async function settled(page) {

@@ -7,6 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { WebSocket, sleep, start_server } from '../server.mjs';
+import { difference } from './pixels.mjs';
 
 const executable = ['/usr/bin/firefox-esr', '/usr/bin/firefox'].find(existsSync);
 const skip = !executable && 'no Firefox on this machine (Debian package firefox-esr)';
@@ -109,8 +110,6 @@ const look = async () => JSON.parse(await evaluate(`(() => {
   context.drawImage(document.getElementById('picture'), 0, 0, 24, 14);
   return JSON.stringify([...context.getImageData(0, 0, 24, 14).data]);
 })()`));
-const difference = (a, b) =>
-  a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
 
 test('Firefox shows the pictures, turns by a key, opens the menu and hears a story', { skip },
     async () => {

@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Visitor, sleep, start_server, until } from '../server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
+import { difference } from './pixels.mjs';
 
 let server, chromium, browser;  // the latter: all pages share what they keep
 // with what one process keeps for the next: the key of visits' tokens among it
@@ -45,8 +46,6 @@ const look = (page) => page.evaluate(() => {
   context.drawImage(canvas, 0, 0, 24, 14);
   return [...context.getImageData(0, 0, 24, 14).data];
 });
-const difference = (a, b) =>
-    a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
 const shot = async (page, name) => {
   if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`) });
 };

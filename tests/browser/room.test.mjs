@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { sleep, start_server } from '../server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
+import { difference } from './pixels.mjs';
 
 let server, browser;
 before(async () => {
@@ -70,7 +71,6 @@ const look = (page) => page.evaluate(() => {
   context.drawImage(canvas, 0, 0, 32, 20);
   return [...context.getImageData(0, 0, 32, 20).data];
 });
-const difference = (a, b) => a.reduce((sum, v, i) => sum + Math.abs(v - b[i]), 0) / a.length;
 // Until it has changed by that much.
 async function changes(page, from, least) {
   const ends = performance.now() + 20000;

@@ -3,6 +3,7 @@
 // blocks} or {id, problem}. `blocks` has the farthest and the nearest units of each block of
 // pixels and those around them, row after row.
 import { decode_disparity } from './disparity.js';
+import { decode_jpeg } from './jpeg.js';
 import { block } from './view.js';
 
 function bound_blocks(units, width, height) {
@@ -27,8 +28,7 @@ function bound_blocks(units, width, height) {
 self.onmessage = async ({ data: { id, color, depth, width, height } }) => {
   try {
     const [bitmap, units] = await Promise.all([
-      createImageBitmap(new Blob([color], { type: 'image/jpeg' }),
-          { premultiplyAlpha: 'none', colorSpaceConversion: 'none' }),
+      decode_jpeg(color),
       decode_disparity(depth, width, height),
     ]);
     const blocks = bound_blocks(units, width, height);

@@ -2,13 +2,10 @@
 // The picture as this page draws it: keyframes with depth from the server, seen by a camera that
 // moves here.
 import { read_picture } from '../packet.js';
+import { decode_jpeg } from './jpeg.js';
 import { view_of } from './view.js';
 import { make_ground, make_walker } from './walker.js';
 import { make_warp } from './warp.js';
-
-/** @param {any} bytes */
-const decode = (bytes) => createImageBitmap(new Blob([bytes], { type: 'image/jpeg' }),
-    { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
 
 // `canvas`: that of finished pictures, over which one of its own is laid. on_shown: as of
 // make_picture(). round_trip(): milliseconds. null: there is no WebGL2.
@@ -50,7 +47,7 @@ export function make_display(canvas, { on_shown, round_trip }) {
   }
   async function change(picture) {
     const pieces = await Promise.all(picture.parts.map(async (part) =>
-      ({ bitmap: await decode(part.payload), x: part.x, y: part.y })));
+      ({ bitmap: await decode_jpeg(part.payload), x: part.x, y: part.y })));
     await warp.change(pieces, picture.width, picture.height);
     for (const { bitmap } of pieces) bitmap.close();
   }

@@ -32,7 +32,7 @@ const int most_steps = 96;
 float own_disparity(ivec2 at) {
   return unit * float(texelFetch(units, clamp(at, ivec2(0), ivec2(size) - 1), 0).r);
 }
-// What the keyframe shows there, as a disparity in the view.
+// Returns the disparity, in the view, of what the keyframe shows there.
 float surface(vec2 at) {
   at = clamp(at, vec2(0), size - 1.0);
   float s = own_disparity(ivec2(at));

@@ -70,12 +70,11 @@ export function make_walker() {
 
   // A led camera goes on as the server's last two poses say.
   function follow(told, now) {
-    const passed = rates ? (now - rates.at) / 1000 : 0;
-    const speed = (from, to) => (passed > 0.005 && passed < 0.5 ? (to - from) / passed : 0);
+    const before = rates?.told ?? told, passed = rates ? (now - rates.at) / 1000 : 0;
+    const rate = (change) => (passed > 0.005 && passed < 0.5 ? change / passed : 0);
     rates = { at: now, told,
-      position: told.position.map((v, i) => speed(rates?.told.position[i] ?? v, v)),
-      yaw: rates ? turn_between(0, speed(0, turn_between(rates.told.yaw, told.yaw))) : 0,
-      pitch: rates ? speed(rates.told.pitch, told.pitch) : 0 };
+      position: told.position.map((v, i) => rate(v - before.position[i])),
+      yaw: rate(turn_between(before.yaw, told.yaw)), pitch: rate(told.pitch - before.pitch) };
     apart = told.position.map((v, i) => v - pose.position[i]);
     apart_yaw = turn_between(pose.yaw, told.yaw);
     apart_pitch = told.pitch - pose.pitch;

@@ -13,7 +13,7 @@ namespace wellspring {
 // `resumed`: the visit goes on where it was.
 std::string welcome_message(const Show& show, const Visitor& visitor, bool resumed = false);
 std::string state_message(const Show& show, const Visitor& visitor);
-// Where the visitor is now, for a page that moves its own camera.
+// Tells a page that moves its own camera where the visitor is now.
 std::string pose_message(const Show& show, const Visitor& visitor);
 // The visitor is on its way to an eye's `place`, or has leapt there (0 seconds); to look closer at
 // `object`, if that is not empty.
