@@ -14,7 +14,8 @@
 // u16 width, 38 u16 height of the depth, 40 f64 x, y, z of the eye, 64 f32 x, y, z of each of the
 // axes to the right, up and forward, 100 f32 half of the picture's height at a depth of 1, 104 f32
 // x, y of its middle there, 112 f32 unit. Behind the JPEG follow disparities in that unit, as
-// frame/disparity_code.h has them.
+// frame/disparity_code.h has them. With the flag `around`, too, it is a wide view in few pixels,
+// for what keyframes do not show.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -29,6 +30,7 @@ inline constexpr uint8_t packet_still =
     1;  // the visitor stands still and this is the refined picture
 inline constexpr uint8_t packet_complete = 2;  // complete picture, not a part
 inline constexpr uint8_t packet_depth = 4;     // complete, and where its pixels are
+inline constexpr uint8_t packet_around = 8;    // with depth: what lies around, in fewer pixels
 
 struct PacketHeader {
   uint32_t frame = 0, seq = 0;

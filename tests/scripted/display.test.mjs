@@ -53,27 +53,35 @@ test('what is no keyframe is refused before it takes memory', async () => {
   }
 });
 
-// The share of the pixels of `from` whose places have the same depth in `to`, of those in it.
-function share_alike(from, to) {
+// The share of the pixels of `from` whose places have the same depth in `to`, of those in it, or as
+// a pixel at most `reach` away.
+function share_alike(from, to, reach = 0) {
   const { one, across, down, baseline } = make_mapping(from.view, to.view);
   const { width, height } = from.view;
   let alike = 0, all = 0;
-  for (let y = 0; y < height; y += 3)
-    for (let x = 0; x < width; x += 3) {
+  const step = width > 200 ? 3 : 1;
+  for (let y = 0; y < height; y += step)
+    for (let x = 0; x < width; x += step) {
       const w = from.units[y * width + x] * from.unit;
       const at = [0, 1, 2].map((i) =>
         one[i] + (x + 0.5) * across[i] + (y + 0.5) * down[i] + w * baseline[i]);
       const [px, py] = [at[0] / at[2], at[1] / at[2]].map(Math.floor);
       if (!(at[2] > 0 && px >= 0 && py >= 0 && px < to.view.width && py < to.view.height)) continue;
       all++;
-      const there = to.units[py * to.view.width + px] * to.unit;
-      alike += Math.abs(w / at[2] - there) < 6 * to.unit + 0.01 * there ? 1 : 0;
+      const is_alike = (qx, qy) => {
+        const there = to.units[qy * to.view.width + qx] * to.unit;
+        return Math.abs(w / at[2] - there) < 6 * to.unit + 0.01 * there;
+      };
+      const near = (middle, side) => Array.from({ length: 2 * reach + 1 }, (_, i) =>
+        Math.min(side - 1, Math.max(0, middle + i - reach)));
+      alike += near(py, to.view.height).some((qy) =>
+        near(px, to.view.width).some((qx) => is_alike(qx, qy))) ? 1 : 0;
     }
   assert.ok(all > 500, `${all} places are in both`);
   return alike / all;
 }
 
-async function next_keyframe(visitor, wanted = () => true) {
+async function next_keyframe(visitor, wanted = ({ around }) => !around) {
   let found = null;
   await visitor.next((item) => {
     if (!item.binary) return false;
@@ -96,8 +104,10 @@ test('keyframes of a walk show the same places', async () => {
   assert.ok(before_turn.view.width >= 320 && before_turn.view.height >= 176);
   const pose = visitor.message('pose', ({ seq }) => seq === 1);
   visitor.send({ type: 'input', seq: 1, move: [0.4, 0, 0.4], look: [0.15, 0.05] });
-  const turned = await next_keyframe(visitor, ({ seq, keyframe }) =>
-    seq === 1 && Math.hypot(...keyframe.view.eye.map((v, i) => v - before_turn.view.eye[i])) > 0.1);
+  const wide = next_keyframe(visitor, ({ around }) => around);
+  const from_start = (eye) => Math.hypot(...eye.map((v, i) => v - before_turn.view.eye[i]));
+  const turned = await next_keyframe(visitor, ({ seq, keyframe, around }) =>
+    !around && seq === 1 && from_start(keyframe.view.eye) > 0.1);
   visitor.send({ type: 'input', seq: 2, move: [0, 0, 0], look: [0, 0] });
   const { led, cut, position } = await pose;
   assert.equal(led, false);
@@ -105,6 +115,13 @@ test('keyframes of a walk show the same places', async () => {
   assert.equal(position.length, 3);
   assert.ok(share_alike(before_turn, turned) > 0.85, 'places are found again');
   assert.ok(share_alike(turned, before_turn) > 0.85, 'and the other way round');
+  // What lies around is a wide view of few pixels.
+  const { view, unit, units } = await wide;
+  assert.ok(view.tan_half_fov * view.width / view.height > 1.4);
+  assert.ok(view.width * view.height < before_turn.view.width * before_turn.view.height / 5);
+  const pixel = (one) => one.tan_half_fov / one.height;
+  const reach = Math.ceil(pixel(view) / pixel(turned.view));
+  assert.ok(share_alike({ view, unit, units }, turned, reach) > 0.8, 'it shows the same room');
   // At rest what has changed of it comes in parts.
   await visitor.picture(({ parts, flags }) => parts?.length > 0 && !(flags & 4));
   await visitor.close();

@@ -43,7 +43,7 @@ export function make_display(canvas, { on_shown, round_trip }) {
     const { view, unit, cuts } = picture.keyframe;
     const { bitmap, units, blocks, problem } = await decode_keyframe(picture);
     if (problem) throw new Error(problem);
-    warp.add({ view, unit, cuts, bitmap, units, blocks }, performance.now());
+    warp.add({ view, unit, cuts, bitmap, units, blocks }, performance.now(), picture.around);
   }
   async function change(picture) {
     const pieces = await Promise.all(picture.parts.map(async (part) =>

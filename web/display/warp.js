@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws keyframes as they are seen from another view, by WebGL2: the newest one, what it does not
-// show from the one before, and what neither shows as it goes on behind.
+// show from the one before, then from a wide one, and what none shows as it goes on behind.
 import { fragment, vertex } from './shaders.js';
 import { block, carry_bounds, make_mapping } from './view.js';
 
@@ -41,13 +41,13 @@ export function make_warp(canvas, on_lost) {
     desynchronized: true, powerPreference: 'high-performance', preserveDrawingBuffer: false });
   if (!gl) return null;
   let program = null, bounds_texture = null, bounds = new Float32Array(0);
-  let newest = null, before = null, came = 0;
+  let newest = null, before = null, around = null, came = 0;
 
   function set_up() {
     program = make_program(gl);
     bounds_texture = make_texture(gl, gl.NEAREST);
     gl.bindVertexArray(gl.createVertexArray());
-    for (const one of [newest, before]) if (one) upload(one);
+    for (const one of [newest, before, around]) if (one) upload(one);
   }
   function upload_color(one) {
     gl.bindTexture(gl.TEXTURE_2D, one.color);
@@ -103,7 +103,15 @@ export function make_warp(canvas, on_lost) {
   }
 
   return {
-    add(keyframe, now) {
+    // wide: what lies around the others, in fewer pixels.
+    add(keyframe, now, wide) {
+      if (wide) {
+        forget(around);
+        around = keyframe;
+        if (!gl.isContextLost()) upload(around);
+        return;
+      }
+      if (around && around.cuts !== keyframe.cuts) { forget(around); around = null; }
       forget(before);
       before = newest && newest.cuts === keyframe.cuts ? newest : (forget(newest), null);
       newest = keyframe;
@@ -134,12 +142,14 @@ export function make_warp(canvas, on_lost) {
       gl.viewport(0, 0, view.width, view.height);
       gl.disable(gl.BLEND);
       const share = Math.min(1, (now - came) / fade_ms);
-      if (before) {
-        draw(before, view, 1, true);
+      // The first of them shows what none of them does as it goes on behind.
+      if (around) draw(around, view, 1, true);
+      if (before) draw(before, view, 1, !around);
+      if (before && share < 1) {
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
       }
-      draw(newest, view, before ? share : 1, !before);
+      draw(newest, view, share, !around && !before);
       return true;
     },
     fades: (now) => before !== null && now - came < fade_ms,

@@ -98,11 +98,16 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
     job.view = scaled_view(keyframe_view(job.expected, turn), job.scale);
     if (job.passing) {
       job.ahead = scaled_view(keyframe_view(job.ahead), job.scale);
-      if (!points)
+      if (!points && !visitor.wants.local)
         job.around = surroundings(place.heading, now, job.view, seen_in + 0.5 * interval);
     }
   } else {
     job.ahead = expected_view(place.heading, now, predicted_pictures * interval);
+  }
+  if (visitor.wants.local && job.passing && seen && !points) {
+    const Surroundings& around = picture.around;
+    const bool here = around.camera_cuts == place.camera_cuts && around.ordered_at >= 0;
+    if (!here || is_elsewhere(around.view, job.expected)) job.around = wide_view(job.expected);
   }
   return job;
 }

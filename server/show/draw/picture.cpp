@@ -273,6 +273,8 @@ void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   Surroundings& around = picture.around;
   std::swap(show.renderer.work.around, around.keyframe);
+  around.view = around.keyframe.view;
+  around.unsent = visitor.wants.local;
   around.ordered_at = job.time;
   around.camera_cuts = job.camera_cuts;
   around.drawn = true;

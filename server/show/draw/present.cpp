@@ -142,10 +142,9 @@ PacketHeader next_header(Show& show, Visitor& visitor, uint32_t seq, bool still)
   return header;
 }
 
-// A display that reprojects is told this of the visitor's keyframe.
-KeyframeHeader keyframe_header(const Show& show, const Visitor& visitor) {
-  const View& view = visitor.picture.keyframe.view;
-  return {.cuts = visitor.picture.job.camera_cuts,
+// A display that reprojects is told this of a keyframe.
+KeyframeHeader keyframe_header(const Show& show, const View& view, uint32_t cuts) {
+  return {.cuts = cuts,
           .width = uint16_t(view.width),
           .height = uint16_t(view.height),
           .eye = show.exhibit.scene.origin + dvec3(view.position),
@@ -168,7 +167,7 @@ void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader 
   header.quality = uint8_t(plan.quality);
   std::optional<KeyframeHeader> keyframe;
   if (visitor.wants.local) {
-    keyframe = keyframe_header(show, visitor);
+    keyframe = keyframe_header(show, view, visitor.picture.job.camera_cuts);
     header.flags |= packet_depth;
     visitor.shown.encoder->disparity = visitor.picture.keyframe.disparity;
   }
@@ -285,11 +284,28 @@ void note_deliveries(Show& show, Visitor& visitor) {
   update(shown.way, shown.flow, flow_wishes(show, visitor), visitor.times.encode, show.time);
 }
 
+// Surroundings come between keyframes, and say nothing new of the visitor's input.
+static void send_surroundings(Show& show, Visitor& visitor) {
+  const Surroundings& around = visitor.picture.around;
+  const View& view = around.keyframe.view;
+  if (around.keyframe.empty()) return;
+  Encoder& encoder = *visitor.shown.encoder;
+  copy_colors(around.keyframe, {0, 0, view.width, view.height}, encoder.image);
+  encoder.disparity = around.keyframe.disparity;
+  PacketHeader header = next_header(show, visitor, visitor.shown.seq, false);
+  header.width = uint16_t(view.width), header.height = uint16_t(view.height);
+  header.quality = uint8_t(picture_plan(show, visitor).quality);
+  header.flags |= packet_depth | packet_around;
+  encode_complete(show, visitor, header, false, 8, keyframe_header(show, view, around.camera_cuts));
+}
+
 // Sends the newest keyframe as it is, or what is new of it where the page has it: the page shows it
 // from where its visitor is by then.
 static void present_keyframe(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   picture.fade = {};  // the page passes from one to the next
+  if (!picture.unshown && std::exchange(picture.around.unsent, false))
+    return send_surroundings(show, visitor);
   if (!picture.unshown) return refine(show, visitor);
   if (show.renderer.posed == &visitor) return;
   const PictureJob& job = picture.job;

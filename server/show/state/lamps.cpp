@@ -161,7 +161,7 @@ void light_lamps(Show& show, Visitor& visitor) {
   lamps.lit_hour = hour_of(show, visitor);
   if (first) return;
   lamps.lit_at = show.time;
-  visitor.picture.around.keyframe = {}, visitor.picture.fade = {};  // they show another light
+  visitor.picture.around = {}, visitor.picture.fade = {};  // they show another light
   look_anew(visitor.picture);
 }
 

@@ -18,6 +18,9 @@ constexpr float fastest = 25;         // metres a second; more is a jump
 constexpr float smallest_cut = 0.5f;  // metres
 
 constexpr float much_missing = 0.12f;          // of a picture
+constexpr float widest_turn = 0.8f;            // radians to either side that a page may turn by
+constexpr float turned_away = 0.4f;            // radians
+constexpr float walked_away = 0.7f;            // metres
 constexpr float surrounding_share = 1 / 8.0f;  // of its pixels that its surroundings have
 
 }  // namespace
@@ -59,6 +62,21 @@ View expected_view(const Heading& heading, const View& now, double seconds) {
 float expected_turn(const Heading& heading, const View& now, double seconds) {
   return std::acos(
       std::clamp(dot(now.forward, expected_view(heading, now, seconds).forward), -1.0f, 1.0f));
+}
+
+View wide_view(const View& now) {
+  View left = now, right = now;
+  for (auto [view, turn] : {std::pair(&left, widest_turn), {&right, -widest_turn}}) {
+    view->forward = std::cos(turn) * now.forward - std::sin(turn) * now.right;
+    view->right = std::cos(turn) * now.right + std::sin(turn) * now.forward;
+  }
+  const View views[] = {now, left, right};
+  return surrounding_view(views, surrounding_share);
+}
+
+bool is_elsewhere(const View& wide, const View& now) {
+  return dot(wide.forward, now.forward) < std::cos(turned_away) ||
+         length(wide.position - now.position) > walked_away;
 }
 
 std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,

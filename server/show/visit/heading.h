@@ -36,4 +36,10 @@ float expected_turn(const Heading& heading, const View& now, double seconds);
 std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,
                                  double seconds);
 
+// A page that turns by itself gets a view of all that it may turn to within a moment, in some of
+// the pixels.
+View wide_view(const View& now);
+// The visitor has moved away from what such a view shows well.
+bool is_elsewhere(const View& wide, const View& now);
+
 }  // namespace wellspring

@@ -105,5 +105,19 @@ TEST(Heading, MarginsAreAsWideAsTheTurn) {
   EXPECT_EQ(keyframe_view(facing(0), NAN).width, keyframe_view(facing(0)).width);
 }
 
+// Whoever turns by nearly half a radian while the next one is on its way sees no border; a
+// step to the side does not need another one, some do.
+TEST(WideView, HoldsWhatAPageMayTurnTo) {
+  const View now = facing(0.7f, vec3(1, 2, 3));
+  const View wide = wide_view(now);
+  EXPECT_LT(wide.width * wide.height, now.width * now.height / 7);
+  for (float turn : {-0.45f, -0.3f, 0.0f, 0.45f})
+    EXPECT_EQ(missing_share(wide, facing(0.7f + turn, vec3(1, 2, 3))), 0) << turn;
+  EXPECT_FALSE(is_elsewhere(wide, now));
+  EXPECT_FALSE(is_elsewhere(wide, facing(0.9f, vec3(1.4f, 2, 3))));
+  EXPECT_TRUE(is_elsewhere(wide, facing(1.3f, vec3(1, 2, 3))));
+  EXPECT_TRUE(is_elsewhere(wide, facing(0.7f, vec3(1, 2, 4))));
+}
+
 }  // namespace
 }  // namespace wellspring
