@@ -2,11 +2,14 @@
 // The WebSocket to the server: says hello, hands messages on, and comes back by itself when the
 // line breaks.
 
-// handlers: {ready: a promise that is waited for, optional, hello() -> message, open(),
-// lost(seconds_to_retry), message(object), binary(ArrayBuffer), rests() -> whether the server is
-// silent since nobody is here; optional}
+const silent_ms = 3000, dead_ms = 8000;  // without a word of the server
+
+// handlers: {hello() -> message, open(), lost(seconds_to_retry), message(object),
+// binary(ArrayBuffer), rests() -> whether the server is silent since nobody is here, optional,
+// silent(on): the server has said nothing for a moment although the line is open, or speaks again,
+// optional}
 export function make_connection(handlers) {
-  let socket = null, retry = 0, timer = 0, heard = 0, ended = false, ready = false;
+  let socket = null, retry = 0, timer = 0, heard = 0, ended = false, silent = false;
 
   function address() {
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
@@ -47,16 +50,18 @@ export function make_connection(handlers) {
   // A line that looks open but has been silent (a laptop that slept) is replaced.
   setInterval(() => {
     if (handlers.rests?.()) heard = performance.now();
-    if (socket && socket.readyState === WebSocket.OPEN && !document.hidden
-        && performance.now() - heard > 8000) {
+    const open_here = socket && socket.readyState === WebSocket.OPEN && !document.hidden;
+    const quiet = performance.now() - heard;
+    if (open_here && silent !== quiet > silent_ms) handlers.silent?.(silent = !silent);
+    if (open_here && quiet > dead_ms) {
       const dead = socket;
       dead.onclose = null;
       dead.close();
       later();
     }
-  }, 2000);
+  }, 1000);
   document.addEventListener('visibilitychange', () => {
-    if (ready && !document.hidden && !socket) { retry = 0; open(); }
+    if (!document.hidden && !socket) { retry = 0; open(); }
     heard = performance.now();
   });
   addEventListener('pagehide', () => {
@@ -65,12 +70,7 @@ export function make_connection(handlers) {
   });
   addEventListener('pageshow', (event) => { if (event.persisted) { ended = false; open(); } });
 
-  const begin = () => {
-    ready = true;
-    open();
-  };
-  if (handlers.ready) handlers.ready.then(begin);
-  else begin();
+  open();
   return {
     send(message) {
       if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));

@@ -76,6 +76,11 @@ export function make_picture(canvas, on_shown) {
     receive(buffer) {
       const picture = read_picture(buffer);
       if (!picture) return;
+      if (picture.keyframe) {  // it is for a page that draws by itself
+        on_shown({ ...picture, payload: null, keyframe: null, bytes: picture.payload.byteLength,
+          shown: false, decoded_ms: 0 });
+        return;
+      }
       if (!picture.parts) waiting = [];
       if (busy) waiting.push(picture); else work(picture);
     },

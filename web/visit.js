@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The visitor's page: joins connection, picture, controls and menu.
-import { asked_display, asked_exhibit, asked_place, asked_story, asked_viewpoint, read_place }
+import { asked_exhibit, asked_place, asked_story, asked_viewpoint, read_place }
   from './address.js';
 import { make_ambience } from './ambience.js';
 import { announce } from './announce.js';
@@ -10,6 +10,7 @@ import { make_comfort } from './comfort.js';
 import { make_connection } from './connection.js';
 import { make_controls } from './controls.js';
 import { make_description } from './describe.js';
+import { make_screen } from './display/screen.js';
 import { by_id } from './element.js';
 import { make_gamepad } from './gamepad.js';
 import { make_group } from './group.js';
@@ -17,7 +18,6 @@ import { kept, of_tab } from './kept.js';
 import { make_leap } from './leap.js';
 import { make_map } from './map.js';
 import { make_menu } from './menu.js';
-import { make_picture } from './picture.js';
 import { make_places } from './places.js';
 import { make_player } from './player.js';
 import { make_presence } from './presence.js';
@@ -29,14 +29,13 @@ import { asked_language, first_language, knows, language_names, translate_page, 
   from './words.js';
 
 const canvas = by_id('picture');
-let lang = first_language(), seq = 0, state = null, walk_speed = 1.4, round_trip = 0, full = false;
+let lang = first_language(), seq = 0, state = null, walk_speed = 1.4, full = false;
 let connection = null, place = null;  // place: the viewpoint where the visitor was last
 let exhibit = asked_exhibit, unknown_exhibit = '';
 // What the address asks for, until it is there; null: nothing. told: the story that a kiosk's guest
 // took along.
 let start = asked_viewpoint, start_place = asked_place(), told = asked_story;
 const visit_key = `visit.${exhibit}`;  // where a visit that goes on is, sealed
-const asked = new Map();  // seq -> time it was sent, until a picture shows it
 translate_page(lang);
 by_id('veil-text').textContent = word(lang, 'opening');
 
@@ -47,22 +46,13 @@ function note_shown(shown) {
   if (!shown.shown) return;
   sound.shown(shown);
   by_id('veil').classList.add('lifted');
-  const sent = asked.get(shown.seq);
-  if (sent) round_trip += (performance.now() - sent - round_trip) * 0.2;
-  for (const old of asked.keys()) if (old <= shown.seq) asked.delete(old);
   canvas.dataset.frame = shown.frame;
   canvas.dataset.seq = shown.seq;
   dark.shown(shown.seq);
 }
 
-// Draws the pictures here, where that is asked for and can be; null: they come finished.
-let display = null;
-async function load_display() {
-  const { make_display } = await import('./display/display.js');
-  display = make_display(canvas, { on_shown: note_shown, round_trip: () => round_trip });
-  document.body.dataset.display = display ? 'local' : 'server';
-}
-const finished = make_picture(canvas, note_shown);
+const screen = make_screen(canvas, { on_shown: note_shown,
+  send: (message) => connection?.send(message) });
 
 const sound = make_sound(by_id('sound-button'), {
   on_wanted: (on) => connection?.send({ type: 'settings', sound: on }),
@@ -84,7 +74,7 @@ const dark = make_leap(canvas);
 const leap = () => dark.begin(seq);
 
 const hello = () => ({ type: 'hello', exhibit, lang, role: 'visitor', parts: true,
-  ...comfort.size(), resume: of_tab.get(visit_key) ?? '', ...(display && { display: 'local' }) });
+  ...comfort.size(), resume: of_tab.get(visit_key) ?? '', ...screen.hello() });
 
 // What the address asked for that is not there.
 function say_what_is_unknown(message) {
@@ -115,7 +105,7 @@ const places = make_places((name) => go_to_viewpoint(name), () => !comfort.saves
 // The message takes the visitor elsewhere, who stands there.
 function order(message) {
   connection.send({ ...message, seq: next() });
-  display?.walker.sent(seq, [0, 0, 0]);
+  screen.stands(seq);
 }
 
 // fields: at, to or object, as `go` has them.
@@ -153,13 +143,12 @@ const presence = make_presence({
 }, () => lang);
 
 connection = make_connection({
-  ready: asked_display === 'local' ? load_display() : null,
   hello,
   open() {
     notice('');
     full = false;
     seq = 0;
-    asked.clear();
+    screen.joined();
     sound.joined();
     send_settings(comfort.wishes());
     if (menu.attention() !== null)
@@ -171,11 +160,12 @@ connection = make_connection({
     told = null;
   },
   lost() { if (!full) notice(word(lang, 'lost')); },
+  silent(on) { notice(on ? word(lang, 'silent') : ''); },
   message(message) {
     switch (message.type) {
       case 'welcome':
         walk_speed = message.walk_speed;
-        display?.welcome(message);
+        screen.welcome(message);
         lang = message.lang;
         presence.welcome();
         menu.welcome(message);
@@ -205,17 +195,12 @@ connection = make_connection({
         ambience.moved(message);
         description.state(message);
         menu.figures(
-            `${(display ?? finished).rate()} fps · ${Math.round(round_trip)} ms · `
+            `${screen.rate()} fps · ${Math.round(screen.round_trip())} ms · `
             + `${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} % · `
-            + word(lang, `limit_${message.limit}`));
+            + `${word(lang, `limit_${message.limit}`)} · ${word(lang, `drawn_${screen.way()}`)}`);
         break;
       case 'pose':
-        display?.told(message);
-        for (const [old, sent] of asked) {
-          if (old > message.seq) break;
-          round_trip += (performance.now() - sent - round_trip) * 0.2;
-          asked.delete(old);
-        }
+        screen.pose(message);
         break;
       case 'went':
         if (message.object) card.open(message.object); else card.close();
@@ -251,12 +236,12 @@ connection = make_connection({
   },
   rests: () => presence.rests(),
   binary(buffer) {
-    if (!sound.receive(buffer) && !display?.receive(buffer)) finished.receive(buffer);
+    if (!sound.receive(buffer)) screen.receive(buffer);
   },
 });
 
 function next() {
-  asked.set(++seq, performance.now());
+  screen.asked(++seq);
   return seq;
 }
 
@@ -301,9 +286,8 @@ let ring_timer = 0;
 make_controls(canvas, by_id('stick'), by_id('stick-knob'), {
   // A pointer alone changes no picture: nothing to measure a round trip by.
   send({ moved, ...fields }) {
-    connection.send({ type: 'input', seq: moved ? next() : ++seq, ...fields });
-    display?.walker.turn(fields.look);
-    display?.walker.sent(seq, fields.move);
+    connection.send({ type: 'input', seq: ++seq, ...fields });
+    screen.input(seq, fields, moved);
   },
   fov: () => state?.fov ?? 1,
   speed: () => walk_speed,

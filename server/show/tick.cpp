@@ -311,7 +311,8 @@ void pace_tour(Visitor& visitor) {
 // A page that moves its own camera is told where it is led, or has to be.
 void send_pose(const Show& show, Visitor& visitor) {
   const View& view = visitor.place.last_view;
-  if (!visitor.wants.local || view == visitor.posed || show.time - visitor.posed_at < pose_interval)
+  const double interval = visitor.kiosk ? 0 : pose_interval;  // whose window follows a head at once
+  if (!visitor.wants.local || view == visitor.posed || show.time - visitor.posed_at < interval)
     return;
   visitor.posed = view;
   visitor.posed_at = show.time;

@@ -313,6 +313,7 @@ struct Settings {
   std::optional<bool> sound, comfort, saver;
   std::optional<int> quality, max_quality, bandwidth, width, height;
   std::string lang;
+  std::string display;  // as of hello; empty: as before
   static void list(auto& message, auto& fields) {
     fields.number("fps", min_fps, max_fps, message.fps,
                   "pictures a second, 0 for the server's choice");
@@ -334,6 +335,8 @@ struct Settings {
     fields.integer("width", min_side, max_side, message.width, "16..4096");
     fields.integer("height", min_side, max_side, message.height, "16..4096");
     fields.text("lang", message.lang, "BCP 47");
+    fields.word("display", {"server", "local"}, message.display,
+                "as of hello: a page that cannot keep up gives it up");
   }
   bool operator==(const Settings&) const = default;
 };

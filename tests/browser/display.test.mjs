@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { start_server, until } from '../server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
-import { difference } from './pixels.mjs';
+import { difference, look } from './pixels.mjs';
 
 let server, browser;
 before(async () => {
@@ -29,21 +29,7 @@ async function open(display) {
   await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3);
   return { page, problems };
 }
-// What the page shows between its controls, in few large pixels.
-const shot = async (page) => {
-  const bytes = await page.screenshot({ clip: { x: 0, y: 60, width: 480, height: 130 } });
-  return page.evaluate(async (base64) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${base64}`;
-    await image.decode();
-    const small = document.createElement('canvas');
-    small.width = 48;
-    small.height = 13;
-    const context = small.getContext('2d');
-    context.drawImage(image, 0, 0, 48, 13);
-    return [...context.getImageData(0, 0, 48, 13).data];
-  }, bytes.toString('base64'));
-};
+const shot = (page) => look(page, 48, 13, { x: 0, y: 60, width: 480, height: 130 });
 
 // The page once nothing fades and no turn goes on.
 async function settled(page) {

@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { WebSocket, sleep, start_server } from '../server.mjs';
-import { difference } from './pixels.mjs';
+import { difference, hide_in_page, shrink_in_page } from './pixels.mjs';
 
 const executable = ['/usr/bin/firefox-esr', '/usr/bin/firefox'].find(existsSync);
 const skip = !executable && 'no Firefox on this machine (Debian package firefox-esr)';
@@ -104,12 +104,13 @@ async function shot(name) {
   writeFileSync(join(pictures, `firefox-${name}.png`), Buffer.from(data, 'base64'));
 }
 // Mean colours of a grid of cells of the picture.
-const look = async () => JSON.parse(await evaluate(`(() => {
-  const small = Object.assign(document.createElement('canvas'), { width: 24, height: 14 });
-  const context = small.getContext('2d');
-  context.drawImage(document.getElementById('picture'), 0, 0, 24, 14);
-  return JSON.stringify([...context.getImageData(0, 0, 24, 14).data]);
-})()`));
+async function look() {
+  await evaluate(`(${hide_in_page})(true)`);
+  const { data } = await driver.ask('browsingContext.captureScreenshot', { context });
+  await evaluate(`(${hide_in_page})(false)`);
+  return JSON.parse(await evaluate(
+      `(${shrink_in_page})(${JSON.stringify([data, 24, 14])}).then(JSON.stringify)`));
+}
 
 test('Firefox shows the pictures, turns by a key, opens the menu and hears a story', { skip },
     async () => {

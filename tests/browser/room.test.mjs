@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { sleep, start_server } from '../server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
-import { difference } from './pixels.mjs';
+import { difference, look as look_at } from './pixels.mjs';
 
 let server, browser;
 before(async () => {
@@ -64,13 +64,7 @@ const state_is = async (page, fits) => {
 const shot = async (page, name) => {
   if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`) });
 };
-const look = (page) => page.evaluate(() => {
-  const canvas = document.getElementById('picture'), small = document.createElement('canvas');
-  small.width = 32; small.height = 20;
-  const context = small.getContext('2d');
-  context.drawImage(canvas, 0, 0, 32, 20);
-  return [...context.getImageData(0, 0, 32, 20).data];
-});
+const look = (page) => look_at(page, 32, 20);
 // Until it has changed by that much.
 async function changes(page, from, least) {
   const ends = performance.now() + 20000;

@@ -145,7 +145,7 @@ function walk_with(away, { stalls = false, wall = Infinity } = {}) {
   const walker = make_walker(), there = { position: [0, 1.6, 0], velocity: 0, move: 0, seq: 0 };
   walker.set_ground({ free: (x) => x < wall });
   const tell = () => ({ seq: there.seq, position: [...there.position], yaw: -Math.PI / 2, pitch: 0,
-    roll: 0, fov: 1, cut: 0, led: false });
+    roll: 0, fov: 1, middle: [0, 0], cut: 0, led: false });
   const to_server = [], to_page = [{ at: 0, pose: tell() }];
   let back = 0, farthest = 0, blocked_until = 0;
   for (let now = 0, seq = 0; now <= 6000; now += 10) {
@@ -188,7 +188,8 @@ test('a wall does not throw the camera back', () => {
 
 test('a turn is seen at once, and not again when the server has heard of it', () => {
   const walker = make_walker();
-  const told = (seq, yaw) => ({ seq, position: [0, 0, 0], yaw, pitch: 0, roll: 0, fov: 1, cut: 0,
+  const told = (seq, yaw) => ({ seq, position: [0, 0, 0], yaw, pitch: 0, roll: 0, fov: 1,
+    middle: [0, 0], cut: 0,
     led: false });
   walker.told(told(0, 0), 0, 100);
   walker.turn([0.5, 2]);

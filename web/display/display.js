@@ -7,16 +7,38 @@ import { view_of } from './view.js';
 import { make_ground, make_walker } from './walker.js';
 import { make_warp } from './warp.js';
 
+const least_rate = 24;       // pictures a second in motion: fewer are too slow
+const judged_ms = 2000;      // of motion, after which the rate is looked at
+const lost_ms = 3000;        // without a context: it does not come back
+const most_broken = 3;       // keyframes one after the other that could not be decoded
+
+// Tells in how many pictures a second motion was shown, whenever enough of it was.
+function make_judge(on_rate) {
+  let milliseconds = 0, pictures = 0;
+  return (gap) => {
+    milliseconds += gap;
+    pictures++;
+    if (milliseconds < judged_ms) return;
+    on_rate(1000 * pictures / milliseconds);
+    milliseconds = pictures = 0;
+  };
+}
+
 // `canvas`: that of finished pictures, over which one of its own is laid. on_shown: as of
-// make_picture(). round_trip(): milliseconds. null: there is no WebGL2.
-export function make_display(canvas, { on_shown, round_trip }) {
+// make_picture(). on_weak(reason): the device cannot do it, as it is too `slow` or its context is
+// `lost`. round_trip(): milliseconds. null: the browser cannot do it.
+export function make_display(canvas, { on_shown, on_weak, round_trip }) {
+  if (!('createImageBitmap' in window && 'Worker' in window)) return null;
   let fresh = false;  // there is something new to be drawn
   const own = document.createElement('canvas');
   own.className = 'local';
   own.hidden = true;
+  let lost_timer = 0, broken = 0, slow = 0, ended = false, drew = false;
   const warp = make_warp(own, (lost) => {
     own.hidden = true;
     fresh = !lost;
+    clearTimeout(lost_timer);
+    if (lost) lost_timer = setTimeout(() => on_weak('lost'), lost_ms);
   });
   if (!warp) return null;
   canvas.after(own);
@@ -31,6 +53,12 @@ export function make_display(canvas, { on_shown, round_trip }) {
     decoding.get(data.id)(data);
     decoding.delete(data.id);
   };
+  worker.onerror = () => on_weak('unable');
+  // A slow moment may be another program's.
+  const judge = make_judge((rate) => {
+    slow = rate < least_rate ? slow + 1 : 0;
+    if (slow > 1) on_weak('slow');
+  });
   const decode_keyframe = ({ frame, keyframe: { color_bytes, view }, payload }) =>
     new Promise((resolve) => {
       decoding.set(frame, resolve);
@@ -52,28 +80,35 @@ export function make_display(canvas, { on_shown, round_trip }) {
     for (const { bitmap } of pieces) bitmap.close();
   }
   async function take(picture) {
+    if (ended) return;
     const began = performance.now();
     let good = true;
     try {
       await (picture.parts ? change(picture) : show_keyframe(picture));
       fresh = true;
+      broken = 0;
     } catch (problem) {
       console.warn(`picture ${picture.frame}: ${problem}`);
       good = false;
+      if (++broken >= most_broken) on_weak('unable');
     }
     on_shown({ ...picture, payload: null, parts: null, keyframe: null, shown: good,
       bytes: picture.payload.byteLength, decoded_ms: performance.now() - began });
   }
 
   function frame(now) {
+    if (ended) return;
     requestAnimationFrame(frame);
-    const dt = Math.min(0.1, Math.max(0, now - last) / 1000);
+    const gap = now - last, dt = Math.min(0.1, Math.max(0, gap) / 1000), drew_before = drew;
     last = now;
     const moved = walker.advance(dt, now), pose = walker.pose();
+    drew = false;
     if (!pose || !deep || !(moved || fresh || warp.fades(now))) return;
     fresh = false;
     if (!warp.show(view_of(pose, ...size), now)) return;
     own.hidden = false;
+    drew = true;
+    if (drew_before && gap < 1000) judge(gap);
     drawn++;
     canvas.dataset.drawn = String(drawn);
     times.push(now);
@@ -108,5 +143,11 @@ export function make_display(canvas, { on_shown, round_trip }) {
       walker.told(message, performance.now(), round_trip());
     },
     rate: () => Math.max(0, times.length - 1),
+    end() {
+      ended = true;
+      clearTimeout(lost_timer);
+      worker.terminate();
+      own.remove();
+    },
   };
 }

@@ -9,16 +9,17 @@ export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * 
   a[0] * b[1] - a[1] * b[0]];
 const add = (a, b, share = 1) => a.map((v, i) => v + share * b[i]);
 
-// pose: {position, yaw, pitch, roll, fov}, angles in radians, of a picture of that size.
+// pose: {position, yaw, pitch, roll, lens}, angles in radians, of a picture of that size. lens:
+// half of its height and where its middle lies, to the right and up, at a depth of 1.
 export function view_of(pose, width, height) {
-  const { yaw, pitch, roll } = pose;
+  const { yaw, pitch, roll, lens: [tan_half_fov, ...middle] } = pose;
   const forward = [-Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch),
     -Math.cos(yaw) * Math.cos(pitch)];
   const level = [Math.cos(yaw), 0, -Math.sin(yaw)];
   const right = roll === 0 ? level
     : add(level.map((v) => Math.cos(roll) * v), cross(level, forward), Math.sin(roll));
   return { eye: pose.position, right, up: cross(right, forward), forward,
-    tan_half_fov: Math.tan(pose.fov / 2), middle: [0, 0], width, height };
+    tan_half_fov, middle, width, height };
 }
 
 // A mapping leads from a pixel (x, y) and its disparity w in one view to another: one + x * across

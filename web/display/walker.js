@@ -19,11 +19,13 @@ const turn_between = (from, to) => {
 export function make_walker() {
   let pose = null, velocity = [0, 0, 0], move = [0, 0, 0], cut = -1, led = false, ground = null;
   let apart = [0, 0, 0], apart_yaw = 0, apart_pitch = 0;  // from where the server has it
-  let rates = null;         // of a led camera, a second: {position, yaw, pitch, at}
+  let apart_lens = [0, 0, 0];
+  let rates = null;         // of a led camera, a second: {position, yaw, pitch, lens, at}
   let past = [];            // {time, position}
   const turned = new Map();  // seq -> yaw and pitch after that input
 
-  const copy = (one) => ({ ...one, position: [...one.position] });
+  const copy = (one) => ({ ...one, position: [...one.position], lens: [...one.lens] });
+  const minus = (a, b) => a.map((v, i) => v - b[i]);
 
   function walk(dt) {
     const share = 1 - Math.exp(-dt / ease_seconds);
@@ -48,6 +50,8 @@ export function make_walker() {
     apart.forEach((v, i) => { pose.position[i] += v * share; });
     for (const one of past) apart.forEach((v, i) => { one.position[i] += v * share; });
     apart = apart.map((v) => v * (1 - share));
+    pose.lens = pose.lens.map((v, i) => v + apart_lens[i] * share);
+    apart_lens = apart_lens.map((v) => v * (1 - share));
     pose.yaw += apart_yaw * share;
     pose.pitch += apart_pitch * share;
     for (const one of turned.values()) {
@@ -62,6 +66,7 @@ export function make_walker() {
     pose = copy(told);
     velocity = [0, 0, 0];
     apart = [0, 0, 0];
+    apart_lens = [0, 0, 0];
     apart_yaw = apart_pitch = 0;
     rates = null;
     past = [];
@@ -73,9 +78,11 @@ export function make_walker() {
     const before = rates?.told ?? told, passed = rates ? (now - rates.at) / 1000 : 0;
     const rate = (change) => (passed > 0.005 && passed < 0.5 ? change / passed : 0);
     rates = { at: now, told,
-      position: told.position.map((v, i) => rate(v - before.position[i])),
+      position: minus(told.position, before.position).map(rate),
+      lens: minus(told.lens, before.lens).map(rate),
       yaw: rate(turn_between(before.yaw, told.yaw)), pitch: rate(told.pitch - before.pitch) };
-    apart = told.position.map((v, i) => v - pose.position[i]);
+    apart = minus(told.position, pose.position);
+    apart_lens = minus(told.lens, pose.lens);
     apart_yaw = turn_between(pose.yaw, told.yaw);
     apart_pitch = told.pitch - pose.pitch;
   }
@@ -95,16 +102,17 @@ export function make_walker() {
       turned.set(seq, { yaw: pose.yaw, pitch: pose.pitch });
       for (const old of turned.keys()) { if (turned.size < 256) break; turned.delete(old); }
     },
-    // The server says where it has the visitor: {seq, position, yaw, pitch, roll, fov, cut, led}.
-    // round_trip: milliseconds.
-    told(told, now, round_trip) {
-      const far = pose && Math.hypot(...told.position.map((v, i) => v - pose.position[i])) > jump;
+    // The server says where it has the visitor: {seq, position, yaw, pitch, roll, fov, middle, cut,
+    // led}. round_trip: milliseconds.
+    told(message, now, round_trip) {
+      const told = { ...message, lens: [Math.tan(message.fov / 2), ...message.middle] };
+      const far = pose && Math.hypot(...minus(told.position, pose.position)) > jump;
       if (!pose || told.cut !== cut || far) leap(told);
       cut = told.cut;
-      pose.fov = told.fov;
       if (led !== told.led) rates = null;
       led = told.led;
       if (led) { pose.roll = told.roll; return follow(told, now); }
+      apart_lens = minus(told.lens, pose.lens);
       const own = turned.get(told.seq);
       if (own) {
         apart_yaw = turn_between(own.yaw, told.yaw);
@@ -116,7 +124,7 @@ export function make_walker() {
       }
       if (turned.size === 0) pose.roll = told.roll;
       const then = past.findLast((one) => one.time <= now - round_trip) ?? past[0];
-      apart = told.position.map((v, i) => v - (then ?? pose).position[i]);
+      apart = minus(told.position, (then ?? pose).position);
     },
     // Returns whether the camera has moved.
     advance(dt, now) {
@@ -125,13 +133,15 @@ export function make_walker() {
       if (!led) walk(dt);
       else if (rates && now - rates.at < 200) {
         pose.position = pose.position.map((v, i) => v + rates.position[i] * dt);
+        pose.lens = pose.lens.map((v, i) => v + rates.lens[i] * dt);
         pose.yaw += rates.yaw * dt;
         pose.pitch += rates.pitch * dt;
       }
       agree(dt);
       past.push({ time: now, position: [...pose.position] });
       while (past.length > 2 && now - past[1].time > remembered_ms) past.shift();
-      return before.position.some((v, i) => Math.abs(v - pose.position[i]) > 1e-5)
+      const differs = (a, b) => a.some((v, i) => Math.abs(v - b[i]) > 1e-5);
+      return differs(before.position, pose.position) || differs(before.lens, pose.lens)
         || Math.abs(before.yaw - pose.yaw) + Math.abs(before.pitch - pose.pitch)
           + Math.abs(before.roll - pose.roll) > 1e-6;
     },

@@ -6,8 +6,9 @@ import { announce } from '../announce.js';
 import { make_ambience } from '../ambience.js';
 import { make_connection } from '../connection.js';
 import { make_controls } from '../controls.js';
+import { make_screen } from '../display/screen.js';
 import { by_id } from '../element.js';
-import { make_picture, wanted_size } from '../picture.js';
+import { wanted_size } from '../picture.js';
 import { make_player } from '../player.js';
 import { make_sound } from '../sound.js';
 import { make_subtitles } from '../subtitles.js';
@@ -44,13 +45,14 @@ const sound = make_sound(by_id('sound-button'), {
   eager: true,
 });
 const ambience = make_ambience(sound);
-const picture = make_picture(by_id('picture'), (shown) => {
+function note_shown(shown) {
   const decoded_ms = Math.round(shown.decoded_ms * 10) / 10;
   send({ type: 'ack', frame: shown.frame, decoded_ms, shown: shown.shown });
   if (!shown.shown) return;
   sound.shown(shown);
   by_id('picture').dataset.frame = shown.frame;
-});
+}
+const screen = make_screen(by_id('picture'), { on_shown: note_shown, send });
 const well = make_well(by_id('well'), {
   wave: (depth) => ambience.splash(depth * 14),
   fell_up: () => ambience.splash(0.15),
@@ -279,7 +281,7 @@ async function read_exhibit(message) {
 
 connection = make_connection({
   hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', parts: true,
-    kiosk: asked.get('kiosk') ?? '', token: kiosk_token(), ...wanted_size() }),
+    kiosk: asked.get('kiosk') ?? '', token: kiosk_token(), ...wanted_size(), ...screen.hello() }),
   open() {
     lost = untrusted = false;
     fps = null;
@@ -287,6 +289,7 @@ connection = make_connection({
     gesture_seen = null;
     notice();
     sound.joined();
+    screen.joined();
     if (asked.get('teller')) send({ type: 'storyteller', teller: asked.get('teller') });
     want_pictures();
     tell();
@@ -296,6 +299,7 @@ connection = make_connection({
     switch (message.type) {
       case 'welcome':
         exhibit = message.exhibit;
+        screen.welcome(message);
         by_id('title').textContent = document.title = message.title;
         walk_speed = message.walk_speed;
         ambience.places(message.sounds);
@@ -320,6 +324,7 @@ connection = make_connection({
               String(button.dataset.viewpoint === message.viewpoint));
         follow_player();
         break;
+      case 'pose': screen.pose(message); break;
       case 'speech': sound.speech(message); break;
       case 'subtitle': subtitles.show(message); break;
       case 'kiosk': hear_kiosk(message); break;
@@ -338,7 +343,7 @@ connection = make_connection({
         break;
     }
   },
-  binary: (buffer) => { if (!sound.receive(buffer)) picture.receive(buffer); },
+  binary: (buffer) => { if (!sound.receive(buffer)) screen.receive(buffer); },
 });
 label();
 
@@ -375,7 +380,9 @@ setInterval(() => {
 
 make_controls(by_id('picture'), by_id('stick'), by_id('stick-knob'), {
   send({ moved, ...fields }) {
-    if (view === 'museum' && doing === 'walk') send({ type: 'input', seq: ++seq, ...fields });
+    if (view !== 'museum' || doing !== 'walk') return;
+    send({ type: 'input', seq: ++seq, ...fields });
+    screen.input(seq, fields, moved);
   },
   fov: () => state?.fov ?? 1,
   speed: () => walk_speed,

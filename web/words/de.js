@@ -70,4 +70,10 @@ export default {
   bandwidth: 'Leitung: höchstens', bandwidth_any: 'unbegrenzt',
   limit_none: 'Leitung schnell genug', limit_network: 'Leitung langsam',
   limit_server: 'Server langsam', limit_browser: 'dieses Gerät ist langsam',
+  drawn_local: 'von diesem Gerät gezeichnet',
+  drawn_asked: 'fertig vom Server, wie die Adresse es will',
+  drawn_unable: 'fertig vom Server: dieser Browser kann nicht zeichnen',
+  drawn_slow: 'fertig vom Server: dieses Gerät zeichnet zu langsam',
+  drawn_lost: 'fertig vom Server: der Grafikchip ging verloren',
+  silent: 'Der Server schweigt. Das Bild geht weiter, so weit es bekannt ist …',
 };

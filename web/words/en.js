@@ -69,4 +69,10 @@ export default {
   bandwidth: 'Line: at most', bandwidth_any: 'no limit',
   limit_none: 'the line is fast enough', limit_network: 'the line is slow',
   limit_server: 'the server is slow', limit_browser: 'this device is slow',
+  drawn_local: 'drawn by this device',
+  drawn_asked: 'finished by the server, as the address asks',
+  drawn_unable: 'finished by the server: this browser cannot draw',
+  drawn_slow: 'finished by the server: this device draws too slowly',
+  drawn_lost: 'finished by the server: the graphics chip was lost',
+  silent: 'The server is silent. The picture goes on as far as it is known …',
 };

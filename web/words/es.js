@@ -71,4 +71,10 @@ export default {
   bandwidth: 'Línea: como máximo', bandwidth_any: 'sin límite',
   limit_none: 'la línea basta', limit_network: 'la línea es lenta',
   limit_server: 'el servidor es lento', limit_browser: 'este aparato es lento',
+  drawn_local: 'dibujado por este dispositivo',
+  drawn_asked: 'terminado por el servidor, como pide la dirección',
+  drawn_unable: 'terminado por el servidor: este navegador no sabe dibujar',
+  drawn_slow: 'terminado por el servidor: este dispositivo dibuja muy despacio',
+  drawn_lost: 'terminado por el servidor: se perdió el chip gráfico',
+  silent: 'El servidor calla. La imagen sigue hasta donde se conoce …',
 };

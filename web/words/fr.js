@@ -71,4 +71,10 @@ export default {
   bandwidth: 'Débit : au plus', bandwidth_any: 'sans limite',
   limit_none: 'la ligne suffit', limit_network: 'la ligne est lente',
   limit_server: 'le serveur est lent', limit_browser: 'cet appareil est lent',
+  drawn_local: 'dessiné par cet appareil',
+  drawn_asked: 'fini par le serveur, comme le veut l’adresse',
+  drawn_unable: 'fini par le serveur : ce navigateur ne sait pas dessiner',
+  drawn_slow: 'fini par le serveur : cet appareil dessine trop lentement',
+  drawn_lost: 'fini par le serveur : la puce graphique s’est perdue',
+  silent: 'Le serveur se tait. L’image continue, autant qu’elle est connue …',
 };

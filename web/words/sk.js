@@ -66,4 +66,10 @@ export default {
   bandwidth: 'Linka: najviac', bandwidth_any: 'bez obmedzenia',
   limit_none: 'linka stačí', limit_network: 'linka je pomalá',
   limit_server: 'server je pomalý', limit_browser: 'toto zariadenie je pomalé',
+  drawn_local: 'kreslí toto zariadenie',
+  drawn_asked: 'hotové zo servera, ako žiada adresa',
+  drawn_unable: 'hotové zo servera: tento prehliadač nevie kresliť',
+  drawn_slow: 'hotové zo servera: toto zariadenie kreslí príliš pomaly',
+  drawn_lost: 'hotové zo servera: grafický čip sa stratil',
+  silent: 'Server mlčí. Obraz ide ďalej, pokiaľ je známy …',
 };

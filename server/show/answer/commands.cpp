@@ -57,6 +57,16 @@ Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int h
   return {};
 }
 
+// Whoever had keyframes gets a finished picture next, and the other way round. Where nothing is
+// drawn in the background there are no keyframes.
+void set_display(const Show& show, Visitor& visitor, const std::string& display) {
+  const bool local = display == "local" && show.settings.background;
+  if (visitor.wants.local == local) return;
+  visitor.wants.local = local;
+  visitor.picture.around = {};
+  visitor.shown.lost = true;
+}
+
 int find_tour(const Exhibit& exhibit, const std::string& id) {
   for (size_t i = 0; i < exhibit.tours.size(); i++)
     if (exhibit.tours[i].id == id || id.empty()) return int(i);
@@ -76,7 +86,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   if (Answer wrong = set_size(visitor, show.settings, hello.width, hello.height))
     visitor.link->send_text(write_error(*wrong));
   visitor.wants.parts = hello.parts.value_or(false);
-  visitor.wants.local = hello.display == "local" && show.settings.background;
+  set_display(show, visitor, hello.display);
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);
@@ -225,6 +235,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Settings& settings) {
   wants.best_quality = std::min(wants.best_quality, wants.still_quality);
   if (settings.bandwidth) wants.bandwidth = 1000.0 / 8 * *settings.bandwidth;
   if (settings.saver) wants.saver = *settings.saver;
+  if (!settings.display.empty()) set_display(show, visitor, settings.display);
   if (settings.attention) {
     const bool* on = std::get_if<bool>(&*settings.attention);
     wants.attention = !on || *on;

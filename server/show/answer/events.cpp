@@ -160,7 +160,8 @@ std::string pose_message(const Show& show, const Visitor& visitor) {
   const float yaw = std::atan2(-forward.x, -forward.z);
   const vec3 level(std::cos(yaw), 0, -std::sin(yaw));
   const bool led = place.around.point >= 0 || place.glide.path || leader_of(show, visitor) ||
-                   place.tour.state == TourRide::State::playing || place.tour.pace > 0;
+                   place.tour.state == TourRide::State::playing || place.tour.pace > 0 ||
+                   visitor.window.place != visitor.window.aim;
   return json{{"type", "pose"},
               {"seq", place.seq},
               {"position", triple(show.exhibit.scene.origin + dvec3(view.position))},
@@ -168,6 +169,7 @@ std::string pose_message(const Show& show, const Visitor& visitor) {
               {"pitch", std::asin(std::clamp(forward.y, -1.0f, 1.0f))},
               {"roll", std::atan2(dot(view.right, cross(level, forward)), dot(view.right, level))},
               {"fov", 2 * std::atan(view.tan_half_fov)},
+              {"middle", json::array({view.middle.x, view.middle.y})},
               {"width", view.width},
               {"height", view.height},
               {"cut", place.camera_cuts},

@@ -47,6 +47,7 @@ bool overrule(const Settings& newer, Settings& older) {
   take_back(newer.width, older.width);
   take_back(newer.height, older.height);
   if (!newer.lang.empty()) older.lang.clear();
+  if (!newer.display.empty()) older.display.clear();
   return older == Settings{};
 }
 

@@ -325,14 +325,14 @@ void present(Show& show, Visitor& visitor) {
   // it draws itself, they do anyway.
   if (!show.settings.background) shown.encoder->task.wait();
   if (!may_take(show, visitor) || shown.encoder->task.busy()) return;
+  const View view = visitor.place.last_view;
+  bool stood = job.still && job.view == view;
+  if (shown.lost && job.keep && (stood || visitor.wants.local)) picture.unshown = true;
   if (visitor.wants.local) {
     note_encoded(show, visitor);
     return present_keyframe(show, visitor);
   }
-  const View view = visitor.place.last_view;
-  bool stood = job.still && job.view == view;
   bool fades = !picture.fade.from.rgb.empty() && show.time - shown.sent_at >= 1 / fade_rate;
-  if (shown.lost && job.keep && stood) picture.unshown = true;
   if (!picture.unshown && !fades && (!job.keep || view == shown.view)) {
     refine(show, visitor);
     return;

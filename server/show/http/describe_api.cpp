@@ -108,6 +108,7 @@ std::string describe_api() {
     "announce": {"id": "number, grows", "text": "{language tag: text}; empty: the last is taken back",
                  "seconds": "that it stays", "urgent": "boolean: over everything"},
     "pose": {"seq": "of the last input that it includes", "position": "[x, y, z] m", "yaw": "radians", "pitch": "radians", "roll": "radians", "fov": "radians of the picture's height",
+             "middle": "[x, y] of the picture's middle, to the right of the axis and above it, at a depth of 1 m",
              "width": "px", "height": "px: of the picture to be shown",
              "cut": "number: another one, another place", "led": "boolean: a tour, a glide or a leader moves the visitor, not their own input (only after hello.display local)"},
     "error": {"code": "word, full (so many wait already) and storyteller_busy among them: the one storyteller of all visitors is taken; no_way, nothing_there, unknown_object: to go; not_trusted: a kiosk's token is needed; no_room: for larger pictures, which stay as they are",
