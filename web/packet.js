@@ -37,9 +37,9 @@ function read_keyframe(buffer, view, header) {
   return good ? { color_bytes, cuts: view.getUint32(32, true), unit, view: seen } : null;
 }
 
-// {frame, seq, time_us, width, height, quality, still, parts, keyframe, around, payload: Blob-able
-// bytes}, or null. parts: null of a complete picture; keyframe: null of one without depth; around:
-// it is a wide one.
+// {frame, seq, time_us, width, height, quality, still, parts, keyframe, around, layer, payload:
+// Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of one without depth;
+// around: it is a wide one; layer: it is what moves, over what stands still.
 export function read_picture(buffer) {
   if (buffer.byteLength < 28) return null;
   const view = new DataView(buffer);
@@ -64,6 +64,7 @@ export function read_picture(buffer) {
     parts,
     keyframe,
     around: deep && (flags & 8) !== 0,
+    layer: deep && (flags & 16) !== 0,
     payload: new Uint8Array(buffer, header),
   };
 }

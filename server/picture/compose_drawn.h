@@ -49,8 +49,9 @@ std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
 
 // The same over what the eye sees already, in the light that is kept on its skin (kept.skin is not
 // null) and that of lights that move, where it is nearer than `disparity` (as Keyframe's) says of
-// the picture. Of pixels that it covers `covered` becomes 0. light.picture and light.peaks: what
-// the eye sees already, of which the window (whole_runs()) counts.
+// the picture. Of pixels that it covers `covered` becomes 0, and light.disparity, unless it is
+// empty, that of what moves. light.picture and light.peaks: what the eye sees already, of which the
+// window (whole_runs()) counts.
 void compose_moving(const View& view, const VisibilityPass& visibility, const PictureWindow& window,
                     const Tonemap& tonemap, std::span<const float> disparity,
                     std::span<uint8_t> covered, const KeptLight& kept, MovingLight& light);

@@ -28,8 +28,10 @@ bool shows_any(const VisibleRun& run) {
 void compose_moving(const View& view, const VisibilityPass& visibility, const PictureWindow& window,
                     const Tonemap& tonemap, std::span<const float> disparity,
                     std::span<uint8_t> covered, const KeptLight& kept, MovingLight& light) {
-  NearerEyePlanes planes{tonemap.exposure, disparity.data(), covered.data(),
-                         light.picture.rgb.data(), light.peaks.data()};
+  NearerEyePlanes planes{
+      tonemap.exposure,         disparity.data(),
+      covered.data(),           light.disparity.empty() ? nullptr : light.disparity.data(),
+      light.picture.rgb.data(), light.peaks.data()};
   auto take = [&](const VisibleRun& run) {
     if (run.x < window.left || run.x + run.count > window.left + window.width) return;
     if (run.y < window.top || run.y >= window.top + window.height || !shows_any(run)) return;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/compositor.h"
 
+#include <algorithm>
+
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/rng.h"
@@ -129,25 +131,33 @@ void Compositor::invalidate_samples() { samples_ = {}; }
 
 void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
                              const BackdropLight* relit, const VisibilityPass& visibility,
-                             const Tonemap& tonemap, MovingLight& work, MovingPicture& picture) {
+                             const Tonemap& tonemap, bool in_layer, MovingLight& work,
+                             MovingPicture& picture) {
   const View& view = backdrop.view;
+  const PictureWindow all{0, 0, view.width, view.height}, moves = moving_window(world, view);
+  MovingLayer& layer = picture.layer;
   picture.view = view;
-  picture.window = moving_window(world, view);
-  const bool moves = !picture.empty();
-  if (relit) {
-    picture.window = {0, 0, view.width, view.height};
-    relight(backdrop, *relit, tonemap, work.picture, work.peaks);
-  }
-  if (picture.empty()) return;
-  const PictureWindow runs = whole_runs(picture.window, view);
-  if (!relit) {
-    copy_colors(backdrop, runs, work.picture);
-    guess_peaks(work.picture, runs, work.peaks);
-  }
-  still_.count.resize(backdrop.disparity.size(), 0);
-  if (moves)
+  picture.window = relit ? all : in_layer ? PictureWindow{} : moves;
+  layer.window = in_layer ? moves : PictureWindow{};
+  if (relit) relight(backdrop, *relit, tonemap, work.picture, work.peaks);
+  if (relit && in_layer) take_window(work.picture, all, picture.rgb);
+  if (!moves.empty()) {
+    const PictureWindow runs = whole_runs(moves, view);
+    if (!relit) {
+      copy_colors(backdrop, runs, work.picture);
+      guess_peaks(work.picture, runs, work.peaks);
+    }
+    still_.count.resize(backdrop.disparity.size(), 0);
+    work.disparity.assign(in_layer ? backdrop.disparity.size() : 0, 0.0f);
     compose_moving(view, visibility, runs, tonemap, backdrop.disparity, still_.count, kept_, work);
-  take_window(work.picture, picture);
+  }
+  if (!in_layer && !picture.empty()) take_window(work.picture, picture.window, picture.rgb);
+  if (layer.window.empty()) return;
+  take_window(work.picture, layer.window, layer.rgb);
+  layer.disparity.resize(size_t(moves.width) * size_t(moves.height));
+  for (int y = 0; y < moves.height; y++)
+    std::copy_n(&work.disparity[size_t(moves.top + y) * size_t(view.width) + size_t(moves.left)],
+                moves.width, &layer.disparity[size_t(y) * size_t(moves.width)]);
 }
 
 size_t Compositor::memory_bytes() const {

@@ -75,10 +75,11 @@ class Compositor {
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which
   // `backdrop` is the keyframe; in the light that is kept on its skin, and that of set_dynamic().
   // Needs sight.rasterises(backdrop.view) and set_skin(). An empty picture: it is not to be seen.
-  // `relit`: not null, all of the picture is drawn, the backdrop with that light.
+  // `relit`: not null, all of the picture is drawn, the backdrop with that light. in_layer: what
+  // moves goes into the picture's layer instead.
   void draw_moving(const World& world, const Keyframe& backdrop, const BackdropLight* relit,
-                   const VisibilityPass& visibility, const Tonemap& tonemap, MovingLight& work,
-                   MovingPicture& picture);
+                   const VisibilityPass& visibility, const Tonemap& tonemap, bool in_layer,
+                   MovingLight& work, MovingPicture& picture);
 
   // What the pixels of a view at rest have been found to be by samples; empty before.
   const StillSamples& samples() const { return samples_; }

@@ -71,6 +71,7 @@ struct NearerEyePlanes {
   float exposure;
   const float* disparity;  // 1 / depth of what it sees
   uint8_t* covered;        // becomes 0 there
+  float* nearer;           // becomes 1 / its depth there; null: not wanted
   uint8_t *rgb, *peaks;    // as EyePlanes'
   void put(size_t at, LanePart part, const Shown& s) const {
     const Color& c = s.color;
@@ -83,6 +84,7 @@ struct NearerEyePlanes {
       std::memcpy(rgb + 3 * at, bytes + 3 * k, 3);
       peaks[at] = uint8_t(peak[k]);
       covered[at] = 0;
+      if (nearer) nearer[at] = 1 / s.depth[k];
     }
   }
 };

@@ -50,8 +50,12 @@ int whole(float v, int most) { return int(std::clamp(v, 0.0f, float(most))); }
 
 }  // namespace
 
-size_t memory_bytes(const MovingPicture& picture) { return bytes_of(picture.rgb); }
-size_t memory_bytes(const MovingLight& light) { return bytes_of(light.picture.rgb, light.peaks); }
+size_t memory_bytes(const MovingPicture& picture) {
+  return bytes_of(picture.rgb, picture.layer.rgb, picture.layer.disparity);
+}
+size_t memory_bytes(const MovingLight& light) {
+  return bytes_of(light.picture.rgb, light.peaks, light.disparity);
+}
 
 void lay_over(const MovingPicture& picture, Image8& image) {
   const PictureWindow& w = picture.window;
@@ -138,13 +142,22 @@ void guess_peaks(const Image8& image, const PictureWindow& window, std::vector<u
   });
 }
 
-void take_window(const Image8& image, MovingPicture& picture) {
-  const PictureWindow& w = picture.window;
-  picture.rgb.resize(3 * size_t(w.width) * size_t(w.height));
+void take_window(const Image8& image, const PictureWindow& w, std::vector<uint8_t>& rgb) {
+  rgb.resize(3 * size_t(w.width) * size_t(w.height));
   for (int y = 0; y < w.height; y++)
-    std::memcpy(&picture.rgb[3 * size_t(y) * size_t(w.width)],
+    std::memcpy(&rgb[3 * size_t(y) * size_t(w.width)],
                 &image.rgb[3 * (size_t(w.top + y) * size_t(image.width) + size_t(w.left))],
                 3 * size_t(w.width));
+}
+
+View window_view(const View& view, const PictureWindow& window) {
+  const float pixel = 2 * view.tan_half_fov / float(view.height);
+  View part = view;
+  part.width = window.width, part.height = window.height;
+  part.tan_half_fov = 0.5f * pixel * float(window.height);
+  part.middle += pixel * vec2(float(window.left) + 0.5f * float(window.width - view.width),
+                              0.5f * float(view.height - window.height) - float(window.top));
+  return part;
 }
 
 }  // namespace wellspring

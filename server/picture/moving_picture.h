@@ -10,11 +10,19 @@
 
 namespace wellspring {
 
+// What moves alone, with the depth of its pixels, for who lays it over other views of the rest.
+struct MovingLayer {
+  PictureWindow window;
+  std::vector<uint8_t> rgb;      // of the window, row after row
+  std::vector<float> disparity;  // likewise; 0: nothing that moves is there
+};
+
 // A window of a picture, to be laid over the rest of it.
 struct MovingPicture {
   View view;  // of the whole
   PictureWindow window;
   std::vector<uint8_t> rgb;  // of the window, row after row
+  MovingLayer layer;         // where that is asked for: what moves is there, not in the window
   bool empty() const { return window.empty(); }
 };
 size_t memory_bytes(const MovingPicture& picture);
@@ -24,8 +32,9 @@ void lay_over(const MovingPicture& picture, Keyframe& keyframe);  // its depths 
 
 // Scratch, overwritten by every picture.
 struct MovingLight {
-  Image8 picture;              // of the whole view, the window alone filled
-  std::vector<uint8_t> peaks;  // of its pixels, as soften_edges() needs them
+  Image8 picture;                // of the whole view, the window alone filled
+  std::vector<uint8_t> peaks;    // of its pixels, as soften_edges() needs them
+  std::vector<float> disparity;  // of those that show what moves, where a layer is asked for
 };
 size_t memory_bytes(const MovingLight& light);
 
@@ -39,6 +48,9 @@ PictureWindow whole_runs(const PictureWindow& window, const View& view);
 void copy_colors(const Keyframe& keyframe, const PictureWindow& window, Image8& image);
 // The peaks of its pixels, as far as its colours tell them: of white the least.
 void guess_peaks(const Image8& image, const PictureWindow& window, std::vector<uint8_t>& peaks);
-void take_window(const Image8& image, MovingPicture& picture);
+// Of a window of a picture, row after row.
+void take_window(const Image8& image, const PictureWindow& window, std::vector<uint8_t>& rgb);
+// The part of the view that the window shows, as a view of its own.
+View window_view(const View& view, const PictureWindow& window);
 
 }  // namespace wellspring

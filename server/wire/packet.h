@@ -15,7 +15,9 @@
 // axes to the right, up and forward, 100 f32 half of the picture's height at a depth of 1, 104 f32
 // x, y of its middle there, 112 f32 unit. Behind the JPEG follow disparities in that unit, as
 // frame/disparity_code.h has them. With the flag `around`, too, it is a wide view in few pixels,
-// for what keyframes do not show.
+// for what keyframes do not show. With the flag `layer` it is the part of a view where something
+// moves, to be laid over keyframes with the flag `still` until the next one: where its disparity is
+// 0 there is nothing.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -31,6 +33,7 @@ inline constexpr uint8_t packet_still =
 inline constexpr uint8_t packet_complete = 2;  // complete picture, not a part
 inline constexpr uint8_t packet_depth = 4;     // complete, and where its pixels are
 inline constexpr uint8_t packet_around = 8;    // with depth: what lies around, in fewer pixels
+inline constexpr uint8_t packet_layer = 16;    // with depth: what moves, over what stands still
 
 struct PacketHeader {
   uint32_t frame = 0, seq = 0;

@@ -120,7 +120,7 @@ struct Visit {
   }
   void draw() {
     compositor.draw_moving(stage.world(), backdrop, nullptr, visibility,
-                           Tonemap{stage.exhibit().exposure}, light, moving);
+                           Tonemap{stage.exhibit().exposure}, false, light, moving);
   }
   void show(double time) {
     find_light(time);

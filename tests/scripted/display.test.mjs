@@ -127,6 +127,40 @@ test('keyframes of a walk show the same places', async () => {
   await visitor.close();
 });
 
+test('what moves before who stands comes as a layer of its own', async () => {
+  const castle = await start_server(['--exhibit', 'castle', '--no-bake']);
+  const visitor = new Visitor(castle);
+  const { storyteller } = await visitor.hello({ display: 'local', parts: true });
+  const still = next_keyframe(visitor, ({ still, around, layer }) => still && !around && !layer);
+  const first = next_keyframe(visitor, ({ layer }) => layer);
+  visitor.send({ type: 'viewpoint', seq: 1, name: storyteller.viewpoint });
+  const layer = await first, whole = await still;
+  const there = layer.units.filter((units) => units > 0).length, all = layer.units.length;
+  assert.ok(there > 0.1 * all && there < 0.9 * all, `${there} of ${all} pixels show something`);
+  assert.ok(3 * all <= whole.units.length);
+  // It lies before the room, and where the room's view has it.
+  assert.ok(share_alike(layer, whole) < 0.5);
+  assert.deepEqual(layer.view.eye, whole.view.eye);
+  assert.deepEqual(layer.view.forward, whole.view.forward);
+  const moved = await next_keyframe(visitor, ({ layer, frame }) => layer && frame > whole.frame);
+  assert.notDeepEqual(moved.payload, layer.payload, 'she breathes');
+  // Who walks gets her in the keyframe.
+  visitor.send({ type: 'input', seq: 2, move: [0.3, 0, 0], look: [0, 0] });
+  await next_keyframe(visitor, ({ seq, still, around }) => seq === 2 && !still && !around);
+  await visitor.close();
+  assert.equal(await castle.stop(), 0);
+});
+
+test('who can draw no more gets finished pictures from then on', async () => {
+  const visitor = new Visitor(server);
+  await visitor.hello({ display: 'local', parts: true });
+  await next_keyframe(visitor);
+  visitor.send({ type: 'settings', display: 'server' });
+  visitor.send({ type: 'input', seq: 1, move: [0, 0, 0], look: [0.2, 0] });
+  await visitor.picture(({ seq, header, parts }) => seq === 1 && header === 28 && !parts);
+  await visitor.close();
+});
+
 test('who asks for nothing gets finished pictures', async () => {
   const visitor = new Visitor(server);
   await visitor.hello();

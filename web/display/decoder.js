@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// This worker decodes keyframes: {id, color, depth, width, height} becomes {id, bitmap, units,
-// blocks} or {id, problem}. `blocks` has the farthest and the nearest units of each block of
-// pixels and those around them, row after row.
+// This worker decodes keyframes: {id, color, depth, width, height, layer} becomes {id, bitmap,
+// units, blocks} or {id, problem}. `blocks` has the farthest and the nearest units of each block of
+// pixels and those around them, row after row; of a layer only where there is anything, and the
+// farthest is nearer than the nearest where there is not.
 import { decode_disparity } from './disparity.js';
 import { decode_jpeg } from './jpeg.js';
 import { block } from './view.js';
 
-function bound_blocks(units, width, height) {
+function bound_blocks(units, width, height, layer) {
   const columns = Math.ceil(width / block), rows = Math.ceil(height / block);
   const out = new Uint16Array(2 * columns * rows);
   for (let row = 0; row < rows; row++)
@@ -16,6 +17,7 @@ function bound_blocks(units, width, height) {
       let low = 65535, high = 0;
       for (let y = Math.max(row * block - 1, 0); y < y1; y++)
         for (let i = y * width + x0; i < y * width + x1; i++) {
+          if (layer && units[i] === 0) continue;
           if (units[i] < low) low = units[i];
           if (units[i] > high) high = units[i];
         }
@@ -25,13 +27,13 @@ function bound_blocks(units, width, height) {
   return out;
 }
 
-self.onmessage = async ({ data: { id, color, depth, width, height } }) => {
+self.onmessage = async ({ data: { id, color, depth, width, height, layer } }) => {
   try {
     const [bitmap, units] = await Promise.all([
       decode_jpeg(color),
       decode_disparity(depth, width, height),
     ]);
-    const blocks = bound_blocks(units, width, height);
+    const blocks = bound_blocks(units, width, height, layer);
     /** @type {any} */ (self).postMessage({ id, bitmap, units, blocks },
         [bitmap, units.buffer, blocks.buffer]);
   } catch (problem) {

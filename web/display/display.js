@@ -59,11 +59,12 @@ export function make_display(canvas, { on_shown, on_weak, round_trip }) {
     slow = rate < least_rate ? slow + 1 : 0;
     if (slow > 1) on_weak('slow');
   });
-  const decode_keyframe = ({ frame, keyframe: { color_bytes, view }, payload }) =>
+  const decode_keyframe = ({ frame, keyframe: { color_bytes, view }, payload, layer }) =>
     new Promise((resolve) => {
       decoding.set(frame, resolve);
+      const { width, height } = view;
       const color = payload.slice(0, color_bytes), depth = payload.slice(color_bytes);
-      worker.postMessage({ id: frame, color, depth, width: view.width, height: view.height },
+      worker.postMessage({ id: frame, color, depth, width, height, layer },
           [color.buffer, depth.buffer]);
     });
 
@@ -71,7 +72,10 @@ export function make_display(canvas, { on_shown, on_weak, round_trip }) {
     const { view, unit, cuts } = picture.keyframe;
     const { bitmap, units, blocks, problem } = await decode_keyframe(picture);
     if (problem) throw new Error(problem);
-    warp.add({ view, unit, cuts, bitmap, units, blocks }, performance.now(), picture.around);
+    const keyframe = { view, unit, cuts, bitmap, units, blocks };
+    if (picture.layer) warp.set_layer(keyframe);
+    else if (picture.around) warp.set_around(keyframe);
+    else warp.add(keyframe, performance.now(), picture.still);
   }
   async function change(picture) {
     const pieces = await Promise.all(picture.parts.map(async (part) =>

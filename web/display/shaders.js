@@ -24,6 +24,8 @@ uniform float unit;
 uniform float height;       // of the picture, pixels
 uniform float share;        // how much of the picture it is
 uniform bool whole;         // what it does not show is guessed; else left as it is
+uniform bool masked;        // where its disparity is 0 there is nothing
+uniform bool as_it_is;      // the view is the keyframe's own
 out vec4 shown;
 
 const float least_depth = 1e-6, found = 0.5, same = 0.125, half_step = 0.5;
@@ -71,6 +73,10 @@ vec3 sample_color(vec2 at, float pixels) {
 
 void main() {
   vec2 pixel = vec2(gl_FragCoord.x, height - gl_FragCoord.y);
+  if (as_it_is) {
+    shown = vec4(texture(color, pixel / size).rgb, share);
+    return;
+  }
   vec3 base = to[0] + pixel.x * to[1] + pixel.y * to[2];
   vec2 range = texelFetch(bounds, ivec2(pixel) / ${block}, 0).rg;
   vec3 first = carry(base, range.g), last = carry(base, range.r);
@@ -104,5 +110,6 @@ void main() {
   bool inside = all(greaterThanEqual(at, vec2(-found))) && all(lessThanEqual(at, size + found))
       && base.z > least_depth;
   if (!whole && !(is_found && inside)) discard;
+  if (masked && own_disparity(ivec2(clamp(at, vec2(0), size - 1.0))) == 0.0) discard;
   shown = vec4(sample_color(at, pixels), share);
 }`;

@@ -22,6 +22,14 @@ export function view_of(pose, width, height) {
     tan_half_fov, middle, width, height };
 }
 
+// What one of them shows at a pixel the other does, too.
+export function is_same(a, b) {
+  const near = (p, q) => p.every((v, i) => Math.abs(v - q[i]) < 1e-5);
+  return a.width === b.width && a.height === b.height && near(a.eye, b.eye)
+    && near(a.forward, b.forward) && near(a.right, b.right)
+    && near([a.tan_half_fov, ...a.middle], [b.tan_half_fov, ...b.middle]);
+}
+
 // A mapping leads from a pixel (x, y) and its disparity w in one view to another: one + x * across
 // + y * down + w * baseline is the place there times its depth over the depth here, and that ratio.
 export function make_mapping(from, to) {
@@ -51,6 +59,7 @@ export function carry_bounds(keyframe, view, back, out) {
   for (let by = 0; by < from_rows; by++)
     for (let bx = 0; bx < from_columns; bx++) {
       const i = 2 * (by * from_columns + bx);
+      if (keyframe.blocks[i] > keyframe.blocks[i + 1]) continue;  // nothing is there
       let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity, low = Infinity, high = -1;
       for (let corner = 0; corner < 8; corner++) {
         const s = keyframe.blocks[i + (corner >> 2)] * keyframe.unit;

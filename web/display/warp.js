@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws keyframes as they are seen from another view, by WebGL2: the newest one, what it does not
-// show from the one before, then from a wide one, and what none shows as it goes on behind.
+// show from the one before, then from a wide one, and what none shows as it goes on behind; over
+// all that a layer of what moves.
 import { fragment, vertex } from './shaders.js';
-import { block, carry_bounds, make_mapping } from './view.js';
+import { block, carry_bounds, is_same, make_mapping } from './view.js';
 
 const fade_ms = 50;  // from one keyframe to the next
 
@@ -19,7 +20,7 @@ function make_program(gl) {
   gl.linkProgram(program);
   const places = {};
   for (const name of ['color', 'units', 'bounds', 'to', 'back', 'size', 'unit', 'height', 'share',
-    'whole'])
+    'whole', 'masked', 'as_it_is'])
     places[name] = gl.getUniformLocation(program, name);
   return { program, places };
 }
@@ -41,13 +42,13 @@ export function make_warp(canvas, on_lost) {
     desynchronized: true, powerPreference: 'high-performance', preserveDrawingBuffer: false });
   if (!gl) return null;
   let program = null, bounds_texture = null, bounds = new Float32Array(0);
-  let newest = null, before = null, around = null, came = 0;
+  let newest = null, before = null, around = null, layer = null, came = 0;
 
   function set_up() {
     program = make_program(gl);
     bounds_texture = make_texture(gl, gl.NEAREST);
     gl.bindVertexArray(gl.createVertexArray());
-    for (const one of [newest, before, around]) if (one) upload(one);
+    for (const one of [newest, before, around, layer]) if (one) upload(one);
   }
   function upload_color(one) {
     gl.bindTexture(gl.TEXTURE_2D, one.color);
@@ -69,6 +70,11 @@ export function make_warp(canvas, on_lost) {
     gl.deleteTexture(one.depth);
     one.bitmap.close();
   }
+  function replace(old, one) {
+    forget(old);
+    if (one && !one.color && !gl.isContextLost()) upload(one);
+    return one;
+  }
   canvas.addEventListener('webglcontextlost', (event) => {
     event.preventDefault();
     on_lost(true);
@@ -76,6 +82,7 @@ export function make_warp(canvas, on_lost) {
   canvas.addEventListener('webglcontextrestored', () => { set_up(); on_lost(false); });
   set_up();
 
+  // whole: what it does not show is guessed, else left as it is.
   function draw(one, view, share, whole) {
     const columns = Math.ceil(view.width / block), rows = Math.ceil(view.height / block);
     if (bounds.length !== 2 * columns * rows) bounds = new Float32Array(2 * columns * rows);
@@ -99,25 +106,24 @@ export function make_warp(canvas, on_lost) {
     gl.uniform1f(places.height, view.height);
     gl.uniform1f(places.share, share);
     gl.uniform1i(places.whole, whole ? 1 : 0);
+    gl.uniform1i(places.masked, one === layer ? 1 : 0);
+    gl.uniform1i(places.as_it_is, is_same(one.view, view) ? 1 : 0);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
   return {
-    // wide: what lies around the others, in fewer pixels.
-    add(keyframe, now, wide) {
-      if (wide) {
-        forget(around);
-        around = keyframe;
-        if (!gl.isContextLost()) upload(around);
-        return;
-      }
-      if (around && around.cuts !== keyframe.cuts) { forget(around); around = null; }
-      forget(before);
-      before = newest && newest.cuts === keyframe.cuts ? newest : (forget(newest), null);
-      newest = keyframe;
+    // still: the layer lies over it, too; else what moves is in it.
+    add(keyframe, now, still) {
+      if (around && around.cuts !== keyframe.cuts) around = replace(around, null);
+      if (layer && (!still || layer.cuts !== keyframe.cuts)) layer = replace(layer, null);
+      const goes_on = newest && newest.cuts === keyframe.cuts;
+      before = replace(before, goes_on ? newest : null);
+      newest = replace(goes_on ? null : newest, keyframe);
       came = now;
-      if (!gl.isContextLost()) upload(newest);
     },
+    // What lies around the others, in fewer pixels.
+    set_around(keyframe) { around = replace(around, keyframe); },
+    set_layer(keyframe) { layer = replace(layer, keyframe); },
     // Pieces, {bitmap, x, y} in a picture of that size, replace colours of the newest keyframe.
     async change(pieces, width, height) {
       if (!newest) return;
@@ -141,15 +147,18 @@ export function make_warp(canvas, on_lost) {
       if (canvas.height !== view.height) canvas.height = view.height;
       gl.viewport(0, 0, view.width, view.height);
       gl.disable(gl.BLEND);
-      const share = Math.min(1, (now - came) / fade_ms);
+      const share = before ? Math.min(1, (now - came) / fade_ms) : 1;
+      const behind = share === 1 && is_same(newest.view, view) ? []
+        : [around, before].filter((one) => one !== null);
       // The first of them shows what none of them does as it goes on behind.
-      if (around) draw(around, view, 1, true);
-      if (before) draw(before, view, 1, !around);
-      if (before && share < 1) {
+      behind.forEach((one, i) => draw(one, view, 1, i === 0));
+      if (share < 1) {
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
       }
-      draw(newest, view, share, !around && !before);
+      draw(newest, view, share, behind.length === 0);
+      gl.disable(gl.BLEND);
+      if (layer) draw(layer, view, 1, false);
       return true;
     },
     fades: (now) => before !== null && now - came < fade_ms,

@@ -64,6 +64,7 @@ void set_display(const Show& show, Visitor& visitor, const std::string& display)
   if (visitor.wants.local == local) return;
   visitor.wants.local = local;
   visitor.picture.around = {};
+  visitor.picture.layer_unsent = visitor.shown.has_layer = false;
   visitor.shown.lost = true;
 }
 

@@ -43,6 +43,7 @@ void draw_what_moves(Show& show, Visitor& visitor) {
   renderer.posed_at = show.time;
   renderer.posed_us = show.time_us;
   renderer.posed_lights = visitor.dynamic;
+  renderer.posed_layer = visitor.wants.local;
   visitor.picture.at_work = true;
   use_cores(show, [&show] { draw_moving(show, *show.renderer.posed); });
 }

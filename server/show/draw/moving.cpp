@@ -109,25 +109,30 @@ void draw_moving(Show& show, Visitor& visitor) {
   picture.compositor.set_dynamic(dynamic ? &renderer.work.dynamic : nullptr);
   picture.compositor.draw_moving(*show.world, picture.keyframe, dynamic ? &relit : nullptr,
                                  *show.visibility, Tonemap{show.exhibit.exposure},
-                                 renderer.work.moving_light, renderer.work.moving);
+                                 renderer.posed_layer, renderer.work.moving_light,
+                                 renderer.work.moving);
   renderer.posed_seconds = seconds_now() - began;
 }
 
 void finish_moving(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   Renderer& renderer = show.renderer;
+  const bool is_first = picture.posed_at < 0;
   picture.posed_at = renderer.posed_at;
   MovingPicture& moving = renderer.work.moving;
   // Else all of it is drawn anew.
-  picture.backdrop &=
-      !renderer.posed_lights.empty() || may_be_laid_over(moving.window, moving.view);
+  const bool layer = renderer.posed_layer, relit = !renderer.posed_lights.empty();
+  const PictureWindow& moves = layer ? moving.layer.window : moving.window;
+  picture.backdrop &= relit || may_be_laid_over(moves, moving.view);
   if (!picture.backdrop) return;
   float& smoothed = visitor.times.moving;
   float milliseconds = float(1000 * renderer.posed_seconds);
   smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
   std::swap(moving, picture.moving);
   picture.job.time_us = renderer.posed_us;
-  picture.unshown = true;
+  // Of what does not move in it a page that has it need not hear.
+  if (!layer || relit || is_first) picture.unshown = true;
+  picture.layer_unsent = layer;
   show.totals.posed++;
 }
 
@@ -135,7 +140,9 @@ void finish_backdrop(VisitorPicture& picture) {
   picture.backdrop = picture.costs.backdrop;
   picture.unshown = !picture.backdrop;
   picture.posed_at = -1e9;
-  if (!picture.backdrop || picture.moving.view != picture.keyframe.view) picture.moving = {};
+  if (picture.backdrop && picture.moving.view == picture.keyframe.view) return;
+  picture.moving = {};
+  picture.layer_unsent = false;
 }
 
 void merge_moving(VisitorPicture& picture) {

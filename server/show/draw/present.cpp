@@ -87,6 +87,22 @@ void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, b
   });
 }
 
+// What moves in a picture at rest is sent by itself, as `header` and `keyframe` say.
+void encode_layer(Visitor& visitor, const PacketHeader& header, const KeyframeHeader& keyframe,
+                  MovingLayer layer) {
+  Encoder* encoder = visitor.shown.encoder.get();
+  encoder->quality = header.quality;
+  encoder->pixels = 0;
+  encoder->task.run([encoder, link = visitor.link, header, keyframe, layer = std::move(layer)] {
+    double began = seconds_now(), processor_began = thread_seconds_now();
+    auto packet = std::make_shared<Packet>(keyframe_header_bytes);
+    encode_jpeg({keyframe.width, keyframe.height, layer.rgb}, header.quality, false, *packet,
+                keyframe_header_bytes);
+    add_depth(header, keyframe, layer.disparity, *packet);
+    publish(*encoder, *link, std::move(packet), began, processor_began);
+  });
+}
+
 void encode_parts(Visitor& visitor, const PacketHeader& header, const PartsOrder& order) {
   Encoder* encoder = visitor.shown.encoder.get();
   encoder->quality = header.quality;
@@ -299,11 +315,41 @@ static void send_surroundings(Show& show, Visitor& visitor) {
   encode_complete(show, visitor, header, false, 8, keyframe_header(show, view, around.camera_cuts));
 }
 
+// What moves comes before the keyframe that is without it, and in turns with what is new of that.
+static bool takes_layer(const VisitorPicture& picture, const VisitorDelivery& shown) {
+  const bool needs_none = !picture.backdrop && shown.has_layer && picture.unshown;
+  return needs_none || (picture.layer_unsent && !(picture.unshown && shown.sent_layer));
+}
+
+static void send_layer(Show& show, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
+  MovingLayer layer;
+  if (std::exchange(picture.layer_unsent, false)) layer = std::move(picture.moving.layer);
+  visitor.shown.has_layer = !layer.window.empty();
+  if (layer.window.empty()) {
+    constexpr int side = 8;  // nothing moves any more
+    layer = {
+        {0, 0, side, side}, std::vector<uint8_t>(3 * side * side), std::vector<float>(side * side)};
+  }
+  const View view = window_view(picture.keyframe.view, layer.window);
+  PacketHeader header = next_header(show, visitor, visitor.shown.seq, true);
+  header.width = uint16_t(view.width), header.height = uint16_t(view.height);
+  header.quality = uint8_t(quality_at_rest(show, visitor, picture_plan(show, visitor),
+                                           double(view.width) * view.height, false));
+  header.flags |= packet_depth | packet_layer;
+  note_lead(show, picture.job.time_us, header.time_us);
+  encode_layer(visitor, header, keyframe_header(show, view, picture.job.camera_cuts),
+               std::move(layer));
+}
+
 // Sends the newest keyframe as it is, or what is new of it where the page has it: the page shows it
 // from where its visitor is by then.
 static void present_keyframe(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   picture.fade = {};  // the page passes from one to the next
+  const bool stays = picture.job.still && picture.job.keep && !picture.keyframe.empty();
+  visitor.shown.sent_layer = stays && takes_layer(picture, visitor.shown);
+  if (visitor.shown.sent_layer) return send_layer(show, visitor);
   if (!picture.unshown && std::exchange(picture.around.unsent, false))
     return send_surroundings(show, visitor);
   if (!picture.unshown) return refine(show, visitor);
@@ -313,7 +359,8 @@ static void present_keyframe(Show& show, Visitor& visitor) {
   copy_colors(picture.keyframe, {0, 0, view.width, view.height}, visitor.shown.encoder->image);
   if (!picture.moving.empty()) lay_over(picture.moving, visitor.shown.encoder->image);
   const bool stood = job.still && view == visitor.place.last_view;
-  send(show, visitor, view, stood ? visitor.place.seq : job.seq, stood);
+  visitor.shown.has_layer &= job.still;
+  send(show, visitor, view, stood ? visitor.place.seq : job.seq, job.still);
 }
 
 void present(Show& show, Visitor& visitor) {
@@ -384,7 +431,7 @@ void present_all(Show& show) {
 bool has_to_show(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = visitor.picture;
   return is_shown(visitor) &&
-         (picture.unshown || !picture.fade.from.rgb.empty() ||
+         (picture.unshown || picture.layer_unsent || !picture.fade.from.rgb.empty() ||
           (visitor.place.last_view != visitor.shown.view && !visitor.wants.local));
 }
 

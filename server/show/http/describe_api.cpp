@@ -118,7 +118,7 @@ std::string describe_api() {
       {"offset": 4, "type": "u32", "name": "frame"}, {"offset": 8, "type": "u32", "name": "seq"},
       {"offset": 12, "type": "u64", "name": "server time, microseconds"}, {"offset": 20, "type": "u16", "name": "width"},
       {"offset": 22, "type": "u16", "name": "height"}, {"offset": 24, "type": "u8", "name": "quality"},
-      {"offset": 25, "type": "u8", "name": "flags: 1 still, 2 complete picture, 4 a keyframe with depth, 8 a wide one for what lies around"},
+      {"offset": 25, "type": "u8", "name": "flags: 1 still, 2 complete picture, 4 a keyframe with depth, 8 a wide one for what lies around, 16 what moves, to be laid over still ones: it is where its disparity is not 0"},
       {"offset": 26, "type": "u16", "name": "header length, 28 or more"}], "payload": "JPEG, perhaps smaller than was asked for: it is shown as large all the same",
       "parts": {"when": "the picture is not complete (only after hello.parts): all else is as in the picture before, scaled to this width and height", "fields": [
         {"offset": 28, "type": "u16", "name": "number of parts; 0: nothing is new but seq"},

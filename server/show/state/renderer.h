@@ -96,6 +96,7 @@ struct Renderer {
   double posed_at = 0;       // show time of its job
   uint64_t posed_us = 0;
   DynamicLights posed_lights;  // of that visitor then
+  bool posed_layer = false;    // for a page that lays over by itself what moves
   double posed_seconds = 0;    // that it took
   bool surrounds = false;      // only `job.around` of it
   PictureJob job;              // for it

@@ -73,6 +73,7 @@ struct VisitorPicture {
   bool fades_next = false;    // the next keyframe of the same view has better light: it fades in
   bool backdrop = false;      // the keyframe is without what moves (show/draw/moving.h)
   MovingPicture moving;       // that, to be laid over it; empty: nothing
+  bool layer_unsent = false;  // its layer has not been sent
   double posed_at = -1e9;     // show time of its job
   BackdropSurfaces surfaces;  // of the keyframe, while lights that move shine on it
   SettledBounce settled;      // of those of them that stay as they are

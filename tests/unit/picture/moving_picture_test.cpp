@@ -88,8 +88,8 @@ struct Rested {
     return keyframe_of(view, backdrop);
   }
   Image8 draw_over(const Stage& stage, const Keyframe& keyframe) {
-    visit.compositor.draw_moving(*stage.world, keyframe, nullptr, *stage.visibility, {}, light,
-                                 moving);
+    visit.compositor.draw_moving(*stage.world, keyframe, nullptr, *stage.visibility, {}, false,
+                                 light, moving);
     return laid_over(keyframe, moving);
   }
 };
@@ -231,6 +231,50 @@ TEST(MovingPicture, FollowsItsMesh) {
 }
 
 // What it covers begins anew, and samples of it are none of the backdrop's.
+// A layer has the colours of what moves, and its depth; elsewhere nothing is in it, nor in the
+// picture that it is laid over.
+TEST(MovingPicture, IsALayerOfItsOwn) {
+  Stage stage = make_stage();
+  View view = view_of(stage);
+  Rested rested(stage, view);
+  Keyframe keyframe = rested.draw_backdrop(stage, view);
+  const Image8 whole = rested.draw_over(stage, keyframe);
+  rested.visit.compositor.draw_moving(*stage.world, keyframe, nullptr, *stage.visibility, {}, true,
+                                      rested.light, rested.moving);
+  EXPECT_TRUE(rested.moving.empty());
+  const MovingLayer& layer = rested.moving.layer;
+  const PictureWindow& w = layer.window;
+  const View part = window_view(view, w);
+  ASSERT_EQ(part.width, w.width);
+  int there = 0, beside = 0;
+  for (int y = 0; y < w.height; y++)
+    for (int x = 0; x < w.width; x++) {
+      const size_t at = size_t(y * w.width + x);
+      const Ray ray = view_ray(view, float(x + w.left) + 0.5f, float(y + w.top) + 0.5f);
+      const Hit hit = stage.world->intersect(ray);
+      const bool ball = stage.world->object_of(hit.instance) == ball_of(stage);
+      bool inner = true;  // thin bars before it, and its silhouette, are seen at other places
+      for (int dy = -2; dy <= 2; dy++)
+        for (int dx = -2; dx <= 2; dx++) {
+          const uint32_t object =
+              stage.object_at(view, float(x + w.left + dx) + 0.5f, float(y + w.top + dy) + 0.5f);
+          inner &= (object == ball_of(stage)) == ball && stage.scene.objects[object] != "bar";
+        }
+      if (!inner) continue;
+      EXPECT_EQ(layer.disparity[at] > 0, ball) << x << ',' << y;
+      (ball ? there : beside)++;
+      if (!ball) continue;
+      const size_t in_whole = size_t((y + w.top) * width + x + w.left);
+      for (size_t c = 0; c < 3; c++) EXPECT_EQ(layer.rgb[3 * at + c], whole.rgb[3 * in_whole + c]);
+      const Projected place = project_point(part, ray.origin + hit.t * ray.direction);
+      EXPECT_NEAR(place.x, float(x) + 0.5f, 0.01f);
+      EXPECT_NEAR(place.y, float(y) + 0.5f, 0.01f);
+      EXPECT_NEAR(layer.disparity[at] * place.depth, 1, 0.02f);
+    }
+  EXPECT_GT(there, 50);
+  EXPECT_GT(beside, 50);
+}
+
 TEST(MovingPicture, WhatWasCoveredBecomesRight) {
   Stage stage = make_stage();
   View view = view_of(stage);
