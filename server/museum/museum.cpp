@@ -377,7 +377,7 @@ std::string Museum::metrics() const {
   return text;
 }
 
-int Museum::seats() const { return impl_->capacity->seats_for(1280 * 720); }
+int Museum::seats() const { return impl_->capacity->seats_for({1280 * 720, true}); }
 
 Sums Museum::read_sums(int64_t from, int64_t to) const {
   return impl_->ledger ? impl_->ledger->read(from, to) : Sums{};

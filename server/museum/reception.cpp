@@ -84,16 +84,17 @@ bool Reception::place(std::shared_ptr<Link>& link, Heard heard, size_t door,
                       std::vector<Shown>& ready) {
   const Hello& hello = *said_as<Hello>(heard);
   const double pixels = std::min(double(hello.width) * hello.height, settings_.most_pixels);
+  const SeatSize size(pixels, hello.display == "local");
   std::unique_ptr<Seat> seat;
-  if (hello.role == "kiosk") seat = capacity_->give_seat(pixels);
-  else if (queue_.size() == 0) seat = capacity_->find_seat(pixels, link->address);
+  if (hello.role == "kiosk") seat = capacity_->give_seat(size);
+  else if (queue_.size() == 0) seat = capacity_->find_seat(size, link->address);
   if (seat) {
     link->put_back(std::move(heard));
     ready.push_back({door, std::move(link), std::move(seat)});
     return true;
   }
   if (queue_.full()) return false;
-  queue_.join({std::move(link), std::move(heard), door, pixels, {}}, seconds_now());
+  queue_.join({std::move(link), std::move(heard), door, size, {}}, seconds_now());
   return true;
 }
 

@@ -23,7 +23,7 @@ void ask_for_less(Newcomer& who, double pixels) {
   hello.width = std::max(min_side, int(hello.width * scale));
   hello.height = std::max(min_side, int(hello.height * scale));
   who.hello = hear_visitor(write_message(hello));
-  who.pixels = pixels;
+  who.size.pixels = pixels;
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ bool WaitingQueue::listen(Waiting& one) {
       return false;
     }
     if (const Hello* hello = said_as<Hello>(heard)) {
-      who.pixels = double(hello->width) * hello->height;
+      who.size = {double(hello->width) * hello->height, hello->display == "local"};
       who.hello = std::move(heard);
     }
   }
@@ -71,9 +71,10 @@ std::vector<Newcomer> WaitingQueue::let_in(double now, Capacity& capacity) {
   for (Waiting& one : all_) {
     Newcomer& who = one.who;
     const std::string& address = who.link->address;
-    who.seat = capacity.find_seat(std::min(who.pixels, most_pixels_), address);
-    if (!who.seat && now - one.since > patience && who.pixels > small_pixels) {
-      who.seat = capacity.find_seat(small_pixels, address);
+    const bool local = who.size.local;
+    who.seat = capacity.find_seat({std::min(who.size.pixels, most_pixels_), local}, address);
+    if (!who.seat && now - one.since > patience && who.size.pixels > small_pixels) {
+      who.seat = capacity.find_seat({small_pixels, local}, address);
       if (who.seat) ask_for_less(who, small_pixels);
     }
     if (!who.seat) continue;

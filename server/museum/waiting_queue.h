@@ -23,9 +23,9 @@ namespace wellspring {
 // Who is welcomed as soon as there is a seat.
 struct Newcomer {
   std::shared_ptr<Link> link;
-  Heard hello;        // what they said, for the show to read
-  size_t door = 0;    // of the exhibit that they want
-  double pixels = 0;  // of their pictures
+  Heard hello;       // what they said, for the show to read
+  size_t door = 0;   // of the exhibit that they want
+  SeatSize size{0};  // of their pictures
   std::unique_ptr<Seat> seat;
 };
 

@@ -79,6 +79,18 @@ float disparity_unit(const View& view) {
   return 0.5f / (worst_units * focal);
 }
 
+float uncovered_a_metre(const Keyframe& keyframe) {
+  constexpr float of_slope = 20;  // pixels a metre that a block of one slanted surface has
+  const View& view = keyframe.view;
+  const float focal = 0.5f * float(view.height) / view.tan_half_fov;  // pixels
+  float sum = 0;
+  for (size_t i = 0; i < keyframe.nearest.size(); i++) {
+    const float parallax = focal * (keyframe.nearest[i] - keyframe.farthest[i]);  // pixels a metre
+    sum += std::clamp((parallax - of_slope) / float(Keyframe::block), 0.0f, 1.0f);
+  }
+  return sum / float(std::max<size_t>(keyframe.nearest.size(), 1));
+}
+
 static vec3 direction_at(const View& view, float across, float down) {  // of the picture, 0 to 1
   float high = view.tan_half_fov, wide = high * float(view.width) / float(view.height);
   return view.forward + view.right * (view.middle.x + wide * (2 * across - 1)) +

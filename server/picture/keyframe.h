@@ -48,6 +48,9 @@ float missing_share(const View& drawn, const View& wanted);
 // off by at most half a pixel of parallax for each metre that the eye moves.
 float disparity_unit(const View& view);
 
+// The share of the picture that appears anew beside what is nearer, for a metre that the eye moves.
+float uncovered_a_metre(const Keyframe& keyframe);
+
 // Reuses the memory of `keyframe`. `depth`: along the viewing axis, one a pixel, as Frame::depth;
 // anything that is not a positive number counts as infinitely far. Throws std::invalid_argument
 // when sizes differ.

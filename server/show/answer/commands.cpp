@@ -49,7 +49,7 @@ Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int h
   PictureWishes& wants = visitor.wants;
   PictureWishes sized = wants;
   set_size(sized, settings, width, height);
-  if (visitor.seat && !visitor.seat->resize(double(sized.width) * sized.height))
+  if (visitor.seat && !visitor.seat->resize({double(sized.width) * sized.height, wants.local}))
     return WireError{"no_room", fmt::format("there is no room for larger pictures at the moment: "
                                             "they stay {}x{}",
                                             wants.width, wants.height)};
@@ -61,8 +61,10 @@ Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int h
 // drawn in the background there are no keyframes.
 void set_display(const Show& show, Visitor& visitor, const std::string& display) {
   const bool local = display == "local" && show.settings.background;
-  if (visitor.wants.local == local) return;
-  visitor.wants.local = local;
+  PictureWishes& wants = visitor.wants;
+  if (wants.local == local) return;
+  wants.local = local;
+  if (visitor.seat) visitor.seat->resize({double(wants.width) * wants.height, local});
   visitor.picture.around = {};
   visitor.picture.layer_unsent = visitor.shown.has_layer = false;
   visitor.shown.lost = true;
@@ -84,10 +86,10 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.lang = hello.lang.empty() ? show.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = kiosk;
+  set_display(show, visitor, hello.display);
   if (Answer wrong = set_size(visitor, show.settings, hello.width, hello.height))
     visitor.link->send_text(write_error(*wrong));
   visitor.wants.parts = hello.parts.value_or(false);
-  set_display(show, visitor, hello.display);
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);

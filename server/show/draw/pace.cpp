@@ -2,6 +2,7 @@
 #include "show/draw/pace.h"
 
 #include <algorithm>
+#include <cmath>
 #include <oneapi/tbb/info.h>
 
 #include "show/state/animations.h"
@@ -198,11 +199,20 @@ DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
   return costs;
 }
 
+// By how the visitor moves just now.
+static Ageing ageing_of(const Visitor& visitor) {
+  const View& now = visitor.place.last_view;
+  const EyeMotion motion = motion_of(visitor.place.heading, now);
+  const float across = 2 * std::atan(now.tan_half_fov * float(now.width) / float(now.height));
+  return {motion.speed * visitor.picture.relief, motion.turn / across};
+}
+
 KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {
   const DrawingCosts costs = drawing_costs(show, visitor);
   double light = costs.light_seconds > 0 ? costs.light_seconds : costs.display_seconds;
   return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(show), 1),
-                       visitor.picture.job.scale);
+                       visitor.picture.job.scale,
+                       visitor.wants.local ? longest_period(ageing_of(visitor)) : finished_period);
 }
 
 VisitorDrawState draw_state(const Show& show, const Visitor& visitor) {

@@ -244,6 +244,7 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
       picture.keyframe.view == show.renderer.work.keyframe.view)
     begin_fade(picture.keyframe, show.time, picture.fade);
   std::swap(show.renderer.work.keyframe, picture.keyframe);
+  picture.relief = visitor.wants.local ? uncovered_a_metre(picture.keyframe) : 0;
   picture.around.drawn = false;
   if (job.passing || job.dynamic.empty()) picture.surfaces = {}, picture.settled = {};
   bool settles = job.still && !job.passing;  // samples of its pixels take that memory

@@ -247,10 +247,13 @@ void refine(Show& show, Visitor& visitor) {
   shown.seq = visitor.place.seq;
 }
 
-// Of a picture that was warped and has been encoded, for who asks whether there is a seat.
+// A picture that was warped, or a keyframe, has been encoded: who asks whether there is a seat
+// needs to know what it took.
 void note_cost(Show& show, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
   const double warping = std::exchange(visitor.shown.warp_core_seconds, 0.0);
+  if (visitor.wants.local && encoder.pixels > 0)
+    show.capacity->note_sent(encoder.pixels, encoder.processor_seconds);
   if (warping <= 0) return;
   show.capacity->note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
                             warping + encoder.processor_seconds);

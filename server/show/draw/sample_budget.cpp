@@ -16,8 +16,11 @@ constexpr float nearly_none = 0.1f;     // of the picture's pixels
 constexpr float most_known = 0.5f;      // likewise
 constexpr double settled_after = 2;     // seconds
 constexpr float keyframe_scales[] = {1, 0.75f, 0.5f, 0.375f};
-// Seconds from keyframe to keyframe. Beyond a tenth turns and near things uncover much.
-constexpr double shortest_period = 1 / 30.0, longest_period = 1 / 10.0;
+constexpr double shortest_period = 1 / 30.0;  // seconds from keyframe to keyframe
+// FLIP, in the mean of the picture, that a keyframe's age may add, and what a picture adds that is
+// wrong all over (cache.warp, stroll and orbit at 300 ms) or as soft as the wide keyframe.
+constexpr float borne = 0.0135f, of_uncovered = 0.45f, of_turned_to = 0.1f;
+constexpr double least_local_period = 1 / 10.0, most_local_period = 1 / 3.0;
 constexpr double sample_share = 0.3;  // of that time, at least
 constexpr double climbing = 0.7;      // of the time allowed, when a larger keyframe is drawn again
 constexpr float most_uncovered = 0.2f;  // of a picture's width, by a tour's turn
@@ -42,8 +45,14 @@ int samples_to_watch(int samples) { return int(aimed_share * samples); }
 
 double keyframe_cost(float scale) { return double(scale); }
 
-KeyframePlan plan_keyframe(double seconds, float before) {
-  constexpr double most = (1 - sample_share) * longest_period;
+double longest_period(const Ageing& ageing) {
+  const float error = of_uncovered * ageing.uncovered + of_turned_to * ageing.turned_to;
+  if (!(error > 0)) return most_local_period;  // or it is not known
+  return std::clamp(double(borne / error), least_local_period, most_local_period);
+}
+
+KeyframePlan plan_keyframe(double seconds, float before, double longest_period) {
+  const double most = (1 - sample_share) * longest_period;
   auto cost = [&](float scale) { return seconds * keyframe_cost(scale) / keyframe_cost(before); };
   auto fits = [&](float scale) { return cost(scale) <= (scale > before ? climbing * most : most); };
   const float* found = std::find_if(std::begin(keyframe_scales), std::end(keyframe_scales), fits);

@@ -28,8 +28,21 @@ struct KeyframePlan {
 };
 // Resolution falls where keyframes would come late, since what a warp does not know is worse than
 // what it shows softly. `seconds`: what drawing one of scale `before` took, as often as there are
-// visitors who move; it climbs back only where there is time to spare.
-KeyframePlan plan_keyframe(double seconds, float before);
+// visitors who move; it climbs back only where there is time to spare. longest_period: seconds,
+// beyond which they come late.
+KeyframePlan plan_keyframe(double seconds, float before, double longest_period);
+
+// What a page that draws by itself shows wrong of its visitor's way, the longer a keyframe has to
+// do: shares of the picture, a second.
+struct Ageing {
+  float uncovered = 0;  // appear beside what is nearer, and nothing knows them
+  float turned_to = 0;  // come in from the side, and the wide keyframe has them in few pixels
+};
+// Seconds that one may be used for until that shows. Who passes near things needs many; who turns
+// within the wide keyframe's reach, few.
+double longest_period(const Ageing& ageing);
+// For pictures that are finished by the server.
+inline constexpr double finished_period = 1 / 10.0;  // beyond, turns and near things uncover much
 // What drawing a keyframe of that scale takes, over one of scale 1. Points and triangles do not get
 // fewer with the pixels: 0.52 at a half and 0.36 at 3/8 (castle, one core).
 double keyframe_cost(float scale);

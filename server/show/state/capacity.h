@@ -24,16 +24,23 @@ inline constexpr double memory_share =
     0.6;  // exhibits, sockets and what nobody counts have the rest
 
 // Core-seconds of processor time for each pixel of the visitor's picture: of one that is shown
-// (warped and encoded), and of a keyframe of that size. A machine that is busy with other programs
-// so admits as many as before.
+// (warped and encoded), of a keyframe of that size, and of encoding that for a page that draws by
+// itself. A machine that is busy with other programs so admits as many as before.
 struct PictureCost {
-  double shown = 2.5e-8, drawn = 1e-7;
+  double shown = 2.5e-8, drawn = 1e-7, sent = 1.2e-8;
   bool operator==(const PictureCost&) const = default;
+};
+
+// What somebody's pictures are. local: the page draws by itself.
+struct SeatSize {
+  double pixels = 0;
+  bool local = false;
+  SeatSize(double pixels, bool local = false) : pixels(pixels), local(local) {}
 };
 
 // Cores that visitors take who walk all the time, for each pixel of their pictures; see
 // weighed_pixels().
-double cores_a_pixel(const PictureCost& cost, double rate);
+double cores_a_pixel(const PictureCost& cost, double rate, bool local);
 // What a picture costs besides its pixels, as more of these.
 double weighed_pixels(double pixels);
 // Bytes that a visitor takes, about: as picture_memory() finds it, and some.
@@ -47,19 +54,19 @@ class Seat {
   ~Seat();
   Seat(const Seat&) = delete;
   Seat& operator=(const Seat&) = delete;
-  // The visitor's picture has so many pixels from now on; false: there is no room for more of them,
-  // and nothing has changed.
-  bool resize(double pixels);
+  // The visitor's pictures are these from now on; false: there is no room for more pixels, and
+  // nothing has changed.
+  bool resize(SeatSize size);
 
  private:
   friend class Capacity;
-  Seat(std::shared_ptr<Capacity> capacity, double pixels, std::string address, bool always)
+  Seat(std::shared_ptr<Capacity> capacity, SeatSize size, std::string address, bool always)
       : capacity_(std::move(capacity)),
-        pixels_(pixels),
+        size_(size),
         address_(std::move(address)),
         always_(always) {}
   const std::shared_ptr<Capacity> capacity_;
-  double pixels_;
+  SeatSize size_;
   const std::string address_;
   const bool always_;  // whether there is room or not
 };
@@ -70,10 +77,11 @@ class Capacity : public std::enable_shared_from_this<Capacity> {
   // What a picture of so many pixels took, in core-seconds.
   void note_shown(double pixels, double seconds);
   void note_drawn(double pixels, double seconds);
+  void note_sent(double pixels, double seconds);
   // Null: there is none for so large a picture. The first visitor always gets one. An empty address
   // shares with nobody.
-  std::unique_ptr<Seat> find_seat(double pixels, const std::string& address = {});
-  std::unique_ptr<Seat> give_seat(double pixels);  // whether there is one or not
+  std::unique_ptr<Seat> find_seat(SeatSize size, const std::string& address = {});
+  std::unique_ptr<Seat> give_seat(SeatSize size);  // whether there is one or not
   int seats_of(const std::string& address) const;  // taken
   struct Standing {
     int seats = 0;                 // taken
@@ -82,9 +90,8 @@ class Capacity : public std::enable_shared_from_this<Capacity> {
     PictureCost cost;
   };
   Standing standing() const;
-  // How many visitors with pictures of so many pixels there are seats for, with those who are
-  // there.
-  int seats_for(double pixels) const;
+  // How many visitors with such pictures there are seats for, with those who are there.
+  int seats_for(SeatSize size) const;
 
  private:
   friend class Seat;
@@ -95,20 +102,23 @@ class Capacity : public std::enable_shared_from_this<Capacity> {
   };
   struct Part {  // what some visitors have together
     int seats = 0;
-    double weight = 0, bytes = 0;
-    void add(double pixels, int count);
+    double shown_weight = 0, local_weight = 0;  // weighed pixels of either kind of picture
+    double bytes = 0;
+    void add(SeatSize size, int count);
   };
   // All with the lock held.
-  double each() const;
-  bool fits(double pixels, const std::string& address) const;
-  bool may_grow(const Seat& seat, double pixels) const;
-  void add(double pixels, const std::string& address, int count);
+  double cores_of(SeatSize size) const;
+  double cores_of(const Part& part) const;
+  bool fits(SeatSize size, const std::string& address) const;
+  bool may_grow(const Seat& seat, SeatSize size) const;
+  void add(SeatSize size, const std::string& address, int count);
   double taken_cores(bool from_elsewhere) const;
-  std::unique_ptr<Seat> seat(double pixels, const std::string& address, bool always);
+  std::unique_ptr<Seat> seat(SeatSize size, const std::string& address, bool always);
   const CapacitySettings settings_;
   const double cores_, memory_;
   mutable std::mutex mutex_;
-  Measured shown_{PictureCost{}.shown}, drawn_{PictureCost{}.drawn};
+  PictureCost cost() const { return {shown_.value, drawn_.value, sent_.value}; }
+  Measured shown_{PictureCost{}.shown}, drawn_{PictureCost{}.drawn}, sent_{PictureCost{}.sent};
   Part all_;
   std::map<std::string, Part> parts_;  // by address
 };

@@ -68,6 +68,7 @@ struct VisitorPicture {
   float drawn_fps = 0;
   Image8 image;       // until it is shown
   Keyframe keyframe;  // what pictures are warped from until the next
+  float relief = 0;   // of it: uncovered_a_metre()
   Surroundings around;
   Fade fade;                  // to the keyframe
   bool fades_next = false;    // the next keyframe of the same view has better light: it fades in

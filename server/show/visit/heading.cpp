@@ -64,6 +64,13 @@ float expected_turn(const Heading& heading, const View& now, double seconds) {
       std::clamp(dot(now.forward, expected_view(heading, now, seconds).forward), -1.0f, 1.0f));
 }
 
+EyeMotion motion_of(const Heading& heading, const View& now) {
+  constexpr float seconds = 0.1f;
+  const View ahead = expected_view(heading, now, seconds);
+  return {length(ahead.position - now.position) / seconds,
+          expected_turn(heading, now, seconds) / seconds};
+}
+
 View wide_view(const View& now) {
   View left = now, right = now;
   for (auto [view, turn] : {std::pair(&left, widest_turn), {&right, -widest_turn}}) {

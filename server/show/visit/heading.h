@@ -36,6 +36,11 @@ float expected_turn(const Heading& heading, const View& now, double seconds);
 std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,
                                  double seconds);
 
+struct EyeMotion {
+  float speed = 0, turn = 0;  // metres and radians a second
+};
+EyeMotion motion_of(const Heading& heading, const View& now);
+
 // A page that turns by itself gets a view of all that it may turn to within a moment, in some of
 // the pixels.
 View wide_view(const View& now);

@@ -144,7 +144,7 @@ TEST_F(WaitingQueueTest, WhoLeavesOrIsGoneIsForgottenAndAnotherHelloCounts) {
   free_seats(3);
   ASSERT_EQ(let_in(0).size(), 1u);
   EXPECT_EQ(inside[0].link, resized);
-  EXPECT_EQ(inside[0].pixels, 64 * 32);
+  EXPECT_EQ(inside[0].size.pixels, 64 * 32);
   EXPECT_EQ(said_as<Hello>(inside[0].hello)->width, 64);
   std::string why;
   EXPECT_TRUE(leaving->close_requested(why));

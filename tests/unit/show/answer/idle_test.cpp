@@ -170,7 +170,8 @@ TEST_F(Idle, WhoRestsOrHasGoneGivesTheirSeatBack) {
   EXPECT_EQ(show->kept.size(), 1u);
   EXPECT_EQ(capacity->standing().seats, 1);
   const auto standing = capacity->standing();
-  EXPECT_NEAR(standing.busy, cores_a_pixel(standing.cost, 15) * weighed_pixels(64 * 32), 1e-9)
+  EXPECT_NEAR(standing.busy, cores_a_pixel(standing.cost, 15, false) * weighed_pixels(64 * 32),
+              1e-9)
       << "of the size that it has";
   run(26);
   EXPECT_EQ(capacity->standing().seats, 0);

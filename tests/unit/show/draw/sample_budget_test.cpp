@@ -82,9 +82,35 @@ TEST(PlanKeyframe, ResolutionFallsBeforeKeyframesComeLate) {
       {0.35, 0.375f, 0.375f, 0.1},
   };
   for (const auto& one : table) {
-    KeyframePlan plan = plan_keyframe(one.seconds, one.before);
+    KeyframePlan plan = plan_keyframe(one.seconds, one.before, finished_period);
     EXPECT_EQ(plan.scale, one.scale) << one.seconds << " at " << one.before;
     EXPECT_NEAR(plan.period, one.period, 1e-6) << one.seconds << " at " << one.before;
+  }
+}
+
+// A page that draws by itself goes without a new keyframe until what it cannot know would show.
+TEST(PlanKeyframe, WhoPassesNearThingsNeedsMany) {
+  struct {
+    Ageing ageing;
+    double least, most;  // seconds
+  } const table[] = {
+      {{0, 0}, 0.33, 0.34},         // nothing changes
+      {{0, 0.2f}, 0.33, 0.34},      // looks round slowly
+      {{0, 1}, 0.12, 0.15},         // a picture's width a second
+      {{0, 20}, 0.1, 0.1},          // spins
+      {{0.05f, 0}, 0.33, 0.34},     // walks through an empty hall
+      {{0.18f, 0.1f}, 0.13, 0.17},  // strolls past show-cases
+      {{1, 0}, 0.1, 0.1},           // along a fence
+      {{NAN, NAN}, 0.1, 0.34},
+  };
+  for (const auto& one : table) {
+    const double period = longest_period(one.ageing);
+    EXPECT_GE(period, one.least) << one.ageing.uncovered << " " << one.ageing.turned_to;
+    EXPECT_LE(period, one.most) << one.ageing.uncovered << " " << one.ageing.turned_to;
+    // The same cost leaves it more pixels than it leaves a finished picture.
+    for (double seconds : {0.08, 0.12, 0.2})
+      EXPECT_GE(plan_keyframe(seconds, 1, period).scale,
+                plan_keyframe(seconds, 1, finished_period).scale);
   }
 }
 
@@ -92,8 +118,9 @@ TEST(PlanKeyframe, ResolutionFallsBeforeKeyframesComeLate) {
 TEST(PlanKeyframe, Settles) {
   for (double full = 0.01; full < 0.4; full += 0.003)
     for (float before : {1.0f, 0.75f, 0.5f, 0.375f}) {
-      float first = plan_keyframe(full * keyframe_cost(before), before).scale;
-      EXPECT_EQ(plan_keyframe(full * keyframe_cost(first), first).scale, first) << full;
+      float first = plan_keyframe(full * keyframe_cost(before), before, finished_period).scale;
+      EXPECT_EQ(plan_keyframe(full * keyframe_cost(first), first, finished_period).scale, first)
+          << full;
     }
 }
 

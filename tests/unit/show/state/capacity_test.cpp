@@ -49,6 +49,21 @@ TEST(Capacity, SeatsAreAsManyAsTheCoresServeAtTheLeastRate) {
   }
 }
 
+TEST(Capacity, WhosePageDrawsByItselfTakesLess) {
+  auto capacity = measured(4, 20, {.rate = 15, .cores = 2});
+  for (int i = 0; i < 5000; i++) capacity->note_sent(pixels, 0.005);
+  // 2 * (0.5 * 20 + 5) ms, of 1.7 cores.
+  EXPECT_EQ(capacity->seats_for({pixels, true}), 56);
+  EXPECT_EQ(capacity->seats_for(pixels), 18);
+  auto seat = capacity->find_seat({pixels, true});
+  const double busy = capacity->standing().busy;
+  EXPECT_NEAR(busy, 0.03, 1e-3);
+  EXPECT_TRUE(seat->resize({pixels, false})) << "a device that cannot do it is served all the same";
+  EXPECT_NEAR(capacity->standing().busy, 0.09, 1e-3);
+  EXPECT_TRUE(seat->resize({pixels, true}));
+  EXPECT_DOUBLE_EQ(capacity->standing().busy, busy);
+}
+
 TEST(Capacity, TheUpperBoundHoldsWhateverTheMachineCould) {
   auto capacity = measured(0.1, 0.1, {.most = 3, .cores = 64});
   EXPECT_EQ(seats_of(*capacity, pixels), 3u);
