@@ -2,11 +2,10 @@
 // The WebSocket to the server: says hello, hands messages on, and comes back by itself when the
 // line breaks.
 
-// handlers: {ready: a promise that is waited for, optional, hello() -> message, open(),
-// lost(seconds_to_retry), message(object), binary(ArrayBuffer), rests() -> whether the server is
-// silent since nobody is here; optional}
+// handlers: {hello() -> message, open(), lost(seconds_to_retry), message(object),
+// binary(ArrayBuffer), rests() -> whether the server is silent since nobody is here; optional}
 export function make_connection(handlers) {
-  let socket = null, retry = 0, timer = 0, heard = 0, ended = false, ready = false;
+  let socket = null, retry = 0, timer = 0, heard = 0, ended = false;
 
   function address() {
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
@@ -56,7 +55,7 @@ export function make_connection(handlers) {
     }
   }, 2000);
   document.addEventListener('visibilitychange', () => {
-    if (ready && !document.hidden && !socket) { retry = 0; open(); }
+    if (!document.hidden && !socket) { retry = 0; open(); }
     heard = performance.now();
   });
   addEventListener('pagehide', () => {
@@ -65,12 +64,7 @@ export function make_connection(handlers) {
   });
   addEventListener('pageshow', (event) => { if (event.persisted) { ended = false; open(); } });
 
-  const begin = () => {
-    ready = true;
-    open();
-  };
-  if (handlers.ready) handlers.ready.then(begin);
-  else begin();
+  open();
   return {
     send(message) {
       if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));

@@ -10,6 +10,7 @@ import { make_comfort } from './comfort.js';
 import { make_connection } from './connection.js';
 import { make_controls } from './controls.js';
 import { make_description } from './describe.js';
+import { make_display } from './display/display.js';
 import { by_id } from './element.js';
 import { make_gamepad } from './gamepad.js';
 import { make_group } from './group.js';
@@ -56,12 +57,9 @@ function note_shown(shown) {
 }
 
 // Draws the pictures here, where that is asked for and can be; null: they come finished.
-let display = null;
-async function load_display() {
-  const { make_display } = await import('./display/display.js');
-  display = make_display(canvas, { on_shown: note_shown, round_trip: () => round_trip });
-  document.body.dataset.display = display ? 'local' : 'server';
-}
+const display = asked_display === 'local'
+  ? make_display(canvas, { on_shown: note_shown, round_trip: () => round_trip }) : null;
+document.body.dataset.display = display ? 'local' : 'server';
 const finished = make_picture(canvas, note_shown);
 
 const sound = make_sound(by_id('sound-button'), {
@@ -153,7 +151,6 @@ const presence = make_presence({
 }, () => lang);
 
 connection = make_connection({
-  ready: asked_display === 'local' ? load_display() : null,
   hello,
   open() {
     notice('');
