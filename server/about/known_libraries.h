@@ -54,7 +54,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libvorbis", "Vorbis", "BSD-3-Clause", "recordings, for libsndfile"},
     {"libvpx.", "libvpx", "BSD-3-Clause", "video"},
     {"libwebp.", "WebP", "BSD-3-Clause", "WebP pictures"},
-    {"libz.", "zlib", "Zlib", "compression, for OpenEXR"},
+    {"libz.", "zlib", "Zlib", "compression"},
     {"libzstd.", "Zstandard", "BSD-3-Clause", "light that packages carry"},
     // Headers that are compiled in.
     {"Boost", "Boost (Asio, Beast)", "BSL-1.0", "HTTP and WebSocket"},

@@ -7,15 +7,9 @@
 #include <optional>
 
 #include "stream/address.h"
+#include "stream/header_text.h"
 
 namespace wellspring {
-
-static std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
-  return out;
-}
 
 struct Authority {
   std::string host, port;
@@ -126,15 +120,8 @@ bool is_proxy_header(std::string_view name) {
 }
 
 bool offers_protocol(std::string_view header, std::string_view wanted) {
-  while (!header.empty()) {
-    const size_t end = std::min(header.find(','), header.size());
-    std::string_view offer = header.substr(0, end);
-    header.remove_prefix(std::min(end + 1, header.size()));
-    while (!offer.empty() && (offer.front() == ' ' || offer.front() == '\t'))
-      offer.remove_prefix(1);
-    while (!offer.empty() && (offer.back() == ' ' || offer.back() == '\t')) offer.remove_suffix(1);
-    if (offer == wanted) return true;
-  }
+  while (!header.empty())
+    if (take_item(header) == wanted) return true;
   return false;
 }
 

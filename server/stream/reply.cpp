@@ -65,7 +65,11 @@ void finish_reply(const HttpQuestion& question, HttpReply& reply) {
       etag != reply.headers.end() && reply.status == 200 && !question.if_none_match.empty() &&
       etag_matches(question.if_none_match, etag->second))
     reply.status = 304;
-  if (reply.status == 304) reply.body.clear(), reply.file.reset();
+  if (reply.status == 304) {
+    reply.body.clear();
+    reply.file.reset();
+    reply.headers.erase("Content-Encoding");
+  }
   if (reply.status == 200 && reply.file) narrow_to_range(question, reply);
   reply.headers.try_emplace("Cache-Control", "no-cache");
   std::erase_if(reply.headers, [&](const auto& header) {

@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "stream/encoding.h"
 #include "stream/origin.h"
 #include "stream/reply.h"
 #include "stream/session.h"
@@ -35,6 +36,15 @@ static std::string http_date() {
 
 static bool is_posted_path(std::string_view target) {
   return target.substr(0, target.find('?')) == posted_path;
+}
+
+// A header that is a list may come in several lines.
+static std::string list_of(const Request& request, beast::string_view name) {
+  std::string list;
+  const auto range = request.equal_range(name);
+  for (auto it = range.first; it != range.second; ++it)
+    list += (list.empty() ? "" : ",") + std::string(view(it->value()));
+  return list;
 }
 
 static const char* allowed_methods(const Request& request) {
@@ -129,6 +139,7 @@ net::awaitable<void> Session::serve_http() {
     }
     question.if_none_match = std::string(request[http::field::if_none_match]);
     question.accept = std::string(request[http::field::accept]);
+    question.accept_encoding = list_of(request, "Accept-Encoding");
     question.range = std::string(request[http::field::range]);
     question.if_range = std::string(request[http::field::if_range]);
     question.authorization = std::string(request[http::field::authorization]);
@@ -168,11 +179,7 @@ static bool is_proxied(const Request& request) {
 
 // Nothing for a proxy's header that names no address.
 std::optional<Caller> Session::find_caller(const Request& request) const {
-  std::string forwarded;
-  const auto range = request.equal_range("X-Forwarded-For");
-  for (auto it = range.first; it != range.second; ++it)
-    forwarded += (forwarded.empty() ? "" : ",") + std::string(view(it->value()));
-  const auto client = find_client(address_, forwarded, core_->proxies);
+  const auto client = find_client(address_, list_of(request, "X-Forwarded-For"), core_->proxies);
   if (!client) return std::nullopt;
   Caller caller{*client, any_holds(core_->trusted, *client), name_};
   if (*client != address_)
@@ -317,8 +324,11 @@ net::awaitable<HttpReply> Session::ask(HttpQuestion question) {
     const Doors& doors = core->doors;
     try {
       if (!run) asker->answer(make_refusal(503, "server stops"));
-      else if (!doors.answer_later || !doors.answer_later(question, asker))
-        asker->answer(doors.answer(question));
+      else if (!doors.answer_later || !doors.answer_later(question, asker)) {
+        HttpReply made = doors.answer(question);
+        encode_reply(question, made);
+        asker->answer(std::move(made));
+      }
     } catch (const std::exception& e) {
       log::error("answer to {}: {}", question.path, e.what());
       asker->answer(make_refusal(500, "internal error"));

@@ -12,7 +12,7 @@
 //   (413), no Transfer-Encoding but chunked (501); targets as in target.h. /api/v1/admin/announce
 //   takes a POST and nothing else: a body of at most 16 KiB (413) of application/json (415), Origin
 //   as in origin.h (403). Every reply carries the headers of reply.h; ETag and If-None-Match make a
-//   304.
+//   304. Text goes as gzip to who accepts that (encoding.h).
 // - WebSocket at /api/v1/visit and /api/v1/eye; a plain GET there is told 426. Origin as in
 // origin.h (403).
 //   Subprotocol wellspring.v1 is echoed when offered; offering none is fine, offering only others

@@ -16,8 +16,9 @@ struct HttpQuestion {
   std::string method;  // "GET", "HEAD", ...
   std::string path;    // percent-decoded, starts with '/', holds no "..", no NUL, no '\\'
   std::map<std::string, std::string> query;  // percent-decoded; the last of equal names
-  std::string if_none_match, range, if_range, accept, authorization;  // headers of those names
-  std::string body;                                                   // of a POST: what was posted
+  // Headers of those names.
+  std::string if_none_match, range, if_range, accept, accept_encoding, authorization;
+  std::string body;     // of a POST: what was posted
   bool local = false;   // from this machine itself, and through no proxy (stream/origin.h)
   std::string address;  // of who asks, without its port
 };
@@ -32,6 +33,7 @@ struct HttpReply {
   int status = 200;
   std::string content_type = "application/json; charset=utf-8";
   std::string body;
+  std::string gzip;              // the body as gzip, where that is kept; else it is made
   std::optional<FilePart> file;  // instead of `body`, and never held in memory as a whole
   std::map<std::string, std::string> headers;  // Cache-Control, ETag, Retry-After, ...
 };

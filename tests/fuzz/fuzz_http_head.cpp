@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Target of a request, then Host, Origin, Sec-WebSocket-Protocol and Range, a line each.
+// Target of a request, then Host, Origin, Sec-WebSocket-Protocol, Range and Accept-Encoding, a line
+// each.
 #include "fuzz/fuzz.h"
+#include "stream/encoding.h"
 #include "stream/origin.h"
 #include "stream/range.h"
 #include "stream/target.h"
@@ -29,9 +31,13 @@ void fuzz_http_head(Bytes bytes) {
           "a name of a host has letters that can be shown anywhere");
   origin_allowed({origin}, host, {"https://tickets.example"});
   offers_protocol(text_of(take_until(bytes, '\n')), "wellspring.v1");
+  const std::string asked_range = text_of(take_until(bytes, '\n'));
   for (uint64_t size : {uint64_t(0), uint64_t(1), uint64_t(1000), ~uint64_t(0)})
-    if (const auto range = read_range(text_of(bytes), size))
+    if (const auto range = read_range(asked_range, size))
       require(range->begin <= size && range->size <= size - range->begin, "ranges lie in the file");
+  const std::string codings = text_of(bytes);
+  if (wants_gzip(codings))
+    require(codings.find_first_of("*zZ") != std::string::npos, "gzip goes to who names it");
 }
 
 }  // namespace wellspring::fuzz

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // HTTP as scripts and browsers use it, and as attackers do.
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import http from 'node:http';
 import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { gunzipSync } from 'node:zlib';
 import { Visitor, patience, run, source, start_server } from '../server.mjs';
 
 const token = 'a token of the tests';
@@ -27,6 +29,18 @@ function raw(text) {
     socket.on('close', () => resolve(reply.split('\r\n')[0]));
     socket.on('error', reject);
     socket.setTimeout(20000 * patience, () => socket.destroy());
+  });
+}
+
+// What is on the line: fetch() unpacks.
+function on_the_line(path, headers = {}, method = 'GET') {
+  return new Promise((resolve, reject) => {
+    http.request(server.url + path, { method, headers, agent: false }, (reply) => {
+      const parts = [];
+      reply.on('data', (part) => parts.push(part));
+      reply.on('end', () => resolve({ status: reply.statusCode, headers: reply.headers,
+        body: Buffer.concat(parts) }));
+    }).on('error', reject).end();
   });
 }
 
@@ -102,6 +116,64 @@ test('pages, their types, their caching and their policy', async () => {
     const again = await get(path, { headers: { 'if-none-match': reply.headers.get('etag') } });
     assert.equal(again.status, 304, path);
   }
+});
+
+test('text goes as gzip to those who take it, and is the same', async () => {
+  const gzip = { 'accept-encoding': 'gzip, deflate, br' };
+  for (const path of ['/', '/read', '/visit.js', '/copy.js', '/style.css', '/icon.svg', '/no.html',
+      '/api/v1/', '/api/v1/exhibits/castle', '/api/v1/exhibits/castle/map']) {
+    const accept = path === '/no.html' ? { accept: 'text/html' } : {};
+    const plain = await on_the_line(path, accept);
+    const packed = await on_the_line(path, { ...accept, ...gzip });
+    assert.equal(packed.status, plain.status, path);
+    assert.equal(packed.headers['content-encoding'], 'gzip', path);
+    assert.equal(plain.headers['content-encoding'], undefined, path);
+    assert.ok(packed.body.length < plain.body.length, path);
+    assert.ok(gunzipSync(packed.body).equals(plain.body), path);
+    for (const { headers, body } of [plain, packed]) {
+      assert.match(headers.vary, /\bAccept-Encoding$/, path);
+      assert.equal(Number(headers['content-length']), body.length, path);
+    }
+    const head = await on_the_line(path, { ...accept, ...gzip }, 'HEAD');
+    for (const name of ['content-encoding', 'content-length', 'content-type', 'etag', 'vary'])
+      assert.equal(head.headers[name], packed.headers[name], `${name} of ${path}`);
+    assert.equal(head.body.length, 0);
+  }
+  const map = await on_the_line('/api/v1/exhibits/castle/map', gzip);
+  assert.ok(map.body.length < 5000, `${map.body.length} bytes`);
+});
+
+test('each form of a text has a tag of its own', async () => {
+  const gzip = { 'accept-encoding': 'gzip' }, path = '/visit.js';
+  const plain = await on_the_line(path), packed = await on_the_line(path, gzip);
+  const tags = [plain, packed].map(({ headers }) => headers.etag);
+  assert.notEqual(tags[0], tags[1]);
+  const status = async (tag, headers) =>
+    (await on_the_line(path, { 'if-none-match': tag, ...headers })).status;
+  assert.deepEqual([await status(tags[0]), await status(tags[1])], [304, 200]);
+  assert.deepEqual([await status(tags[0], gzip), await status(tags[1], gzip)], [200, 304]);
+  assert.equal(await status(`W/${tags[1]}`, gzip), 304, 'as a proxy may have weakened it');
+  const known = await on_the_line(path, { 'if-none-match': tags[1], ...gzip });
+  assert.deepEqual([known.headers.etag, known.headers.vary, known.headers['content-encoding']],
+      [tags[1], 'Accept-Encoding', undefined]);
+});
+
+test('what is no text, or not wanted as gzip, goes as it is', async () => {
+  const script = readFileSync(join(source, 'web', 'visit.js'));
+  for (const header of ['identity', 'br', 'gzip;q=0', 'gzip;q=0, *', '*;q=0', 'gzip;q=many',
+      'gzip;q=0.5, identity']) {
+    const reply = await on_the_line('/visit.js', { 'accept-encoding': header });
+    assert.equal(reply.headers['content-encoding'], undefined, header);
+    assert.ok(reply.body.equals(script), header);
+  }
+  const all = { 'accept-encoding': '*' };
+  const picture = '/api/v1/exhibits/castle/files/book/plan.jpg';
+  for (const path of ['/kiosk/well.jpg', picture, '/healthz']) {
+    const { headers } = await on_the_line(path, all);
+    assert.deepEqual([headers['content-encoding'], headers.vary], [undefined, undefined], path);
+  }
+  const part = await on_the_line(picture, { ...all, range: 'bytes=10-19' });
+  assert.deepEqual([part.status, part.body.length], [206, 10]);
 });
 
 test('what is not there, and what may not be asked', async () => {

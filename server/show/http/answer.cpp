@@ -150,6 +150,7 @@ HttpReply answer_page(const PageFile& page, const HttpQuestion& question) {
   reply.headers["ETag"] = page.etag;
   reply.headers["Cache-Control"] = "no-cache";
   reply.body = page.body;
+  reply.gzip = page.gzip;
   return reply;
 }
 

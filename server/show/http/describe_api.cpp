@@ -17,7 +17,7 @@ std::string describe_api() {
     {"method": "GET", "path": "/status", "answers": "a page for the technician"},
     {"method": "GET", "path": "/healthz", "answers": "200 {\"status\":\"ok\"} while it can serve; 503 and loading, starting or draining"},
     {"method": "GET", "path": "/metrics", "headers": "as /api/v1/status", "answers": "Prometheus text"},
-    {"method": "GET", "path": "/api/v1/", "answers": "this description"},
+    {"method": "GET", "path": "/api/v1/", "answers": "this description; like all text that is not short, as gzip to who accepts that"},
     {"method": "GET", "path": "/e/ID", "answers": "the visitor's page of one of several exhibits, which / lists then"},
     {"method": "GET", "path": "/api/v1/exhibits", "answers": "what there is to visit; failed: [{id, problems: for who may read /api/v1/status}]"},
     {"method": "GET", "path": "/api/v1/exhibits/ID", "answers": "title, languages, poster: address of a picture, viewpoints, stories, tours, lamps, credits; objects: [{id, title, position, text, story, provenance: [{element of Dublin Core, value}], manifest: IIIF, around: true, door: {exhibit, viewpoint}}]; animations: [{id, title, play: loop or touch, object, shared}]; day: {from, to, at} hours or null; book: {topics, partners, presentations} or null"},

@@ -8,6 +8,7 @@
 
 #include "base/load_error.h"
 #include "base/rng.h"
+#include "wire/gzip.h"
 
 namespace wellspring {
 
@@ -26,6 +27,13 @@ const std::map<std::string, std::string> content_types = {
     {".webmanifest", "application/manifest+json"},
     {".json", "application/json; charset=utf-8"},
     {".woff2", "font/woff2"}};
+
+PageFile make_page(const std::string& content_type, std::string body) {
+  PageFile page{content_type, std::move(body), {}};
+  page.etag = make_etag(page.body);
+  if (is_text(content_type)) page.gzip = gzip(page.body);
+  return page;
+}
 
 }  // namespace
 
@@ -46,16 +54,16 @@ std::map<std::string, PageFile> load_pages(const std::string& folder) {
     std::ifstream in(entry.path(), std::ios::binary);
     std::stringstream body;
     body << in.rdbuf();
-    PageFile file{type->second, body.str(), make_etag(body.str())};
-    pages["/" + fs::relative(entry.path(), folder, ec).generic_string()] = std::move(file);
+    pages["/" + fs::relative(entry.path(), folder, ec).generic_string()] =
+        make_page(type->second, body.str());
   }
   if (!pages.contains("/index.html")) throw LoadError(folder, "", "holds no index.html");
   pages["/"] = pages["/index.html"];
-  PageFile& inner = pages[exhibit_page] = pages["/index.html"];
+  std::string inner = pages["/index.html"].body;
   const std::string head = "<head>";
-  if (const size_t at = inner.body.find(head); at != std::string::npos)
-    inner.body.insert(at + head.size(), "\n  <base href=\"../\">");
-  inner.etag = make_etag(inner.body);
+  if (const size_t at = inner.find(head); at != std::string::npos)
+    inner.insert(at + head.size(), "\n  <base href=\"../\">");
+  pages[exhibit_page] = make_page(content_types.at(".html"), std::move(inner));
   if (auto icon = pages.find("/icon.svg"); icon != pages.end())  // asked for without being named
     pages.try_emplace("/favicon.ico", icon->second);
   for (const char* name : {"/kiosk", "/status", "/read"})

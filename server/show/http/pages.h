@@ -9,6 +9,7 @@ namespace wellspring {
 
 struct PageFile {
   std::string content_type, body, etag;
+  std::string gzip{};  // of text, where that is smaller than the body
 };
 
 // Key of the visitor's page as it is at /e/ID: what it names lies one folder above.
