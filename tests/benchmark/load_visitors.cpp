@@ -4,9 +4,6 @@
 // Pictures a second of each, the least over the most, the longest time that anybody was without
 // one, and the time from an input to its picture, of all.
 #include <algorithm>
-#include <mutex>
-#include <stdexcept>
-#include <thread>
 
 #include "report.h"
 #include "stream_server.h"
@@ -17,30 +14,10 @@ namespace {
 
 constexpr int width = 640, height = 360;
 
-std::vector<Stroll> stroll_together(uint16_t port, int visitors, double seconds) {
-  std::vector<Stroll> seen{size_t(visitors)};
-  std::string problem;
-  std::mutex mutex;
-  {
-    std::vector<std::jthread> threads;
-    for (int i = 0; i < visitors; i++)
-      threads.emplace_back([&, i] {
-        try {
-          StrollPlan plan{port, width, height, 3, seconds, 0.7 * i};
-          seen[size_t(i)] = stroll_through(plan);
-        } catch (const std::exception& error) {
-          std::lock_guard lock(mutex);
-          problem = error.what();
-        }
-      });
-  }
-  if (!problem.empty()) throw std::runtime_error(problem);
-  return seen;
-}
-
 void measure(BenchReport& report, const BenchOptions& options, int visitors) {
   ServerProcess server(options, "castle");
-  const std::vector<Stroll> seen = stroll_together(server.port, visitors, options.quick ? 6 : 20);
+  const std::vector<Stroll> seen =
+      stroll_together({server.port, width, height, 3, options.quick ? 6.0 : 20.0}, visitors);
   std::vector<double> rates, latencies, gaps;
   for (const Stroll& one : seen) {
     rates.push_back(one.fps());

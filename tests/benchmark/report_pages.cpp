@@ -446,6 +446,32 @@ ReportPage load_visitors_page() {
                         {"server_memory", "memory of the server"}}}}};
 }
 
+ReportPage load_seats_page() {
+  return {
+      "load.seats",
+      "How many visitors does a machine seat whose pages draw by themselves? They stroll through "
+      "the castle, and share the cores with the server.",
+      {"Rate: keyframes, or finished pictures, for each second in which a visitor walks.",
+       "Fairness: those of whoever got the fewest, over those of whoever got the most.",
+       "Cores: that the server took, of all. Seats: what it says (1280x720, local) by then.",
+       "Wanted on two cores, all walking: 4 at 1280x720 with 6 a second, 8 with 3, 20 at 640x360 "
+       "with 4, fairness 0.85; a third walking: 12 seats at 1280x720."},
+      {{.caption = "",
+        .rows = {{"visitors", "visitors"},
+                 {"size", "size"},
+                 {"walking", "walking"},
+                 {"display", "display"}},
+        .columns = {{"rate", "of each, median", 1, "1/s"},
+                    {"least_rate", "of whoever got the fewest", 1, "1/s"},
+                    {"fairness", "fairness"},
+                    {"longest_gap_ms", "longest time without one"},
+                    {"picture_bytes", "one, median", 1e-3, "kB"},
+                    {"bandwidth", "of each"},
+                    {"cores", "cores"},
+                    {"seats", "seats"},
+                    {"server_memory", "memory of the server"}}}}};
+}
+
 std::vector<ReportPage> declared_pages() {
   return {stream_page(),
           avatar_page(),
@@ -474,6 +500,7 @@ std::vector<ReportPage> declared_pages() {
           show_storyteller_page(),
           show_load_page(),
           load_visitors_page(),
+          load_seats_page(),
           light_frame_page(),
           light_scaling_page(),
           splat_page(),

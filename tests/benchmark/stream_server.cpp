@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stream_server.h"
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <algorithm>
+#include <fstream>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <spawn.h>
@@ -75,6 +76,15 @@ double ServerProcess::resident() const {
   return pages * double(sysconf(_SC_PAGESIZE));
 }
 
+double ServerProcess::core_seconds() const {
+  std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+  std::string word;
+  double user = 0, system = 0;
+  for (int i = 0; i < 13; i++) file >> word;  // its name has no spaces
+  file >> user >> system;
+  return (user + system) / double(sysconf(_SC_CLK_TCK));
+}
+
 std::string fetch(uint16_t port, const std::string& path) {
   int connection = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -94,7 +104,7 @@ std::string fetch(uint16_t port, const std::string& path) {
   return head == std::string::npos ? "" : text.substr(head + 4);
 }
 
-void join_visit(WsClient& client, uint16_t port, int width, int height) {
+void join_visit(WsClient& client, uint16_t port, int width, int height, bool local) {
   WsTarget target;
   target.port = port;
   client.connect(target);
@@ -103,6 +113,7 @@ void join_visit(WsClient& client, uint16_t port, int width, int height) {
   hello.lang = "en";
   hello.width = width, hello.height = height;
   hello.parts = true;
+  if (local) hello.display = "local";
   client.send_text(write_message(hello));
 }
 

@@ -22,7 +22,8 @@ class ServerProcess {
   ~ServerProcess();
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;
-  double resident() const;  // memory in bytes
+  double resident() const;      // memory in bytes
+  double core_seconds() const;  // of processor time so far
   uint16_t port = 0;
   double started = 0;  // seconds_now() when its process began
 
@@ -31,8 +32,9 @@ class ServerProcess {
   std::optional<OwnFolder> cache_;
 };
 
-// Opens a visit there, as a page does, of pictures of this size.
-void join_visit(WsClient& client, uint16_t port, int width = 1280, int height = 720);
+// Opens a visit there, as a page does, of pictures of this size. local: the page draws by itself.
+void join_visit(WsClient& client, uint16_t port, int width = 1280, int height = 720,
+                bool local = false);
 
 // The body of what it answers; empty where it does not. `path` begins with a slash.
 std::string fetch(uint16_t port, const std::string& path);

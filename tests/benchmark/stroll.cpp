@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <mutex>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <utility>
 
 #include "base/clock.h"
@@ -27,6 +30,12 @@ Input stroll(double t, uint32_t seq, double interval) {
   return input;
 }
 
+// Everybody walks and stands for a while, in turns.
+static bool walks(const StrollPlan& plan, double t) {
+  constexpr double turn = 9;  // seconds
+  return std::fmod(t + 1.7 * plan.phase, turn) < plan.walking * turn;
+}
+
 double Stroll::fps() const {
   if (arrivals.size() < 2) return 0;
   return double(arrivals.size() - 1) / (arrivals.back() - arrivals.front());
@@ -42,7 +51,7 @@ std::vector<double> Stroll::gaps() const {
 Stroll stroll_through(const StrollPlan& plan, const std::function<void()>& counting) {
   const double input_interval = 1.0 / 30;
   WsClient client;
-  join_visit(client, plan.port, plan.width, plan.height);
+  join_visit(client, plan.port, plan.width, plan.height, plan.local);
   Stroll seen;
   std::deque<std::pair<uint32_t, double>> asked;  // seq, when sent
   std::vector<uint8_t> before;                    // the picture before
@@ -58,7 +67,10 @@ Stroll stroll_through(const StrollPlan& plan, const std::function<void()>& count
       if (counting) counting();
     }
     if (now >= next_input) {
-      client.send_text(write_message(stroll(t + plan.phase, ++seq, input_interval)));
+      Input input = stroll(t + plan.phase, ++seq, input_interval);
+      if (walks(plan, t)) seen.walked += counts ? input_interval : 0;
+      else input.move = vec3(0), input.look = vec2(0);
+      client.send_text(write_message(input));
       asked.emplace_back(seq, seconds_now());
       next_input += input_interval;
     }
@@ -69,6 +81,8 @@ Stroll stroll_through(const StrollPlan& plan, const std::function<void()>& count
     if (!packet) continue;
     const double arrived = seconds_now();
     client.send_text(write_message(Ack{packet->header.frame, 1, true}));
+    constexpr int of_walk = packet_depth | packet_still | packet_around | packet_layer;
+    if (plan.local && (packet->header.flags & of_walk) != packet_depth) continue;
     while (!asked.empty() && int32_t(packet->header.seq - asked.front().first) >= 0) {
       if (counts) seen.latencies.push_back(1000 * (arrived - asked.front().second));
       asked.pop_front();
@@ -82,6 +96,28 @@ Stroll stroll_through(const StrollPlan& plan, const std::function<void()>& count
     before = std::move(picture);
   }
   client.close();
+  return seen;
+}
+
+std::vector<Stroll> stroll_together(const StrollPlan& plan, int visitors) {
+  std::vector<Stroll> seen{size_t(visitors)};
+  std::string problem;
+  std::mutex mutex;
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < visitors; i++)
+      threads.emplace_back([&, i] {
+        try {
+          StrollPlan one = plan;
+          one.phase = 0.7 * i;
+          seen[size_t(i)] = stroll_through(one);
+        } catch (const std::exception& error) {
+          std::lock_guard lock(mutex);
+          problem = error.what();
+        }
+      });
+  }
+  if (!problem.empty()) throw std::runtime_error(problem);
   return seen;
 }
 

@@ -19,6 +19,7 @@ struct Stroll {
   std::vector<double> latencies;  // milliseconds from an input to the first picture that shows it
   std::vector<double> bytes;      // of pictures
   size_t repeated = 0;            // the same as the one before
+  double walked = 0;              // seconds
   double fps() const;
   std::vector<double> gaps() const;  // milliseconds between pictures
 };
@@ -27,10 +28,14 @@ struct StrollPlan {
   uint16_t port = 0;
   int width = 1280, height = 720;
   double warm_up = 2, seconds = 20;
-  double phase = 0;  // seconds of the stroll that are left out, so that several differ
+  double phase = 0;    // seconds of the stroll that are left out, so that several differ
+  double walking = 1;  // share of the time, in which they walk; else they stand
+  bool local = false;  // keyframes come, of which those of a walk count
 };
 // Strolls through a visit of a server's; what arrives in the `seconds` after `warm_up` counts.
 // `counting` is called when that begins. Throws std::runtime_error where the visit ends by itself.
 Stroll stroll_through(const StrollPlan& plan, const std::function<void()>& counting = {});
+// So many at once, each at a phase of their own.
+std::vector<Stroll> stroll_together(const StrollPlan& plan, int visitors);
 
 }  // namespace wellspring

@@ -5,14 +5,14 @@ import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { start_server, until } from '../server.mjs';
-import { launch, pictures, skip } from './chromium.mjs';
+import { by_processor, launch, pictures, skip } from './chromium.mjs';
 import { difference, look } from './pixels.mjs';
 
 let server, browser;
 before(async () => {
   if (skip) return;
   server = await start_server(['--exhibit', 'first-room']);
-  browser = await launch(['--use-angle=swiftshader', '--enable-unsafe-swiftshader']);
+  browser = await launch(by_processor);
 });
 after(async () => {
   await browser?.close();

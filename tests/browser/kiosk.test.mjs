@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { start_screen_server } from '../screen_server.mjs';
 import { sleep, source } from '../server.mjs';
-import { launch, pictures, skip } from './chromium.mjs';
+import { by_processor, launch, pictures, skip } from './chromium.mjs';
 
 const poster = readFileSync(join(source, 'content/castle/poster.jpg'));
 
@@ -409,7 +409,7 @@ test('ten thousand random touches and observations leave no broken state', { ski
 
 test('the water is drawn: dark asleep, light awake, moved by a touch, back after a lost context',
     { skip }, async () => {
-  const drawing = await launch(['--use-angle=swiftshader', '--enable-unsafe-swiftshader']);
+  const drawing = await launch(by_processor);
   const { page, problems } = await open([480, 640],
       { from: drawing, address: '/kiosk?lang=en&pixels=30000', stage: 'sleep' });
   const more_pictures = async (n = 3) => {

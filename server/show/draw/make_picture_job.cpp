@@ -19,7 +19,8 @@ constexpr double slack = 0.0015;     // seconds kept free of every period
 constexpr double least_share = 0.2;  // of a period that goes to samples, even if the rate suffers
 constexpr double least_sampling_rate = 0.75;  // a second: rarer pictures are given no more samples
 constexpr double predicted_pictures = 2;
-constexpr double settled_samples = 8;  // a pixel, after which the reference takes over
+constexpr double turn_ahead_seconds = 0.3;  // for which a wide keyframe looks ahead
+constexpr double settled_samples = 8;       // a pixel, after which the reference takes over
 
 // Seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
@@ -107,7 +108,9 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   if (visitor.wants.local && job.passing && seen && !points) {
     const Surroundings& around = picture.around;
     const bool here = around.camera_cuts == place.camera_cuts && around.ordered_at >= 0;
-    if (!here || is_elsewhere(around.view, job.expected)) job.around = wide_view(job.expected);
+    // A turn goes on until it is there.
+    const View soon = expected_view(place.heading, now, turn_ahead_seconds);
+    if (!here || is_elsewhere(around.view, soon)) job.around = wide_view(soon);
   }
   return job;
 }

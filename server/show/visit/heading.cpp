@@ -19,8 +19,8 @@ constexpr float smallest_cut = 0.5f;  // metres
 
 constexpr float much_missing = 0.12f;          // of a picture
 constexpr float widest_turn = 0.8f;            // radians to either side that a page may turn by
-constexpr float turned_away = 0.4f;            // radians
-constexpr float walked_away = 0.7f;            // metres
+constexpr float turned_away = 0.8f;            // radians
+constexpr float walked_away = 2;               // metres
 constexpr float surrounding_share = 1 / 8.0f;  // of its pixels that its surroundings have
 
 }  // namespace

@@ -115,8 +115,8 @@ TEST(WideView, HoldsWhatAPageMayTurnTo) {
     EXPECT_EQ(missing_share(wide, facing(0.7f + turn, vec3(1, 2, 3))), 0) << turn;
   EXPECT_FALSE(is_elsewhere(wide, now));
   EXPECT_FALSE(is_elsewhere(wide, facing(0.9f, vec3(1.4f, 2, 3))));
-  EXPECT_TRUE(is_elsewhere(wide, facing(1.3f, vec3(1, 2, 3))));
-  EXPECT_TRUE(is_elsewhere(wide, facing(0.7f, vec3(1, 2, 4))));
+  EXPECT_TRUE(is_elsewhere(wide, facing(1.6f, vec3(1, 2, 3))));
+  EXPECT_TRUE(is_elsewhere(wide, facing(0.7f, vec3(1, 2, 5.5f))));
 }
 
 }  // namespace
