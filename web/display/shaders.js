@@ -24,6 +24,8 @@ uniform float unit;
 uniform float height;       // of the picture, pixels
 uniform float share;        // how much of the picture it is
 uniform bool whole;         // what it does not show is guessed; else left as it is
+uniform float seam;         // pixels at its border over which it passes into what lies behind; or 0
+uniform bool coarse;        // its pixels are larger: surfaces are not told apart
 uniform bool masked;        // where its disparity is 0 there is nothing
 uniform bool as_it_is;      // the view is the keyframe's own
 out vec4 shown;
@@ -111,5 +113,7 @@ void main() {
       && base.z > least_depth;
   if (!whole && !(is_found && inside)) discard;
   if (masked && own_disparity(ivec2(clamp(at, vec2(0), size - 1.0))) == 0.0) discard;
-  shown = vec4(sample_color(at, pixels), share);
+  vec2 border = min(at, size - at);
+  float own = seam > 0.0 ? clamp(min(border.x, border.y) / seam, 0.0, 1.0) : 1.0;
+  shown = vec4(sample_color(at, coarse ? 0.0 : pixels), share * own);
 }`;

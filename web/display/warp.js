@@ -5,7 +5,8 @@
 import { fragment, vertex } from './shaders.js';
 import { block, carry_bounds, is_same, make_mapping } from './view.js';
 
-const fade_ms = 50;  // from one keyframe to the next
+const fade_ms = 50;      // from one keyframe to the next
+const seam_across = 64;  // as in server/picture/warp_picture.cpp
 
 function make_program(gl) {
   const program = gl.createProgram();
@@ -20,7 +21,7 @@ function make_program(gl) {
   gl.linkProgram(program);
   const places = {};
   for (const name of ['color', 'units', 'bounds', 'to', 'back', 'size', 'unit', 'height', 'share',
-    'whole', 'masked', 'as_it_is'])
+    'whole', 'seam', 'coarse', 'masked', 'as_it_is'])
     places[name] = gl.getUniformLocation(program, name);
   return { program, places };
 }
@@ -106,6 +107,8 @@ export function make_warp(canvas, on_lost) {
     gl.uniform1f(places.height, view.height);
     gl.uniform1f(places.share, share);
     gl.uniform1i(places.whole, whole ? 1 : 0);
+    gl.uniform1f(places.seam, whole || one === layer ? 0 : one.view.width / seam_across);
+    gl.uniform1i(places.coarse, one === around ? 1 : 0);
     gl.uniform1i(places.masked, one === layer ? 1 : 0);
     gl.uniform1i(places.as_it_is, is_same(one.view, view) ? 1 : 0);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
@@ -151,12 +154,11 @@ export function make_warp(canvas, on_lost) {
       const behind = share === 1 && is_same(newest.view, view) ? []
         : [around, before].filter((one) => one !== null);
       // The first of them shows what none of them does as it goes on behind.
-      behind.forEach((one, i) => draw(one, view, 1, i === 0));
-      if (share < 1) {
-        gl.enable(gl.BLEND);
-        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-      }
-      draw(newest, view, share, behind.length === 0);
+      gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+      [...behind, newest].forEach((one, i) => {
+        if (i === 1) gl.enable(gl.BLEND);
+        draw(one, view, one === newest ? share : 1, i === 0);
+      });
       gl.disable(gl.BLEND);
       if (layer) draw(layer, view, 1, false);
       return true;
