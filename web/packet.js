@@ -38,8 +38,8 @@ function read_keyframe(buffer, view, header) {
 }
 
 // {frame, seq, time_us, width, height, quality, still, parts, keyframe, around, layer, payload:
-// Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of one without depth;
-// around: it is a wide one; layer: it is what moves, over what stands still.
+// Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of one without
+// depth; around: it is a wide one; layer: it is what moves, over what stands still.
 export function read_picture(buffer) {
   if (buffer.byteLength < 28) return null;
   const view = new DataView(buffer);

@@ -130,50 +130,45 @@ void write_rgb(const LaneBits& words, uint8_t* to, int count) {
   if (count < lane_count) std::memcpy(to, bytes, size_t(count) * 3);
 }
 
-// The first of eight neighbours' epipolar lines' places that shows what the pixel would see, and
-// its disparity; or the last, and that of what hides them. Returns which of the wanted have none.
-LaneMask follow_line(const Source& source, const Place& base, const Search& search,
-                     LaneMask waiting, Lanes& at_x, Lanes& at_y, Lanes& disparity) {
+// The first of eight neighbours' epipolar lines' places that shows what the pixel would see; where
+// something hides that, the farthest surface of the line.
+void follow_line(const Source& source, const Place& base, const Search& search, LaneMask waiting,
+                 Lanes& at_x, Lanes& at_y) {
   const Mapping& m = source.to;
-  at_x = at_y = disparity = Lanes{};
-  float candidate = search.step + found / std::max(search.pixels, 1e-30f);
-  Place one{};
-  Lanes first{};
+  at_x = at_y = Lanes{};
+  const float candidate = search.step + found / std::max(search.pixels, 1e-30f);
+  Lanes farthest = all_lanes(std::numeric_limits<float>::infinity());
   for (int i = 0; i <= search.steps && any_lane(waiting); i++) {
     Lanes w = all_lanes(search.nearest - float(i) * search.step);
-    one = carry(m, base, w);
-    first = source.surface(one.x, one.y);
+    Place one = carry(m, base, w);
+    Lanes first = source.surface(one.x, one.y);
+    LaneMask farther = waiting & (first < farthest);
+    at_x = farther ? one.x : at_x, at_y = farther ? one.y : at_y;
+    farthest = farther ? first : farthest;
     LaneMask near = waiting & (lanes_abs(first - w) <= candidate);
     if (!any_lane(near)) continue;
     Place two = carry(m, base, first);
     Lanes second = source.surface(two.x, two.y);
     Place three = carry(m, base, second);
     LaneMask hit = near & (lanes_abs(second - first) * search.pixels <= found);
-    at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y, disparity = hit ? second : disparity;
+    at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y;
     waiting &= ~hit;
   }
-  if (any_lane(waiting)) {
-    at_x = waiting ? one.x : at_x, at_y = waiting ? one.y : at_y;
-    disparity = waiting ? first : disparity;
-  }
-  return waiting;
 }
 
 // What the pixels of a block's row are, as bits.
 struct RowBits {
-  uint8_t hidden = 0, outside = 0;  // by something nearer; not within the keyframe
-  uint8_t at_seam = 0;              // near its border
+  uint8_t outside = 0;  // not within the keyframe
+  uint8_t at_seam = 0;  // near its border
 };
-// `disparity`: of the pixels, written if search.steps > 0; `share`: how much of 255 the keyframe
-// has in them, written if any is not all its own. No more than `count`.
+// `share`: how much of 255 the keyframe has in the pixels, written if any is not all its own. No
+// more than `count`.
 [[gnu::always_inline]] inline RowBits warp_row(const Source& source, float x, float y, int count,
-                                               const Search& search, uint8_t* to, float* disparity,
-                                               uint8_t* share) {
+                                               const Search& search, uint8_t* to, uint8_t* share) {
   const Mapping& m = source.to;
   Lanes px = x + Lanes{0, 1, 2, 3, 4, 5, 6, 7};
   Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
              m.one.z + px * m.across.z + y * m.down.z};
-  LaneMask waiting{};
   Lanes at_x, at_y;
   if (search.steps ==
       0) {  // whatever lies in the middle is right to half a pixel, and then to much less
@@ -181,22 +176,18 @@ struct RowBits {
     if (search.look) place = carry(m, base, source.surface(place.x, place.y));
     at_x = place.x, at_y = place.y;
   } else {
-    Lanes seen;
-    waiting = follow_line(source, base, search, LaneMask{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x,
-                          at_y, seen);
-    std::memcpy(disparity, &seen, size_t(count) * sizeof(float));
+    follow_line(source, base, search, LaneMask{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x, at_y);
   }
   write_rgb(sample_color(source, at_x, at_y, source.coarse ? 0 : search.pixels), to, count);
   LaneMask inside = (at_x >= -found) & (at_y >= -found) & (at_x <= source.last_x + (1 + found)) &
                     (at_y <= source.last_y + (1 + found)) & (base.ratio > least_depth);
   unsigned all = (1u << count) - 1;
   RowBits bits;
-  bits.hidden = uint8_t(negative_lanes(waiting) & all);
-  bits.outside = uint8_t(negative_lanes(~inside & ~waiting) & all);
+  bits.outside = uint8_t(negative_lanes(~inside) & all);
   if (!(source.seam > 0)) return bits;
   Lanes border = lanes_min(lanes_min(at_x, source.last_x + 1 - at_x),
                            lanes_min(at_y, source.last_y + 1 - at_y));
-  LaneMask near = (border < source.seam) & ~waiting;
+  LaneMask near = border < source.seam;
   if (!any_lane(near)) return bits;
   bits.at_seam = uint8_t(negative_lanes(near) & all & ~bits.outside);
   LaneMask shares = to_int(lanes_min(positive_lanes(border * (255 / source.seam)), all_lanes(255)));
@@ -232,56 +223,30 @@ uint8_t* pixel_at(Image8& image, int x, int y) {
 
 // What the keyframe does not show, and near its border what it does, is taken from `around`.
 void warp_around(const Source& around, const View& view, WarpScratch& scratch, Image8& out) {
-  Unseen& unseen = scratch.unseen;
+  const size_t columns = size_t((view.width + block - 1) / block);
   auto wants = [&](int bx, int by) {
     unsigned bits = 0;
     for (int y = by * block; y < std::min((by + 1) * block, view.height); y++) {
-      size_t word = size_t(y) * size_t(unseen.columns) + size_t(bx);
-      bits |= unseen.outside[word] | scratch.at_seam[word];
+      size_t word = size_t(y) * columns + size_t(bx);
+      bits |= scratch.outside[word] | scratch.at_seam[word];
     }
     return bits != 0;
   };
   each_row(around, view, scratch, wants, [&](int x, int y, int count, const Search& search) {
-    size_t word = size_t(y) * size_t(unseen.columns) + size_t(x / block);
-    unsigned outside = unseen.outside[word], wanted = outside | scratch.at_seam[word];
+    size_t word = size_t(y) * columns + size_t(x / block);
+    unsigned outside = scratch.outside[word], wanted = outside | scratch.at_seam[word];
     if (wanted == 0) return;
     uint8_t rgb[3 * block], no_share[block], *to = pixel_at(out, x, y);
-    float disparity[block];
-    std::fill_n(disparity, block, search.nearest);
-    RowBits row =
-        warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, rgb, disparity, no_share);
+    RowBits row = warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, rgb, no_share);
     size_t first = size_t(y) * size_t(view.width) + size_t(x);
-    for (unsigned bits = wanted & ~row.outside & ~row.hidden; bits != 0; bits &= bits - 1) {
+    for (unsigned bits = wanted & ~row.outside; bits != 0; bits &= bits - 1) {
       int i = std::countr_zero(bits),
           share = outside >> i & 1 ? 0 : scratch.share[first + size_t(i)];
       for (int c = 3 * i; c < 3 * i + 3; c++)
         to[c] = uint8_t((to[c] * share + rgb[c] * (255 - share) + 127) / 255);
     }
-    unseen.hidden[word] |= uint8_t(outside & row.hidden);
-    unseen.outside[word] = uint8_t(outside & row.outside);
-    // The rest of the block has disparities already, and keeps them.
-    for (unsigned bits = outside & ~row.outside; bits != 0; bits &= bits - 1) {
-      size_t i = size_t(std::countr_zero(bits));
-      unseen.disparity[first + i] = disparity[i];
-    }
+    scratch.outside[word] = uint8_t(outside & row.outside);
   });
-}
-
-// Blocks that are to be taken from elsewhere in part have disparities pixel by pixel.
-void spread_disparities(const View& view, Unseen& unseen) {
-  for (int by = 0; by < unseen.rows; by++)
-    for (int bx = 0; bx < unseen.columns; bx++) {
-      float& flat = unseen.flat[size_t(by) * size_t(unseen.columns) + size_t(bx)];
-      int last = std::min((by + 1) * block, view.height);
-      unsigned outside = 0;
-      for (int y = by * block; y < last; y++)
-        outside |= unseen.outside[size_t(y) * size_t(unseen.columns) + size_t(bx)];
-      if (flat == Unseen::many || outside == 0) continue;
-      for (int y = by * block; y < last; y++)
-        std::fill_n(&unseen.disparity[size_t(y) * size_t(view.width) + size_t(bx * block)],
-                    std::min(view.width - bx * block, block), flat);
-      flat = Unseen::many;
-    }
 }
 
 int count_bits(const std::vector<uint8_t>& words) {
@@ -309,46 +274,36 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
   out.width = view.width;
   out.height = view.height;
   out.rgb.resize(size_t(view.width) * size_t(view.height) * 3);
-  Unseen& unseen = scratch.unseen;
-  resize_unseen(view.width, view.height, unseen);
+  const size_t columns = size_t((view.width + block - 1) / block);
+  scratch.outside.resize(columns * size_t(view.height));
   if (!around.empty()) {
-    scratch.at_seam.resize(unseen.outside.size());
+    scratch.at_seam.resize(scratch.outside.size());
     scratch.share.resize(size_t(view.width) * size_t(view.height));
   }
-  constexpr unsigned hidden = 1, outside = 2, at_seam = 4;
+  constexpr unsigned outside = 1, at_seam = 2;
   std::atomic<unsigned> bits{0};  // those of them that some pixel is
   auto all = [](int, int) { return true; };
   each_row(source, view, scratch, all, [&](int x, int y, int count, const Search& search) {
-    size_t word = size_t(y) * size_t(unseen.columns) + size_t(x / block);
+    size_t word = size_t(y) * columns + size_t(x / block);
     size_t first = size_t(y) * size_t(view.width) + size_t(x);
-    RowBits row =
-        warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search, pixel_at(out, x, y),
-                 &unseen.disparity[first], around.empty() ? nullptr : &scratch.share[first]);
-    if (y % block == 0)
-      unseen.flat[size_t(y / block) * size_t(unseen.columns) + size_t(x / block)] =
-          search.steps == 0 ? search.nearest : Unseen::many;
-    unseen.hidden[word] = row.hidden, unseen.outside[word] = row.outside;
+    RowBits row = warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search,
+                           pixel_at(out, x, y), around.empty() ? nullptr : &scratch.share[first]);
+    scratch.outside[word] = row.outside;
     if (!around.empty()) scratch.at_seam[word] = row.at_seam;
-    unsigned are =
-        (row.hidden ? hidden : 0) | (row.outside ? outside : 0) | (row.at_seam ? at_seam : 0);
+    unsigned are = (row.outside ? outside : 0) | (row.at_seam ? at_seam : 0);
     if (are & ~bits.load(std::memory_order_relaxed)) bits |= are;
   });
-  if (!around.empty() && (bits & (outside | at_seam))) {
+  if (!around.empty() && bits != 0) {
     Source wide(around, view);
-    if (bits & outside) spread_disparities(view, unseen);
     if (carry_bounds(wide, view, scratch)) warp_around(wide, view, scratch, out);
   }
-  if (!(bits & (hidden | outside))) return 0;
-  float unknown = bits & outside
-                      ? float(count_bits(unseen.outside)) / (float(view.width) * float(view.height))
-                      : 0;
-  if (!(unknown > most_unknown)) fill_unseen(unseen, source.back.baseline, scratch.fill, out);
-  return unknown;
+  if (!(bits & outside)) return 0;
+  return float(count_bits(scratch.outside)) / (float(view.width) * float(view.height));
 }
 
 size_t memory_bytes(const WarpScratch& scratch) {
-  return bytes_of(scratch.farthest, scratch.nearest, scratch.at_seam, scratch.share) +
-         memory_bytes(scratch.unseen) + memory_bytes(scratch.fill);
+  return bytes_of(scratch.farthest, scratch.nearest, scratch.outside, scratch.at_seam,
+                  scratch.share);
 }
 
 }  // namespace wellspring

@@ -7,10 +7,12 @@
 // short piece, as nearly everywhere, a step of fixed-point iteration finds it (Bowles, Mitchell,
 // Sumner, Moore, Gross 2012, "Iterative Image Warping"), or none where places differ by less than
 // what bilinear samples tell apart. Cores that draw meanwhile take part (base/priority.h). What was
-// hidden in the keyframe takes colours of what lies behind, never those of what hid it
-// (picture/fill_unseen.h). Colours are bilinear within a surface.
+// hidden in the keyframe takes the colour of the farthest surface on its line, never that of what
+// hid it; web/display does the same. Colours are bilinear within a surface.
 #pragma once
-#include "picture/fill_unseen.h"
+#include <cstdint>
+#include <vector>
+
 #include "picture/keyframe.h"
 
 namespace wellspring {
@@ -19,16 +21,14 @@ namespace wellspring {
 // picture's blocks.
 struct WarpScratch {
   std::vector<float> farthest, nearest;
-  Unseen unseen;
-  std::vector<uint8_t>
-      at_seam;                 // bits of eight pixels side by side each: near the keyframe's border
+  // Bits of eight pixels side by side each: not within the keyframe, and near its border.
+  std::vector<uint8_t> outside, at_seam;
   std::vector<uint8_t> share;  // of 255, that the keyframe has in such pixels
-  FillScratch fill;
 };
 size_t memory_bytes(const WarpScratch& scratch);
 
 // Overwrites `out`, of the size of `view`, and returns the share of its pixels that the keyframe
-// does not show, as they lie outside of it: those continue it smoothly. When that is more than
+// does not show, as they lie outside of it: those continue its border. When that is more than
 // `most_unknown` (0 to 1) `out` may be left as it was or half done. Points behind either camera
 // count as unknown; reads nothing but the keyframe whatever the views are. The same bits whatever
 // the number of threads.

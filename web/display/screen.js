@@ -67,11 +67,14 @@ export function make_screen(canvas, { on_shown, send }) {
     },
     // An order was sent that a picture will show.
     asked(seq) { trip.asked(seq); },
-    // An input was sent; moved: it changes the picture.
-    input(seq, { look, move }, moved) {
+    /**
+     * An input was sent; moved: it changes the picture.
+     * @param {number} seq @param {any} fields @param {boolean} moved
+     */
+    input(seq, fields, moved) {
       if (moved) trip.asked(seq);
-      display?.walker.turn(look);
-      display?.walker.sent(seq, move);
+      display?.walker.turn(fields.look);
+      display?.walker.sent(seq, fields.move);
     },
     // An order was sent that takes the visitor elsewhere, who stands there.
     stands(seq) { display?.walker.sent(seq, [0, 0, 0]); },

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages of the reports on how many visitors a machine serves.
+#include "reports.h"
+
+namespace wellspring {
+
+ReportPage load_visitors_page() {
+  return {"load.visitors",
+          "How many visitors does a machine serve? All stroll through the castle at 640x360, and "
+          "share the cores with the server.",
+          {"Fairness: pictures of whoever got the fewest, over those of whoever got the most.",
+           "Wanted on four cores: 15 pictures a second for each of 24, 120 ms, fairness 0.8."},
+          {{.caption = "",
+            .rows = {{"visitors", "visitors"}},
+            .columns = {{"fps", "pictures a second of each, median", 1, "1/s"},
+                        {"fairness", "fairness"},
+                        {"latency_p50_ms", "input to picture, median"},
+                        {"latency_p95_ms", "input to picture, 95th percentile"},
+                        {"longest_gap_ms", "longest time without a picture"},
+                        {"server_memory", "memory of the server"}}}}};
+}
+
+ReportPage load_seats_page() {
+  return {
+      "load.seats",
+      "How many visitors does a machine seat whose pages draw by themselves? They stroll through "
+      "the castle, and share the cores with the server.",
+      {"Rate: keyframes, or finished pictures, for each second in which a visitor walks.",
+       "Fairness: those of whoever got the fewest, over those of whoever got the most.",
+       "Cores: that the server took, of all. Seats: what it says (1280x720, local) by then.",
+       "Wanted on two cores, all walking: 4 at 1280x720 with 6 a second, 8 with 3, 20 at 640x360 "
+       "with 4, fairness 0.85; a third walking: 12 seats at 1280x720."},
+      {{.caption = "",
+        .rows = {{"visitors", "visitors"},
+                 {"size", "size"},
+                 {"walking", "walking"},
+                 {"display", "display"}},
+        .columns = {{"rate", "of each, median", 1, "1/s"},
+                    {"least_rate", "of whoever got the fewest", 1, "1/s"},
+                    {"fairness", "fairness"},
+                    {"longest_gap_ms", "longest time without one"},
+                    {"picture_bytes", "one, median", 1e-3, "kB"},
+                    {"bandwidth", "of each"},
+                    {"cores", "cores"},
+                    {"seats", "seats"},
+                    {"server_memory", "memory of the server"}}}}};
+}
+
+}  // namespace wellspring
