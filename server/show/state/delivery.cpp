@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/delivery.h"
 
+#include <algorithm>
+
 namespace wellspring {
+
+// A second, to a page that draws by itself: keyframes of a walk, and layers of what moves.
+static constexpr double most_keyframes = 10, most_layers = 25;
 
 FlowWishes flow_wishes(const Show& show, const Visitor& visitor) {
   const PictureWishes& wants = visitor.wants;
-  const double rate = wants.fps > 0 ? double(wants.fps) : double(show.settings.fps);
+  double rate = wants.fps > 0 ? double(wants.fps) : double(show.settings.fps);
+  if (wants.local) rate = std::min(rate, visitor.picture.job.still ? most_layers : most_keyframes);
   return {wants.best_quality, rate, double(wants.width) * wants.height, wants.bandwidth};
 }
 
