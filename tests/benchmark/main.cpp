@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "cache_visit_trace.h"
+#include "local_display.h"
 #include "report.h"
 #include "reports.h"
 #include "show/exhibit/exhibit_load.h"
@@ -60,7 +61,7 @@ int main(int argc, char** argv) {
   log::start("bench");
   CLI::App app{"Speed against error, measured on this machine."};
   BenchOptions options;
-  std::string only, file, traces, pages, last;
+  std::string only, file, traces, pages, last, steps;
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
@@ -76,6 +77,10 @@ int main(int argc, char** argv) {
       ->excludes(json);
   app.add_option("--make-traces", traces,
                  "instead: write the visits' camera traces into this folder")
+      ->excludes(json);
+  app.add_option("--warp", steps,
+                 "instead: draw what a page has drawn of the keyframes in this folder "
+                 "(local_display.h), and say by how much it differs")
       ->excludes(json);
   app.add_option("--plots", options.plots,
                  "what names of plots begin with; without it the report's name and _");
@@ -116,7 +121,7 @@ int main(int argc, char** argv) {
     std::cerr << "--from: --markdown says where to write\n";
     return 2;
   }
-  if (file.empty() && traces.empty() && read.empty()) {
+  if (file.empty() && traces.empty() && read.empty() && steps.empty()) {
     std::cerr << "--json is required\n";
     return 2;
   }
@@ -128,6 +133,10 @@ int main(int argc, char** argv) {
   try {
     if (!read.empty()) {
       write_pages_from(read, pages);
+      return 0;
+    }
+    if (!steps.empty()) {
+      std::cout << draw_steps(steps).dump() << "\n";
       return 0;
     }
     if (!traces.empty()) {
