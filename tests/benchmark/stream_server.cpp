@@ -94,7 +94,8 @@ std::string fetch(uint16_t port, const std::string& path) {
   return head == std::string::npos ? "" : text.substr(head + 4);
 }
 
-void join_visit(WsClient& client, uint16_t port, int width, int height) {
+void join_visit(WsClient& client, uint16_t port, int width, int height,
+                const std::string& display) {
   WsTarget target;
   target.port = port;
   client.connect(target);
@@ -103,6 +104,7 @@ void join_visit(WsClient& client, uint16_t port, int width, int height) {
   hello.lang = "en";
   hello.width = width, hello.height = height;
   hello.parts = true;
+  hello.display = display;
   client.send_text(write_message(hello));
 }
 
