@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A slow line on the way to a server: a TCP proxy of so many bits a second, with delay and a queue
-// of bounded length, both ways. By itself: node shaped_line.mjs PORT MBIT_S ROUND_TRIP_MS, which
-// prints its own port and ends with its standard input.
+// of bounded length, both ways. By itself: node shaped_line.mjs PORT MBIT_S ROUND_TRIP_MS
+// QUEUE_BYTES, which prints its own port and ends with its standard input.
 import { createServer, connect } from 'node:net';
 import { pathToFileURL } from 'node:url';
 
@@ -55,8 +55,8 @@ export function shape_line(port, { mbit, round_trip, queue = 64 * 1024 }) {
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
-  const [port, mbit, round_trip] = process.argv.slice(2).map(Number);
-  const shaped = await shape_line(port, { mbit, round_trip });
+  const [port, mbit, round_trip, queue] = process.argv.slice(2).map(Number);
+  const shaped = await shape_line(port, { mbit, round_trip, queue });
   console.log(shaped.port);
   process.stdin.resume();
   process.stdin.on('data', (text) => { shaped.line.rate = Number(text) * 1e6 / 8; });

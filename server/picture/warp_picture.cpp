@@ -20,18 +20,19 @@ constexpr int block = Keyframe::block;
 static_assert(block == lane_count);
 constexpr int most_steps = 96;   // along an epipolar line
 constexpr int most_blocks = 24;  // written per block, on average, when bounds are carried forward
-constexpr int seam_across = 64;  // of its width, a keyframe passes into what is around
-constexpr float found = 0.5f;    // pixels between a place and itself, carried there and back
+constexpr int seam_across = 64;  // of its width, a keyframe passes into the next
+constexpr float found = 0.5f;    // pixels that disparities of one surface may be apart in a line
+constexpr float meets = 1;       // pixels between a place and itself, carried there and back
 constexpr float same = 0.125f;   // pixels between places of a block that one disparity stands for
 
 // Bounds of disparities of every block of the new view, from the keyframe's blocks carried forward.
 // False: they would move too far for that.
-bool carry_bounds(const Source& source, const View& view, WarpScratch& scratch) {
+bool carry_bounds(const Source& source, const View& view, WarpBounds& bounds) {
   const Keyframe& k = source.k;
   const Mapping& m = source.back;
   int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
-  scratch.farthest.assign(size_t(columns) * size_t(rows), std::numeric_limits<float>::infinity());
-  scratch.nearest.assign(scratch.farthest.size(), -1);
+  bounds.farthest.assign(size_t(columns) * size_t(rows), std::numeric_limits<float>::infinity());
+  bounds.nearest.assign(bounds.farthest.size(), -1);
   int64_t left = int64_t(most_blocks) * columns * rows;
   constexpr Lanes corner_x{0, 1, 0, 1, 0, 1, 0, 1}, corner_y{0, 0, 1, 1, 0, 0, 1, 1};
   for (int by = 0; by < k.rows; by++)
@@ -62,22 +63,22 @@ bool carry_bounds(const Source& source, const View& view, WarpScratch& scratch) 
       for (int cy = y0; cy <= y1; cy++)
         for (int cx = x0; cx <= x1; cx++) {
           size_t c = size_t(cy) * size_t(columns) + size_t(cx);
-          scratch.farthest[c] = std::min(scratch.farthest[c], low);
-          scratch.nearest[c] = std::max(scratch.nearest[c], high);
+          bounds.farthest[c] = std::min(bounds.farthest[c], low);
+          bounds.nearest[c] = std::max(bounds.nearest[c], high);
         }
     }
   return true;
 }
 
 // Bounds of a block that nothing was carried to: those around; at infinity where there are none.
-void borrow_bounds(const WarpScratch& scratch, int columns, int rows, int bx, int by, float& far,
+void borrow_bounds(const WarpBounds& bounds, int columns, int rows, int bx, int by, float& far,
                    float& near) {
   far = std::numeric_limits<float>::infinity(), near = -1;
   for (int reach : {1, 4}) {
     for (int y = std::max(by - reach, 0); y <= std::min(by + reach, rows - 1); y++)
       for (int x = std::max(bx - reach, 0); x <= std::min(bx + reach, columns - 1); x++) {
         size_t c = size_t(y) * size_t(columns) + size_t(x);
-        far = std::min(far, scratch.farthest[c]), near = std::max(near, scratch.nearest[c]);
+        far = std::min(far, bounds.farthest[c]), near = std::max(near, bounds.nearest[c]);
       }
     if (near >= 0) return;
   }
@@ -130,180 +131,218 @@ void write_rgb(const LaneBits& words, uint8_t* to, int count) {
   if (count < lane_count) std::memcpy(to, bytes, size_t(count) * 3);
 }
 
-// The first of eight neighbours' epipolar lines' places that shows what the pixel would see; where
-// something hides that, the farthest surface of the line.
-void follow_line(const Source& source, const Place& base, const Search& search, LaneMask waiting,
-                 Lanes& at_x, Lanes& at_y) {
+// The first of eight neighbours' epipolar lines' places that shows what the pixel would see,
+// and its disparity. Returns which of the wanted have none: they get the place of the farthest
+// surface on their line, since that does not stand before what they would see.
+LaneMask follow_line(const Source& source, const Place& base, const Search& search,
+                     LaneMask waiting, Lanes& at_x, Lanes& at_y, Lanes& disparity) {
   const Mapping& m = source.to;
-  at_x = at_y = Lanes{};
+  at_x = at_y = disparity = Lanes{};
   const float candidate = search.step + found / std::max(search.pixels, 1e-30f);
-  Lanes farthest = all_lanes(std::numeric_limits<float>::infinity());
+  Lanes farthest = all_lanes(std::numeric_limits<float>::infinity()), behind_x{}, behind_y{};
   for (int i = 0; i <= search.steps && any_lane(waiting); i++) {
-    Lanes w = all_lanes(search.nearest - float(i) * search.step);
-    Place one = carry(m, base, w);
-    Lanes first = source.surface(one.x, one.y);
-    LaneMask farther = waiting & (first < farthest);
-    at_x = farther ? one.x : at_x, at_y = farther ? one.y : at_y;
+    const Lanes w = all_lanes(search.nearest - float(i) * search.step);
+    const Place one = carry(m, base, w);
+    const Lanes first = source.surface(one.x, one.y);
+    const LaneMask farther = first < farthest;
     farthest = farther ? first : farthest;
-    LaneMask near = waiting & (lanes_abs(first - w) <= candidate);
+    behind_x = farther ? one.x : behind_x, behind_y = farther ? one.y : behind_y;
+    const LaneMask near = waiting & (lanes_abs(first - w) <= candidate);
     if (!any_lane(near)) continue;
-    Place two = carry(m, base, first);
-    Lanes second = source.surface(two.x, two.y);
-    Place three = carry(m, base, second);
-    LaneMask hit = near & (lanes_abs(second - first) * search.pixels <= found);
+    const Place two = carry(m, base, first);
+    const Lanes second = source.surface(two.x, two.y);
+    const Place three = carry(m, base, second);
+    const LaneMask hit = near & (lanes_abs(second - first) * search.pixels <= meets);
     at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y;
+    disparity = hit ? second : disparity;
     waiting &= ~hit;
   }
+  at_x = waiting ? behind_x : at_x, at_y = waiting ? behind_y : at_y;
+  return waiting;
 }
 
-// What the pixels of a block's row are, as bits.
-struct RowBits {
-  uint8_t outside = 0;  // not within the keyframe
-  uint8_t at_seam = 0;  // near its border
-};
-// `share`: how much of 255 the keyframe has in the pixels, written if any is not all its own. No
-// more than `count`.
-[[gnu::always_inline]] inline RowBits warp_row(const Source& source, float x, float y, int count,
-                                               const Search& search, uint8_t* to, uint8_t* share) {
+// Eight neighbours, the first of which has its middle at (x, y).
+Place make_base(const Source& source, float x, float y) {
   const Mapping& m = source.to;
-  Lanes px = x + Lanes{0, 1, 2, 3, 4, 5, 6, 7};
-  Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
-             m.one.z + px * m.across.z + y * m.down.z};
+  const Lanes px = x + Lanes{0, 1, 2, 3, 4, 5, 6, 7};
+  return {m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
+          m.one.z + px * m.across.z + y * m.down.z};
+}
+LaneMask is_inside(const Source& source, const Lanes& x, const Lanes& y) {
+  return (x >= -found) & (y >= -found) & (x <= source.last_x + (1 + found)) &
+         (y <= source.last_y + (1 + found));
+}
+
+// What a keyframe has for a row of eight pixels.
+struct Row {
+  LaneBits color{};    // what it shows, or else how it goes on
+  Lanes disparity{};   // of what it shows
+  Lanes share{};       // how much of the pixel that is, 0 to 1: less near its border
+  LaneMask outside{};  // it is not within the keyframe, and not hidden by it
+};
+[[gnu::always_inline]] inline Row warp_row(const Source& source, float x, float y, LaneMask wanted,
+                                           const Search& search) {
+  const Mapping& m = source.to;
+  const Place base = make_base(source, x, y);
+  Row row;
+  LaneMask hidden{};
   Lanes at_x, at_y;
-  if (search.steps ==
-      0) {  // whatever lies in the middle is right to half a pixel, and then to much less
-    Place place = carry(m, base, all_lanes(search.nearest));
-    if (search.look) place = carry(m, base, source.surface(place.x, place.y));
+  if (search.steps == 0) {
+    // Whatever lies in the middle is right to half a pixel, and then to much less.
+    row.disparity = all_lanes(search.nearest);
+    Place place = carry(m, base, row.disparity);
+    if (search.look) {
+      row.disparity = source.surface(place.x, place.y);
+      place = carry(m, base, row.disparity);
+    }
     at_x = place.x, at_y = place.y;
   } else {
-    follow_line(source, base, search, LaneMask{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x, at_y);
+    hidden = follow_line(source, base, search, wanted, at_x, at_y, row.disparity);
   }
-  write_rgb(sample_color(source, at_x, at_y, source.coarse ? 0 : search.pixels), to, count);
-  LaneMask inside = (at_x >= -found) & (at_y >= -found) & (at_x <= source.last_x + (1 + found)) &
-                    (at_y <= source.last_y + (1 + found)) & (base.ratio > least_depth);
-  unsigned all = (1u << count) - 1;
-  RowBits bits;
-  bits.outside = uint8_t(negative_lanes(~inside) & all);
-  if (!(source.seam > 0)) return bits;
-  Lanes border = lanes_min(lanes_min(at_x, source.last_x + 1 - at_x),
-                           lanes_min(at_y, source.last_y + 1 - at_y));
-  LaneMask near = border < source.seam;
-  if (!any_lane(near)) return bits;
-  bits.at_seam = uint8_t(negative_lanes(near) & all & ~bits.outside);
-  LaneMask shares = to_int(lanes_min(positive_lanes(border * (255 / source.seam)), all_lanes(255)));
-  for (int i = 0; i < count; i++) share[i] = uint8_t(shares[i]);
-  return bits;
+  const LaneMask inside = is_inside(source, at_x, at_y) & (base.ratio > least_depth);
+  row.color = sample_color(source, at_x, at_y, source.coarse ? 0 : search.pixels);
+  row.outside = wanted & ~inside & ~hidden;
+  row.share = all_lanes(1);
+  if (source.seam > 0) {
+    const Lanes border = lanes_min(lanes_min(at_x, source.last_x + 1 - at_x),
+                                   lanes_min(at_y, source.last_y + 1 - at_y));
+    row.share = clamped(border * (1 / source.seam), 1);
+  }
+  row.share = keep_lanes(wanted & inside & ~hidden, row.share);
+  return row;
 }
 
-// Calls warp(x, y, count, search) for every row of every block that wants(bx, by) it; (x, y): its
-// first pixel.
-template <class Wants, class Warp>
-void each_row(const Source& source, const View& view, const WarpScratch& scratch,
-              const Wants& wants, const Warp& warp) {
-  int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
-  priority_ranges(rows, 1, [&](int begin, int end) {
-    for (int by = begin; by < end; by++)
-      for (int bx = 0; bx < columns; bx++) {
-        if (!wants(bx, by)) continue;
-        size_t c = size_t(by) * size_t(columns) + size_t(bx);
-        float far = scratch.farthest[c], near = scratch.nearest[c];
-        if (near < 0) borrow_bounds(scratch, columns, rows, bx, by, far, near);
-        int x = bx * block, count = std::min(view.width - x, block);
-        Search search =
-            plan_search(source, float(x) + 0.5f * block, (float(by) + 0.5f) * block, near, far);
-        for (int y = by * block; y < std::min((by + 1) * block, view.height); y++)
-          warp(x, y, count, search);
+struct Layer {
+  Source source;
+  const WarpBounds& bounds;
+};
+
+Search plan_block(const Layer& layer, const View& view, int bx, int by) {
+  const int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
+  const size_t c = size_t(by) * size_t(columns) + size_t(bx);
+  float far = layer.bounds.farthest[c], near = layer.bounds.nearest[c];
+  if (near < 0) borrow_bounds(layer.bounds, columns, rows, bx, by, far, near);
+  return plan_search(layer.source, (float(bx) + 0.5f) * block, (float(by) + 0.5f) * block, near,
+                     far);
+}
+
+// Sums of colours by their shares.
+struct Mix {
+  Lanes red{}, green{}, blue{}, left = all_lanes(1);
+  void add(const LaneBits& color, const Lanes& share) {
+    const Lanes part = share * left;
+    red += part * to_float(color & 255u), green += part * to_float(color >> 8 & 255u),
+        blue += part * to_float(color >> 16 & 255u);
+    left -= part;
+  }
+  LaneBits color() const {
+    return to_whole(red + 0.5f) | to_whole(green + 0.5f) << 8 | to_whole(blue + 0.5f) << 16;
+  }
+};
+
+// Which of eight pixels a keyframe sees past at that disparity: nothing is there any more.
+LaneMask sees_past(const Source& source, const Place& base, const Search& search,
+                   const Lanes& disparity) {
+  const Place place = carry(source.to, base, disparity);
+  const Lanes there = source.surface(place.x, place.y);
+  return is_inside(source, place.x, place.y) & ((disparity - there) * search.pixels > meets);
+}
+
+// What the first keyframe does not show all of is taken from the next ones, but for what it sees
+// past, and then from how the first goes on. Returns how many pixels lie outside of all.
+int mix_row(std::span<const Layer> layers, const View& view, int x, int y, LaneMask wanted,
+            const Search& search, const Row& first, LaneBits& color) {
+  const float middle_x = float(x) + 0.5f, middle_y = float(y) + 0.5f;
+  const Source& newest = layers[0].source;
+  const Place base = make_base(newest, middle_x, middle_y);
+  const LaneMask not_shown = first.share == 0.0f;
+  Mix mix;
+  mix.add(first.color, first.share);
+  LaneMask outside = first.outside;
+  for (const Layer& layer : layers.subspan(1)) {
+    wanted &= mix.left > 0.0f;
+    if (!any_lane(wanted)) break;
+    const Row row = warp_row(layer.source, middle_x, middle_y, wanted,
+                             plan_block(layer, view, x / block, y / block));
+    const LaneMask gone = not_shown & sees_past(newest, base, search, row.disparity);
+    mix.add(row.color, keep_lanes(~gone, row.share));
+    outside &= row.outside;
+  }
+  mix.add(first.color, all_lanes(1));
+  color = mix.color();
+  return std::popcount(negative_lanes(outside));
+}
+
+// Draws the picture's rows of blocks from `begin` to `end`, and returns the same.
+int64_t warp_rows(std::span<const Layer> layers, const View& view, int begin, int end,
+                  Image8& out) {
+  int64_t outside = 0;
+  const Layer& first = layers[0];
+  for (int by = begin; by < end; by++)
+    for (int x = 0; x < view.width; x += block) {
+      const Search search = plan_block(first, view, x / block, by);
+      const int count = std::min(view.width - x, block);
+      const LaneMask wanted = LaneMask{0, 1, 2, 3, 4, 5, 6, 7} < count;
+      for (int y = by * block; y < std::min((by + 1) * block, view.height); y++) {
+        const Row row = warp_row(first.source, float(x) + 0.5f, float(y) + 0.5f, wanted, search);
+        LaneBits color = row.color;
+        if (any_lane(wanted & (row.share < 1.0f)))
+          outside += mix_row(layers, view, x, y, wanted, search, row, color);
+        write_rgb(color, &out.rgb[3 * (size_t(y) * size_t(view.width) + size_t(x))], count);
       }
-  });
-}
-
-uint8_t* pixel_at(Image8& image, int x, int y) {
-  return &image.rgb[3 * (size_t(y) * size_t(image.width) + size_t(x))];
-}
-
-// What the keyframe does not show, and near its border what it does, is taken from `around`.
-void warp_around(const Source& around, const View& view, WarpScratch& scratch, Image8& out) {
-  const size_t columns = size_t((view.width + block - 1) / block);
-  auto wants = [&](int bx, int by) {
-    unsigned bits = 0;
-    for (int y = by * block; y < std::min((by + 1) * block, view.height); y++) {
-      size_t word = size_t(y) * columns + size_t(bx);
-      bits |= scratch.outside[word] | scratch.at_seam[word];
     }
-    return bits != 0;
-  };
-  each_row(around, view, scratch, wants, [&](int x, int y, int count, const Search& search) {
-    size_t word = size_t(y) * columns + size_t(x / block);
-    unsigned outside = scratch.outside[word], wanted = outside | scratch.at_seam[word];
-    if (wanted == 0) return;
-    uint8_t rgb[3 * block], no_share[block], *to = pixel_at(out, x, y);
-    RowBits row = warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, rgb, no_share);
-    size_t first = size_t(y) * size_t(view.width) + size_t(x);
-    for (unsigned bits = wanted & ~row.outside; bits != 0; bits &= bits - 1) {
-      int i = std::countr_zero(bits),
-          share = outside >> i & 1 ? 0 : scratch.share[first + size_t(i)];
-      for (int c = 3 * i; c < 3 * i + 3; c++)
-        to[c] = uint8_t((to[c] * share + rgb[c] * (255 - share) + 127) / 255);
-    }
-    scratch.outside[word] = uint8_t(outside & row.outside);
-  });
+  return outside;
 }
 
-int count_bits(const std::vector<uint8_t>& words) {
-  int sum = 0;
-  for (uint8_t word : words) sum += std::popcount(word);
-  return sum;
+// The share of the blocks that nothing was carried to.
+float bare_share(const WarpBounds& bounds) {
+  const auto bare = std::count(bounds.nearest.begin(), bounds.nearest.end(), -1.0f);
+  return float(bare) / float(bounds.nearest.size());
 }
 
 }  // namespace
 
+float warp_picture(std::span<const Keyframe* const> keyframes, const View& view, float most_unknown,
+                   WarpScratch& scratch, Image8& out) {
+  if (view.width < 1 || view.height < 1) return 1;
+  std::vector<Layer> layers;
+  if (scratch.bounds.size() < keyframes.size()) scratch.bounds.resize(keyframes.size());
+  for (const Keyframe* keyframe : keyframes) {
+    if (keyframe->empty()) continue;
+    WarpBounds& bounds = scratch.bounds[layers.size()];
+    const Source source(*keyframe, view);
+    if (carry_bounds(source, view, bounds)) layers.push_back({source, bounds});
+  }
+  if (layers.empty()) return 1;
+  for (size_t i = 0; i + 1 < layers.size(); i++)
+    layers[i].source.seam = float(std::max(layers[i].source.k.view.width / seam_across, 1));
+  if (const float share = bare_share(layers[0].bounds); layers.size() == 1 && share > most_unknown)
+    return share;
+  out.width = view.width;
+  out.height = view.height;
+  out.rgb.resize(size_t(view.width) * size_t(view.height) * 3);
+  std::atomic<int64_t> outside{0};
+  priority_ranges((view.height + block - 1) / block, 1,
+                  [&](int begin, int end) { outside += warp_rows(layers, view, begin, end, out); });
+  return float(outside) / (float(view.width) * float(view.height));
+}
+
 float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown,
                    WarpScratch& scratch, Image8& out) {
-  return warp_picture(keyframe, Keyframe(), view, most_unknown, scratch, out);
+  const Keyframe* const one[] = {&keyframe};
+  return warp_picture(one, view, most_unknown, scratch, out);
 }
 
 float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View& view,
                    float most_unknown, WarpScratch& scratch, Image8& out) {
-  if (keyframe.empty() || view.width < 1 || view.height < 1) return 1;
-  Source source(keyframe, view);
-  if (!around.empty()) source.seam = float(std::max(keyframe.view.width / seam_across, 1));
-  if (!carry_bounds(source, view, scratch)) return 1;
-  size_t bare = size_t(std::count(scratch.nearest.begin(), scratch.nearest.end(), -1.0f));
-  float share = float(bare) / float(scratch.nearest.size());
-  if (share > most_unknown && around.empty()) return share;
-  out.width = view.width;
-  out.height = view.height;
-  out.rgb.resize(size_t(view.width) * size_t(view.height) * 3);
-  const size_t columns = size_t((view.width + block - 1) / block);
-  scratch.outside.resize(columns * size_t(view.height));
-  if (!around.empty()) {
-    scratch.at_seam.resize(scratch.outside.size());
-    scratch.share.resize(size_t(view.width) * size_t(view.height));
-  }
-  constexpr unsigned outside = 1, at_seam = 2;
-  std::atomic<unsigned> bits{0};  // those of them that some pixel is
-  auto all = [](int, int) { return true; };
-  each_row(source, view, scratch, all, [&](int x, int y, int count, const Search& search) {
-    size_t word = size_t(y) * columns + size_t(x / block);
-    size_t first = size_t(y) * size_t(view.width) + size_t(x);
-    RowBits row = warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search,
-                           pixel_at(out, x, y), around.empty() ? nullptr : &scratch.share[first]);
-    scratch.outside[word] = row.outside;
-    if (!around.empty()) scratch.at_seam[word] = row.at_seam;
-    unsigned are = (row.outside ? outside : 0) | (row.at_seam ? at_seam : 0);
-    if (are & ~bits.load(std::memory_order_relaxed)) bits |= are;
-  });
-  if (!around.empty() && bits != 0) {
-    Source wide(around, view);
-    if (carry_bounds(wide, view, scratch)) warp_around(wide, view, scratch, out);
-  }
-  if (!(bits & outside)) return 0;
-  return float(count_bits(scratch.outside)) / (float(view.width) * float(view.height));
+  const Keyframe* const both[] = {&keyframe, &around};
+  return warp_picture(both, view, most_unknown, scratch, out);
 }
 
 size_t memory_bytes(const WarpScratch& scratch) {
-  return bytes_of(scratch.farthest, scratch.nearest, scratch.outside, scratch.at_seam,
-                  scratch.share);
+  size_t sum = bytes_of(scratch.bounds);
+  for (const WarpBounds& one : scratch.bounds) sum += bytes_of(one.farthest, one.nearest);
+  return sum;
 }
 
 }  // namespace wellspring

@@ -6,37 +6,39 @@
 // (bounds of blocks, carried forward), for the first surface that it would see; where that is a
 // short piece, as nearly everywhere, a step of fixed-point iteration finds it (Bowles, Mitchell,
 // Sumner, Moore, Gross 2012, "Iterative Image Warping"), or none where places differ by less than
-// what bilinear samples tell apart. Cores that draw meanwhile take part (base/priority.h). What was
-// hidden in the keyframe takes the colour of the farthest surface on its line, never that of what
-// hid it; web/display does the same. Colours are bilinear within a surface.
+// what bilinear samples tell apart. Cores that draw meanwhile take part (base/priority.h). What a
+// keyframe does not show is taken from the next, and what none shows goes on as the first has it:
+// with the farthest surface on the pixel's line, so never with what stands in front, or with what
+// lies at the border. Colours are bilinear within a surface. web/display/shaders.js does the same.
 #pragma once
-#include <cstdint>
-#include <vector>
+#include <span>
 
 #include "picture/keyframe.h"
 
 namespace wellspring {
 
-// Kept from picture to picture to save the memory's making: bounds of disparities of the new
-// picture's blocks.
-struct WarpScratch {
+// The farthest and the nearest disparity of the new picture's blocks that a keyframe shows.
+struct WarpBounds {
   std::vector<float> farthest, nearest;
-  // Bits of eight pixels side by side each: not within the keyframe, and near its border.
-  std::vector<uint8_t> outside, at_seam;
-  std::vector<uint8_t> share;  // of 255, that the keyframe has in such pixels
+};
+// Kept from picture to picture to save the memory's making.
+struct WarpScratch {
+  std::vector<WarpBounds> bounds;  // of each keyframe
 };
 size_t memory_bytes(const WarpScratch& scratch);
 
-// Overwrites `out`, of the size of `view`, and returns the share of its pixels that the keyframe
-// does not show, as they lie outside of it: those continue its border. When that is more than
-// `most_unknown` (0 to 1) `out` may be left as it was or half done. Points behind either camera
-// count as unknown; reads nothing but the keyframe whatever the views are. The same bits whatever
-// the number of threads.
+// Overwrites `out`, of the size of `view`, and returns the share of its pixels that lie outside of
+// all keyframes. When that is more than `most_unknown` (0 to 1) `out` may be left as it was.
+// Keyframes in the order in which they are asked: the newest, the one before, a wide one of few
+// pixels; empty ones count as none. Each passes into the next over some pixels at its border. Those
+// behind cost next to nothing where the first shows all. Points behind either camera count as
+// unknown; reads nothing but the keyframes whatever the views are. The same bits whatever the
+// number of threads.
+float warp_picture(std::span<const Keyframe* const> keyframes, const View& view, float most_unknown,
+                   WarpScratch& scratch, Image8& out);
+// From one, or from one and a wide one.
 float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown,
                    WarpScratch& scratch, Image8& out);
-// What lies outside of the keyframe is taken from `around`, of a wider view and of fewer pixels,
-// into which the keyframe passes over some pixels at its border; the share returned is of what
-// neither shows. Costs nothing where the keyframe shows all.
 float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View& view,
                    float most_unknown, WarpScratch& scratch, Image8& out);
 

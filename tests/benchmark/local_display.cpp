@@ -1,95 +1,125 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "local_display.h"
 
-#include <algorithm>
-#include <fstream>
-#include <iostream>
-#include <iterator>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
-#include <vector>
+#include <filesystem>
+#include <utility>
 
+#include "base/load_error.h"
 #include "frame/disparity_code.h"
 #include "frame/flip.h"
 #include "frame/jpeg.h"
+#include "frame/picture_file.h"
+#include "gltf/file.h"
 #include "screen.h"
 #include "wire/packet.h"
 
 namespace wellspring {
 namespace {
 
-constexpr float most_unknown = 1;  // a page shows whatever there is
+constexpr size_t most_bytes = size_t(64) << 20;  // of a file
+constexpr const char* what = "a picture of the server's";
 
-std::vector<uint8_t> read_bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error(path + ": cannot be read");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-vec3 vector_of(const nlohmann::json& json) {
-  return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()};
-}
-
-View view_of(const nlohmann::json& json) {
+View view_of(const KeyframeHeader& header, dvec3 origin) {
   View view;
-  view.right = vector_of(json.at("right"));
-  view.up = vector_of(json.at("up"));
-  view.forward = vector_of(json.at("forward"));
-  view.tan_half_fov = json.at("tan_half_fov");
-  view.middle = {json.at("middle").at(0).get<float>(), json.at("middle").at(1).get<float>()};
-  view.width = json.at("width"), view.height = json.at("height");
+  view.position = vec3(header.eye - origin);
+  view.right = header.right, view.up = header.up, view.forward = header.forward;
+  view.tan_half_fov = header.tan_half_fov, view.middle = header.middle;
+  view.width = header.width, view.height = header.height;
   return view;
+}
+
+std::vector<float> read_depth(const KeyframeHeader& header, std::span<const uint8_t> bytes) {
+  std::vector<float> depth;
+  if (!decode_disparity(bytes, header.width, header.height, header.unit, depth))
+    throw LoadError(what, "depth", "is damaged");
+  depth.resize(size_t(header.width) * header.height);
+  for (float& one : depth) one = 1 / one;  // infinite at 0
+  return depth;
 }
 
 }  // namespace
 
+void LocalDisplay::take(Shown shown, bool is_around) {
+  if (is_around) {
+    around_ = std::move(shown);
+    return;
+  }
+  before_ = std::exchange(newest_, std::move(shown));
+  if (before_.cuts != newest_.cuts) before_ = {};
+}
+
 bool LocalDisplay::receive(std::span<const uint8_t> message) {
   const auto packet = read_packet(message);
-  if (!packet || !packet->keyframe || (packet->header.flags & packet_layer)) return false;
-  const KeyframeHeader& header = *packet->keyframe;
-  if (!origin_) origin_ = header.eye;
-  View view;
-  view.position = vec3(header.eye - *origin_);
-  view.right = header.right, view.up = header.up, view.forward = header.forward;
-  view.tan_half_fov = header.tan_half_fov, view.middle = header.middle;
-  view.width = header.width, view.height = header.height;
-  const Image8 color =
-      scale_picture(decode_jpeg(packet->payload.first(header.color_bytes), "a keyframe"),
-                    view.width, view.height);
-  std::vector<float> depth;
-  if (!decode_disparity(packet->payload.subspan(header.color_bytes), view.width, view.height,
-                        header.unit, depth))
-    throw std::runtime_error("a keyframe's depth is damaged");
-  for (float& one : depth) one = 1 / one;
-  make_keyframe(view, color, depth, packet->header.flags & packet_around ? around_ : newest_);
+  if (!packet) return false;
+  const PacketHeader& header = packet->header;
+  if (packet->keyframe) {
+    const KeyframeHeader& keyframe = *packet->keyframe;
+    const auto color = packet->payload.first(keyframe.color_bytes);
+    take({view_of(keyframe, origin_),
+          keyframe.cuts,
+          decode_jpeg(color, what),
+          read_depth(keyframe, packet->payload.subspan(keyframe.color_bytes)),
+          {}},
+         header.flags & packet_around);
+    return true;
+  }
+  if ((header.flags & packet_complete) || newest_.depth.empty()) return false;
+  newest_.color = scale_picture(newest_.color, header.width, header.height);
+  paste_parts(*packet, newest_.color);
+  if (!packet->parts.empty()) newest_.keyframe = {};
   return true;
 }
 
-Image8 LocalDisplay::show(View view, dvec3 eye) {
-  Image8 out;
-  view.position = vec3(eye - origin_.value_or(eye));
-  warp_picture(newest_, around_, view, most_unknown, scratch_, out);
-  return out;
+Image8 LocalDisplay::picture(const View& view) {
+  const Keyframe* keyframes[3];
+  size_t i = 0;
+  for (Shown* one : {&newest_, &before_, &around_}) {
+    if (one->keyframe.empty() && !one->depth.empty())
+      make_keyframe(one->view, scale_picture(one->color, one->view.width, one->view.height),
+                    one->depth, one->keyframe);
+    keyframes[i++] = &one->keyframe;
+  }
+  Image8 picture{view.width, view.height, {}};
+  picture.rgb.resize(3 * size_t(view.width) * size_t(view.height));
+  const bool fits = around_.cuts == newest_.cuts;
+  warp_picture(std::span(keyframes, fits ? 3 : 2), view, 1, scratch_, picture);
+  return picture;
 }
 
-void compare_with_page(const std::string& folder) {
-  const auto text = read_bytes(folder + "/cases.json");
-  nlohmann::json flips = nlohmann::json::array();
-  for (const nlohmann::json& one : nlohmann::json::parse(text)) {
-    LocalDisplay display;
-    for (const std::string name : one.at("keyframes"))
-      if (!display.receive(read_bytes(folder + "/" + name)))
-        throw std::runtime_error(name + ": is no keyframe");
-    const nlohmann::json& eye = one.at("view").at("eye");
-    const View view = view_of(one.at("view"));
-    const Image8 own = display.show(view, dvec3(eye.at(0), eye.at(1), eye.at(2)));
-    const std::string name = one.at("shown");
-    const Image8 shown{view.width, view.height, read_bytes(folder + "/" + name)};
-    if (shown.rgb.size() != own.rgb.size())
-      throw std::runtime_error(name + ": is not of the view's size");
-    flips.push_back(eval_flip(shown, own).mean);
+nlohmann::json draw_steps(const std::string& folder) {
+  auto path = [&](const std::string& name) {
+    return (std::filesystem::path(folder) / name).string();
+  };
+  auto triple = [](const nlohmann::json& from) { return vec3(from[0], from[1], from[2]); };
+  const std::string steps = path("steps.json");
+  const gltf::Bytes text = gltf::read_bytes(steps, most_bytes);
+  LocalDisplay display;
+  nlohmann::json flips = nlohmann::json::object();
+  for (const nlohmann::json& step : nlohmann::json::parse(text.begin(), text.end())) {
+    if (step.contains("packet")) {
+      const std::string file = path(step["packet"]);
+      if (!display.receive(gltf::read_bytes(file, most_bytes)))
+        throw LoadError(file, "", "is no picture with depth");
+      continue;
+    }
+    const nlohmann::json& from = step.at("view");
+    View view;
+    view.position = triple(from.at("eye"));
+    view.right = triple(from.at("right")), view.up = triple(from.at("up"));
+    view.forward = triple(from.at("forward"));
+    view.tan_half_fov = from.at("tan_half_fov");
+    view.middle = {from.at("middle")[0], from.at("middle")[1]};
+    view.width = from.at("width"), view.height = from.at("height");
+    const std::string name = step.at("name");
+    const Image8 drawn = display.picture(view);
+    save_image8(path(name + ".png"), drawn);
+    const gltf::Bytes pixels = gltf::read_bytes(path(name + ".rgb"), most_bytes);
+    if (pixels.size() != drawn.rgb.size())
+      throw LoadError(path(name + ".rgb"), "", "is not of the view's size");
+    Image8 page{view.width, view.height, std::vector<uint8_t>(pixels.begin(), pixels.end())};
+    flips[name] = eval_flip(page, drawn).mean;
   }
-  std::cout << flips << "\n";
+  return flips;
 }
 
 }  // namespace wellspring

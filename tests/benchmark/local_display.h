@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows keyframes from where the visitor is, as pages do that draw by themselves (web/display).
+// Shows keyframes with depth as a page does that draws for itself (web/display): from any view, by
+// the same warp (picture/warp_picture.h), newest keyframe over the one before over the wide one. It
+// does not pass from one to the next in time.
 #pragma once
 #include <cstdint>
-#include <optional>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "picture/warp_picture.h"
 
@@ -12,21 +15,33 @@ namespace wellspring {
 
 class LocalDisplay {
  public:
-  // Takes a binary message. False: it is no keyframe. Throws std::runtime_error where its depth is
-  // damaged, LoadError where its JPEG is.
+  // Views are told relative to `origin`, in metres of the exhibit.
+  explicit LocalDisplay(dvec3 origin = dvec3(0)) : origin_(origin) {}
+  // Takes a binary message. False: it is no picture for such a display. Throws LoadError where it
+  // is damaged.
   bool receive(std::span<const uint8_t> message);
-  // `view`: at `eye`, in the exhibit's metres; its position does not count.
-  Image8 show(View view, dvec3 eye);
+  // Black before the first keyframe.
+  Image8 picture(const View& view);
 
  private:
-  Keyframe newest_, around_;
-  std::optional<dvec3> origin_;  // of the keyframes' places: the first one's eye
+  struct Shown {
+    View view;
+    uint32_t cuts = 0;
+    Image8 color;              // of any size
+    std::vector<float> depth;  // of the view's size; empty: there is none
+    Keyframe keyframe;         // made of these; empty: not yet
+  };
+  void take(Shown shown, bool is_around);
+  const dvec3 origin_;
+  Shown newest_, before_, around_;
   WarpScratch scratch_;
 };
 
-// Compares what a page has drawn with what this display draws: `folder` has cases.json, a list of
-// {keyframes: [file], view: {eye, right, up, forward, tan_half_fov, middle, width, height}, shown:
-// file of RGB bytes}; prints a list of FLIPs. Throws std::runtime_error.
-void compare_with_page(const std::string& folder);
+// Draws what a page has drawn, too: FOLDER/steps.json is a list of {"packet": FILE}, a message that
+// comes, and {"name": NAME, "view": {"eye", "right", "up", "forward", "tan_half_fov", "middle",
+// "width", "height"}}, a view that is drawn then, as web/display/view.js has it, into
+// FOLDER/NAME.png. FOLDER/NAME.rgb has the page's pixels, row after row. Returns {NAME: FLIP}
+// between both. Throws LoadError, nlohmann::json::exception.
+nlohmann::json draw_steps(const std::string& folder);
 
 }  // namespace wellspring

@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   log::start("bench");
   CLI::App app{"Speed against error, measured on this machine."};
   BenchOptions options;
-  std::string only, file, traces, pages, last, page;
+  std::string only, file, traces, pages, last, steps;
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
@@ -78,9 +78,9 @@ int main(int argc, char** argv) {
   app.add_option("--make-traces", traces,
                  "instead: write the visits' camera traces into this folder")
       ->excludes(json);
-  app.add_option("--compare-page", page,
-                 "instead: compare what a page has drawn of keyframes, in this folder, with what "
-                 "the server's warp makes of them")
+  app.add_option("--warp", steps,
+                 "instead: draw what a page has drawn of the keyframes in this folder "
+                 "(local_display.h), and say by how much it differs")
       ->excludes(json);
   app.add_option("--plots", options.plots,
                  "what names of plots begin with; without it the report's name and _");
@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
     std::cerr << "--from: --markdown says where to write\n";
     return 2;
   }
-  if (file.empty() && traces.empty() && read.empty() && page.empty()) {
+  if (file.empty() && traces.empty() && read.empty() && steps.empty()) {
     std::cerr << "--json is required\n";
     return 2;
   }
@@ -135,8 +135,8 @@ int main(int argc, char** argv) {
       write_pages_from(read, pages);
       return 0;
     }
-    if (!page.empty()) {
-      compare_with_page(page);
+    if (!steps.empty()) {
+      std::cout << draw_steps(steps).dump() << "\n";
       return 0;
     }
     if (!traces.empty()) {

@@ -34,6 +34,10 @@ ReportPage light_rays_page();
 ReportPage light_cycles_page();
 ReportPage light_photons_page();
 ReportPage light_dynamic_page();
+ReportPage show_walk_page();
+ReportPage show_rest_page();
+ReportPage show_storyteller_page();
+ReportPage show_load_page();
 
 // What is declared for this report, else plain_page.
 ReportPage find_page(const std::string& name);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "frame/jpeg.h"
-#include "wire/packet.h"
 
 namespace wellspring {
 namespace {
@@ -39,16 +38,20 @@ bool Screen::receive(std::span<const uint8_t> message) {
     return true;
   }
   canvas_ = scale_picture(canvas_, header.width, header.height);
-  size_t at = 0;
-  for (const PicturePart& part : packet->parts) {
-    paste(decode_jpeg(packet->payload.subspan(at, part.bytes), "a part of the server's"), part.x,
-          part.y, canvas_);
-    at += part.bytes;
-  }
+  paste_parts(*packet, canvas_);
   return true;
 }
 
 Image8 Screen::picture() const { return scale_picture(canvas_, width_, height_); }
+
+void paste_parts(const PacketView& packet, Image8& canvas) {
+  size_t at = 0;
+  for (const PicturePart& part : packet.parts) {
+    paste(decode_jpeg(packet.payload.subspan(at, part.bytes), "a part of the server's"), part.x,
+          part.y, canvas);
+    at += part.bytes;
+  }
+}
 
 Image8 scale_picture(const Image8& picture, int width, int height) {
   if (picture.width == width && picture.height == height) return picture;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "frame/frame.h"
+#include "wire/packet.h"
 
 namespace wellspring {
 
@@ -21,6 +22,8 @@ class Screen {
   Image8 canvas_;
 };
 
+// Places the parts of a picture that is not complete. Throws LoadError where a JPEG is damaged.
+void paste_parts(const PacketView& packet, Image8& canvas);
 // Bilinear between the middles of pixels; bytes are mixed as they are, as browsers do.
 Image8 scale_picture(const Image8& picture, int width, int height);
 

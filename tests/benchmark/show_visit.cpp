@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <stdexcept>
 
 #include "base/clock.h"
+#include "local_display.h"
 #include "wire/json.h"
 #include "wire/packet.h"
 
@@ -47,6 +49,8 @@ void add_rates(BenchReport& report, const std::string& name, const ShownWalk& wa
   report.add(name + ".still_gap_ms", quantile(gaps, 1), "ms", where);
   report.add(name + ".latency_ms", quantile(lags, 0.5), "ms", where);
   report.add(name + ".picture_bytes", quantile(bytes, 0.5), "B", where);
+  const double sum = std::accumulate(bytes.begin(), bytes.end(), 0.0);
+  report.add(name + ".bytes_rate", sum / walk.seconds, "B/s", where);
 }
 
 std::vector<Viewpoint> walk_poses(const VisitTrace& trace, const Exhibit& exhibit) {
@@ -54,8 +58,6 @@ std::vector<Viewpoint> walk_poses(const VisitTrace& trace, const Exhibit& exhibi
   std::vector<Viewpoint> poses;
   for (double time = 0; time < trace_seconds(trace); time += pose_interval) {
     poses.push_back(eval_trace(trace, time));
-    if (std::abs(poses.back().fov - fov) > 1e-3f)
-      throw std::runtime_error(trace.name + ": its field of view is not that of the start");
     poses.back().fov = fov;
   }
   return poses;
@@ -63,8 +65,8 @@ std::vector<Viewpoint> walk_poses(const VisitTrace& trace, const Exhibit& exhibi
 
 }  // namespace
 
-VisitTrace load_walk(const BenchOptions& options) {
-  const std::string name = options.visit_trace.empty() ? "stroll" : options.visit_trace;
+VisitTrace load_walk(const BenchOptions& options, std::string name) {
+  if (name.empty()) name = options.visit_trace.empty() ? "stroll" : options.visit_trace;
   const auto traces = std::filesystem::path(options.scenes).parent_path() / "traces";
   return load_visit_trace((traces / (name + ".json")).string());
 }
@@ -83,35 +85,37 @@ void look_until(WsClient& client, double moment,
   }
 }
 
-void join_alone(WsClient& client, const ServerProcess& server) {
-  join_visit(client, server.port, shown_width, shown_height);
+void join_alone(WsClient& client, const ServerProcess& server, const WalkWay& way) {
+  join_visit(client, way.port ? way.port : server.port, shown_width, shown_height,
+             way.local ? "local" : "server");
   StorytellerOrder away;
   away.visible = false;
   client.send_text(write_message(away));
 }
 
-ShownWalk walk_along(const ServerProcess& server, const std::vector<Viewpoint>& poses) {
+ShownWalk walk_along(const ServerProcess& server, const std::vector<Viewpoint>& poses,
+                     const WalkWay& way) {
   WsClient client;
-  join_alone(client, server);
+  join_alone(client, server, way);
   auto go_to = [&](size_t seq) {
     const Viewpoint& pose = poses[seq - 1];
     client.send_text(write_message(CameraTo{uint32_t(seq), pose.position, pose.yaw, pose.pitch}));
   };
   go_to(1);
-  bool is_there = false;
-  const auto note = [&](const WsMessage&) { is_there = true; };
-  for (const double last = seconds_now() + first_within; !is_there && seconds_now() < last;)
+  ShownWalk walk;
+  walk.local = way.local;
+  const auto note = [&](const WsMessage& message) { walk.before.push_back(message.bytes); };
+  for (const double last = seconds_now() + first_within;
+       walk.before.empty() && seconds_now() < last;)
     look_until(client, seconds_now() + pose_interval, note);
   look_until(client, seconds_now() + rest, note);
-  ShownWalk walk;
   const double keyframes = read_metric(server.port, "pictures_drawn_total");
   const double began = seconds_now();
   std::vector<double> asked{0};  // when each pose was sent
   auto take = [&](const WsMessage& message) {
-    const uint32_t seq = read_packet(message.bytes)->header.seq;
-    if (seq < 1 || seq > asked.size()) return;
-    walk.pictures.push_back(
-        {seq, uint32_t(asked.size()), seconds_now() - began, asked[seq - 1], message.bytes});
+    const auto sent = uint32_t(asked.size());
+    const uint32_t seq = std::clamp(read_packet(message.bytes)->header.seq, 1u, sent);
+    walk.pictures.push_back({seq, sent, seconds_now() - began, asked[seq - 1], message.bytes});
   };
   while (true) {
     look_until(client, began + pose_interval * double(asked.size()), take);
@@ -172,6 +176,39 @@ void WalkJudge::add(BenchReport& report, const std::string& name, const ShownWal
   report.add(name + ".flip_late", late.mean(), "FLIP", where);
   report.add(name + ".flip_worst", worst, "FLIP", where);
   report.add(name + ".truth_halves_flip", halves.mean(), "FLIP", where);
+}
+
+double WalkJudge::add_had(BenchReport& report, const std::string& name, const ShownWalk& walk,
+                          nlohmann::json where) {
+  add_rates(report, name, walk, where);
+  Screen screen(shown_width, shown_height);
+  LocalDisplay local(truth_.exhibit().scene.origin);
+  auto take = [&](const std::vector<uint8_t>& message) {
+    if (walk.local) local.receive(message);
+    else screen.receive(message);
+  };
+  for (const auto& message : walk.before) take(message);
+  Mean flip, halves;
+  std::map<int, Mean> times;  // by half seconds
+  auto next = walk.pictures.begin();
+  for (uint32_t seq = 1; seq <= poses_.size(); seq++) {
+    const double now = pose_interval * (seq - 1);
+    for (; next != walk.pictures.end() && next->arrived <= now; ++next) take(next->message);
+    if (!is_judged(seq)) continue;
+    const View view = truth_.view(poses_[seq - 1], shown_width, shown_height);
+    const Converged& truth = converge(seq);
+    const double error = judge(walk.local ? local.picture(view) : screen.picture(), truth);
+    flip.add(error);
+    times[int(now / while_worst)].add(error);
+    halves.add(judge_halves(truth));
+  }
+  double worst = 0;
+  for (const auto& [time, errors] : times) worst = std::max(worst, errors.mean());
+  where["judged"] = flip.count, where["shown"] = walk.pictures.size(), where["spp"] = truth_.spp();
+  report.add(name + ".flip", flip.mean(), "FLIP", where);
+  report.add(name + ".flip_worst", worst, "FLIP", where);
+  report.add(name + ".truth_halves_flip", halves.mean(), "FLIP", where);
+  return flip.mean();
 }
 
 }  // namespace wellspring

@@ -3,7 +3,8 @@
 // loopback, and how right every picture is that is shown meanwhile. So that each picture's pose is
 // known exactly, the client sends the poses itself, sixty a second, and a picture's header tells
 // the last that it follows. (Of turns so quick that four fifths of a warp were unknown, the pose is
-// a predicted one.) The storytellers are sent away.
+// a predicted one.) The storytellers are sent away. A page that draws for itself follows the input
+// at once (web/display/walker.js), so such a visitor's camera is where the recorded walk has it.
 #pragma once
 #include <functional>
 #include <map>
@@ -27,23 +28,31 @@ struct ShownPicture {
 };
 
 struct ShownWalk {
+  bool local = false;                        // the pictures are keyframes, for a LocalDisplay
+  std::vector<std::vector<uint8_t>> before;  // messages of pictures, in the two seconds at rest
   std::vector<ShownPicture> pictures;
   double seconds = 0, keyframes = 0;
 };
 
-// The recorded walk that is asked for, `stroll` without options.visit_trace. Throws LoadError.
-VisitTrace load_walk(const BenchOptions& options);
+// A recorded walk; without a name the one that is asked for, `stroll` without options.visit_trace.
+// Throws LoadError.
+VisitTrace load_walk(const BenchOptions& options, std::string name = {});
 
+// How somebody visits.
+struct WalkWay {
+  bool local = false;  // hello {display: "local"}
+  uint16_t port = 0;   // of a line to the server; 0: there is none
+};
 // Two seconds at rest after the first picture, then the walk. Throws std::runtime_error where the
 // visit ends by itself.
-ShownWalk walk_along(const ServerProcess& server, const std::vector<Viewpoint>& poses);
+ShownWalk walk_along(const ServerProcess& server, const std::vector<Viewpoint>& poses,
+                     const WalkWay& way = {});
 
 // Judges pictures of one walk, at all of its poses or at some. Each pose has a window of its own,
 // a sixty-fourth of the picture: those of a second cover all of it.
 class WalkJudge {
  public:
-  // Throws std::runtime_error where the trace's field of view is not that of the exhibit's start,
-  // which poses that are sent have.
+  // All poses have the field of view of the exhibit's start, as those that are sent.
   WalkJudge(const BenchOptions& options, const VisitTrace& trace);
   const std::vector<Viewpoint>& poses() const { return poses_; }  // sixty a second
   const ShowTruth& truth() const { return truth_; }
@@ -51,6 +60,10 @@ class WalkJudge {
   // when they arrive, NAME.flip_worst of the worst half second, and their rates, sizes and times.
   void add(BenchReport& report, const std::string& name, const ShownWalk& walk,
            nlohmann::json where);
+  // Adds NAME.flip of what the visitor has at the moments of the poses, sixty a second, against
+  // these poses, and NAME.flip_worst, rates, sizes and times likewise. Returns the first.
+  double add_had(BenchReport& report, const std::string& name, const ShownWalk& walk,
+                 nlohmann::json where);
 
  private:
   bool is_judged(uint32_t seq) const { return (seq - 1) % every_ == 0; }
@@ -67,6 +80,6 @@ class WalkJudge {
 void look_until(WsClient& client, double moment, const std::function<void(const WsMessage&)>& take);
 
 // Opens a visit of that size and sends the storytellers away.
-void join_alone(WsClient& client, const ServerProcess& server);
+void join_alone(WsClient& client, const ServerProcess& server, const WalkWay& way = {});
 
 }  // namespace wellspring

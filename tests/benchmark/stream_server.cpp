@@ -104,7 +104,8 @@ std::string fetch(uint16_t port, const std::string& path) {
   return head == std::string::npos ? "" : text.substr(head + 4);
 }
 
-void join_visit(WsClient& client, uint16_t port, int width, int height, bool local) {
+void join_visit(WsClient& client, uint16_t port, int width, int height,
+                const std::string& display) {
   WsTarget target;
   target.port = port;
   client.connect(target);
@@ -113,7 +114,7 @@ void join_visit(WsClient& client, uint16_t port, int width, int height, bool loc
   hello.lang = "en";
   hello.width = width, hello.height = height;
   hello.parts = true;
-  if (local) hello.display = "local";
+  hello.display = display;
   client.send_text(write_message(hello));
 }
 

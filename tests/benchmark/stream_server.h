@@ -32,9 +32,9 @@ class ServerProcess {
   std::optional<OwnFolder> cache_;
 };
 
-// Opens a visit there, as a page does, of pictures of this size. local: the page draws by itself.
+// Opens a visit there, as a page does, of pictures of this size.
 void join_visit(WsClient& client, uint16_t port, int width = 1280, int height = 720,
-                bool local = false);
+                const std::string& display = "server");
 
 // The body of what it answers; empty where it does not. `path` begins with a slash.
 std::string fetch(uint16_t port, const std::string& path);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras as the server has them (server/world/view.h) and how places of one view are found in
 // another (server/picture/warp_source.h: Mapping).
-export const block = 16;  // pixels a side of what bounds of disparities are kept of
+export const block = 8;  // pixels a side of what bounds of disparities are kept of
 export const least_depth = 1e-6;
+const most_blocks = 24;     // written per block, on average, when bounds are carried forward
+const larger_pixel = 1.1;   // pixels that are as many times as large count as larger
 
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
@@ -49,40 +51,59 @@ export function make_mapping(from, to) {
     baseline: seen(add(from.eye, to.eye, -1)) };
 }
 
+// Whether the pixels of a keyframe of view `from` are larger than those of the picture.
+export const is_coarse = (from, view) =>
+  from.tan_half_fov * view.height > larger_pixel * view.tan_half_fov * from.height;
+
 // Carries the bounds of the keyframe's blocks forward to those of a picture of `view`: `out` gets
-// the farthest and the nearest disparity of each block, row after row.
+// the farthest and the nearest disparity of each block, row after row. False: they would move too
+// far for that.
 export function carry_bounds(keyframe, view, back, out) {
   const columns = Math.ceil(view.width / block), rows = Math.ceil(view.height / block);
-  const { one, across, down, baseline } = back, from = keyframe.view;
+  const from = keyframe.view;
+  const [px, py, pz] = [0, 1, 2].map((i) => [back.one, back.across, back.down, back.baseline]
+      .map((v) => v[i] / (i < 2 ? block : 1)));
   const from_columns = Math.ceil(from.width / block), from_rows = Math.ceil(from.height / block);
   for (let i = 0; i < columns * rows; i++) { out[2 * i] = Infinity; out[2 * i + 1] = -1; }
+  let left = most_blocks * columns * rows;
   for (let by = 0; by < from_rows; by++)
     for (let bx = 0; bx < from_columns; bx++) {
       const i = 2 * (by * from_columns + bx);
       if (keyframe.blocks[i] > keyframe.blocks[i + 1]) continue;  // nothing is there
+      const levels = keyframe.blocks[i] < keyframe.blocks[i + 1] ? 2 : 1;
       let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity, low = Infinity, high = -1;
-      for (let corner = 0; corner < 8; corner++) {
-        const s = keyframe.blocks[i + (corner >> 2)] * keyframe.unit;
-        const x = (bx + (corner & 1)) * block, y = (by + (corner >> 1 & 1)) * block;
-        const z = one[2] + x * across[2] + y * down[2] + s * baseline[2];
-        if (!(z > least_depth)) continue;
-        const px = (one[0] + x * across[0] + y * down[0] + s * baseline[0]) / (z * block);
-        const py = (one[1] + x * across[1] + y * down[1] + s * baseline[1]) / (z * block);
-        x0 = Math.min(x0, px); x1 = Math.max(x1, px);
-        y0 = Math.min(y0, py); y1 = Math.max(y1, py);
-        low = Math.min(low, s / z); high = Math.max(high, s / z);
+      for (let level = 0; level < levels; level++) {
+        const s = keyframe.blocks[i + level] * keyframe.unit;
+        for (let corner = 0; corner < 4; corner++) {
+          const x = (bx + (corner & 1)) * block, y = (by + (corner >> 1)) * block;
+          const z = pz[0] + x * pz[1] + y * pz[2] + s * pz[3];
+          if (!(z > least_depth)) continue;
+          const inverse = 1 / z, w = s * inverse;
+          const cx = (px[0] + x * px[1] + y * px[2] + s * px[3]) * inverse;
+          const cy = (py[0] + x * py[1] + y * py[2] + s * py[3]) * inverse;
+          if (cx < x0) x0 = cx;
+          if (cx > x1) x1 = cx;
+          if (cy < y0) y0 = cy;
+          if (cy > y1) y1 = cy;
+          if (w < low) low = w;
+          if (w > high) high = w;
+        }
       }
       if (!(x1 >= 0 && y1 >= 0 && x0 < columns && y0 < rows)) continue;
-      const last_x = Math.min(Math.floor(x1), columns - 1),
-          last_y = Math.min(Math.floor(y1), rows - 1);
-      for (let cy = Math.max(Math.floor(y0), 0); cy <= last_y; cy++)
-        for (let cx = Math.max(Math.floor(x0), 0); cx <= last_x; cx++) {
+      const first_x = Math.max(Math.floor(x0), 0), first_y = Math.max(Math.floor(y0), 0);
+      const last_x = Math.min(Math.floor(x1), columns - 1);
+      const last_y = Math.min(Math.floor(y1), rows - 1);
+      left -= (last_x - first_x + 1) * (last_y - first_y + 1);
+      if (left < 0) return false;
+      for (let cy = first_y; cy <= last_y; cy++)
+        for (let cx = first_x; cx <= last_x; cx++) {
           const c = 2 * (cy * columns + cx);
           if (low < out[c]) out[c] = low;
           if (high > out[c + 1]) out[c + 1] = high;
         }
     }
   borrow_bounds(out, columns, rows);
+  return true;
 }
 
 // Blocks that nothing was carried to get the bounds of those around, or lie at infinity.

@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws keyframes as they are seen from another view, by WebGL2: the newest one, what it does not
 // show from the one before, then from a wide one, and what none shows as it goes on behind; over
-// all that a layer of what moves.
-import { fragment, vertex } from './shaders.js';
-import { block, carry_bounds, is_same, make_mapping } from './view.js';
+// all that what moves.
+import { fragment, most_layers, vertex } from './shaders.js';
+import { block, carry_bounds, is_coarse, is_same, make_mapping } from './view.js';
 
 const fade_ms = 50;      // from one keyframe to the next
-const seam_across = 64;  // as in server/picture/warp_picture.cpp
+const seam_across = 64;  // of its width, a keyframe passes into the next
+
+// Where uniforms are: {height, as_it_is, masked, layers: of each layer its fields and textures}.
+function find_places(gl, program) {
+  const at = (name) => gl.getUniformLocation(program, name);
+  const layers = Array.from({ length: most_layers }, (_, i) => {
+    const places = Object.fromEntries(['color', 'units', 'bounds'].map((name) =>
+      [name, at(`${name}[${i}]`)]));
+    for (const name of ['is_there', 'to', 'back', 'size', 'unit', 'seam', 'opacity', 'is_coarse'])
+      places[name] = at(`layers[${i}].${name}`);
+    return places;
+  });
+  return { height: at('height'), as_it_is: at('as_it_is'), masked: at('masked'), layers };
+}
 
 function make_program(gl) {
   const program = gl.createProgram();
@@ -19,11 +32,7 @@ function make_program(gl) {
     gl.attachShader(program, shader);
   }
   gl.linkProgram(program);
-  const places = {};
-  for (const name of ['color', 'units', 'bounds', 'to', 'back', 'size', 'unit', 'height', 'share',
-    'whole', 'seam', 'coarse', 'masked', 'as_it_is'])
-    places[name] = gl.getUniformLocation(program, name);
-  return { program, places };
+  return { program, places: find_places(gl, program) };
 }
 
 function make_texture(gl, filter) {
@@ -42,14 +51,14 @@ export function make_warp(canvas, on_lost) {
   const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false,
     desynchronized: true, powerPreference: 'high-performance', preserveDrawingBuffer: false });
   if (!gl) return null;
-  let program = null, bounds_texture = null, bounds = new Float32Array(0);
-  let newest = null, before = null, around = null, layer = null, came = 0;
+  let program = null, bounds_textures = [], bounds = new Float32Array(0);
+  let newest = null, before = null, around = null, moving = null, came = 0;
 
   function set_up() {
     program = make_program(gl);
-    bounds_texture = make_texture(gl, gl.NEAREST);
+    bounds_textures = Array.from({ length: most_layers }, () => make_texture(gl, gl.NEAREST));
     gl.bindVertexArray(gl.createVertexArray());
-    for (const one of [newest, before, around, layer]) if (one) upload(one);
+    for (const one of [newest, before, around, moving]) if (one) upload(one);
   }
   function upload_color(one) {
     gl.bindTexture(gl.TEXTURE_2D, one.color);
@@ -83,42 +92,65 @@ export function make_warp(canvas, on_lost) {
   canvas.addEventListener('webglcontextrestored', () => { set_up(); on_lost(false); });
   set_up();
 
-  // whole: what it does not show is guessed, else left as it is.
-  function draw(one, view, share, whole) {
+  // Carries the bounds of a keyframe to the view. Returns null where its parts would move too far,
+  // else what the shader reads of it.
+  function make_layer(one, view, texture) {
     const columns = Math.ceil(view.width / block), rows = Math.ceil(view.height / block);
     if (bounds.length !== 2 * columns * rows) bounds = new Float32Array(2 * columns * rows);
     const to = make_mapping(view, one.view), back = make_mapping(one.view, view);
-    carry_bounds(one, view, back, bounds);
-    const { places } = program;
-    const flat = (m) => [...m.one, ...m.across, ...m.down, ...m.baseline];
-    gl.useProgram(program.program);
-    [[one.color, places.color], [one.depth, places.units], [bounds_texture, places.bounds]]
-        .forEach(([texture, place], i) => {
-          gl.activeTexture(gl.TEXTURE0 + i);
-          gl.bindTexture(gl.TEXTURE_2D, texture);
-          gl.uniform1i(place, i);
-        });
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32F, columns, rows, 0, gl.RG, gl.FLOAT, bounds);
+    if (!carry_bounds(one, view, back, bounds)) return null;
     gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32F, columns, rows, 0, gl.RG, gl.FLOAT, bounds);
+    return { one, to, back, texture };
+  }
+  function set_layer(layer, i, { is_last, opacity, view }) {
+    const places = program.places.layers[i], { one, to, back, texture } = layer;
+    const flat = (m) => [...m.one, ...m.across, ...m.down, ...m.baseline];
+    gl.uniform1i(places.is_there, 1);
     gl.uniform3fv(places.to, flat(to));
     gl.uniform3fv(places.back, flat(back));
     gl.uniform2f(places.size, one.view.width, one.view.height);
     gl.uniform1f(places.unit, one.unit);
-    gl.uniform1f(places.height, view.height);
-    gl.uniform1f(places.share, share);
-    gl.uniform1i(places.whole, whole ? 1 : 0);
-    gl.uniform1f(places.seam, whole || one === layer ? 0 : one.view.width / seam_across);
-    gl.uniform1i(places.coarse, one === around ? 1 : 0);
-    gl.uniform1i(places.masked, one === layer ? 1 : 0);
-    gl.uniform1i(places.as_it_is, is_same(one.view, view) ? 1 : 0);
+    gl.uniform1f(places.seam, is_last ? 0 : Math.max(Math.floor(one.view.width / seam_across), 1));
+    gl.uniform1f(places.opacity, opacity);
+    gl.uniform1i(places.is_coarse, is_coarse(one.view, view) ? 1 : 0);
+    bind(i, [one.color, one.depth, texture]);
+  }
+  function bind(i, textures) {
+    const places = program.places.layers[i];
+    [places.color, places.units, places.bounds].forEach((place, n) => {
+      gl.activeTexture(gl.TEXTURE0 + 3 * i + n);
+      gl.bindTexture(gl.TEXTURE_2D, textures[n]);
+      gl.uniform1i(place, 3 * i + n);
+    });
+  }
+  // Draws keyframes in the order in which they are asked. False: none can be seen from there.
+  function draw(keyframes, view, opacity) {
+    const layers = keyframes.map((one, i) => one && make_layer(one, view, bounds_textures[i]))
+        .filter((layer) => layer);
+    if (layers.length === 0) return false;
+    gl.useProgram(program.program);
+    layers.forEach((layer, i) => set_layer(layer, i,
+        { is_last: i === layers.length - 1, opacity: layer.one === newest ? opacity : 1, view }));
+    for (let i = layers.length; i < most_layers; i++) {
+      gl.uniform1i(program.places.layers[i].is_there, 0);
+      bind(i, [layers[0].one.color, layers[0].one.depth, layers[0].texture]);
+    }
+    gl.activeTexture(gl.TEXTURE0);
+    gl.uniform1f(program.places.height, view.height);
+    gl.uniform1i(program.places.masked, keyframes[0] === moving ? 1 : 0);
+    gl.uniform1i(program.places.as_it_is,
+        opacity === 1 && is_same(layers[0].one.view, view) ? 1 : 0);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    return true;
   }
 
   return {
-    // still: the layer lies over it, too; else what moves is in it.
+    // still: what moves lies over it, too; else it is in it.
     add(keyframe, now, still) {
       if (around && around.cuts !== keyframe.cuts) around = replace(around, null);
-      if (layer && (!still || layer.cuts !== keyframe.cuts)) layer = replace(layer, null);
+      if (moving && (!still || moving.cuts !== keyframe.cuts)) moving = replace(moving, null);
       const goes_on = newest && newest.cuts === keyframe.cuts;
       before = replace(before, goes_on ? newest : null);
       newest = replace(goes_on ? null : newest, keyframe);
@@ -126,7 +158,8 @@ export function make_warp(canvas, on_lost) {
     },
     // What lies around the others, in fewer pixels.
     set_around(keyframe) { around = replace(around, keyframe); },
-    set_layer(keyframe) { layer = replace(layer, keyframe); },
+    // What moves over still ones, where its disparity is not 0.
+    set_layer(keyframe) { moving = replace(moving, keyframe); },
     // Pieces, {bitmap, x, y} in a picture of that size, replace colours of the newest keyframe.
     async change(pieces, width, height) {
       if (!newest) return;
@@ -149,19 +182,11 @@ export function make_warp(canvas, on_lost) {
       if (canvas.width !== view.width) canvas.width = view.width;
       if (canvas.height !== view.height) canvas.height = view.height;
       gl.viewport(0, 0, view.width, view.height);
-      gl.disable(gl.BLEND);
-      const share = before ? Math.min(1, (now - came) / fade_ms) : 1;
-      const behind = share === 1 && is_same(newest.view, view) ? []
-        : [around, before].filter((one) => one !== null);
-      // The first of them shows what none of them does as it goes on behind.
-      gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-      [...behind, newest].forEach((one, i) => {
-        if (i === 1) gl.enable(gl.BLEND);
-        draw(one, view, one === newest ? share : 1, i === 0);
-      });
-      gl.disable(gl.BLEND);
-      if (layer) draw(layer, view, 1, false);
-      return true;
+      const opacity = before ? Math.min(1, (now - came) / fade_ms) : 1;
+      const wide = around?.cuts === newest.cuts ? around : null;
+      const drawn = draw([newest, before, wide], view, opacity);
+      if (moving) draw([moving], view, 1);
+      return drawn;
     },
     fades: (now) => before !== null && now - came < fade_ms,
   };

@@ -327,6 +327,51 @@ TEST(WarpPicture, PassesSmoothlyIntoWhatIsAround) {
   }
 }
 
+// A step aside uncovers what the newest keyframe does not show, and the one before does.
+TEST(WarpPicture, WhatIsHiddenComesFromTheKeyframeBefore) {
+  const Place place = bars(0.12f);
+  const View now = look_at({0.07f, 0, 0}, 0);
+  const Keyframe newest = keyframe_of(place, look_at({0, 0, 0}, 0)),
+                 before = keyframe_of(place, look_at({0.14f, 0, 0}, 0));
+  const Image8 right = draw(place, now).picture;
+  auto count_wrong = [&](const Image8& image) {
+    int wrong = 0;
+    for (int y = 0; y < now.height; y++)
+      for (int x = 12; x < now.width - 12; x++) {
+        const size_t i = 3 * (size_t(y) * size_t(now.width) + size_t(x));
+        wrong += std::abs(image.rgb[i + 2] - right.rgb[i + 2]) > 8;
+      }
+    return wrong;
+  };
+  WarpScratch scratch;
+  Image8 both;
+  const Keyframe* const keyframes[] = {&newest, &before};
+  EXPECT_EQ(warp_picture(keyframes, now, 0.1f, scratch, both), 0.0f);
+  EXPECT_LT(2 * count_wrong(both), count_wrong(warp(newest, now)));
+}
+
+// A figure stood beside where it stands now. Nothing of it is left, neither there nor in what it
+// uncovers, as the newest keyframe sees past where it was.
+TEST(WarpPicture, WhatHasGoneIsNotSeenBesideWhereItIs) {
+  auto figure = [](float left) {
+    return Place([=](const Ray& ray) {
+      const float t = distance_to_wall(ray, -2), x = ray.origin.x + t * ray.direction.x;
+      if (x > left && x < left + 0.4f) return SeenPlace{vec3(255, 0, 0), t};
+      return SeenPlace{vec3(0, 100, 0), distance_to_wall(ray, -4)};
+    });
+  };
+  const View drawn = look_at({0, 0, 0}, 0), now = look_at({0.15f, 0, 0}, 0);
+  const Keyframe newest = keyframe_of(figure(0), drawn), before = keyframe_of(figure(-0.1f), drawn);
+  WarpScratch scratch;
+  Image8 both;
+  const Keyframe* const keyframes[] = {&newest, &before};
+  warp_picture(keyframes, now, 1, scratch, both);
+  const Image8 right = draw(figure(0), now).picture;
+  int different = 0;
+  for (size_t i = 0; i < both.rgb.size(); i += 3) different += both.rgb[i] != right.rgb[i];
+  EXPECT_LE(different, 2 * now.height);  // a pixel at either edge
+}
+
 TEST(WarpPicture, WhatIsNowhereStaysUnknown) {
   View before = look_at({0, 0, 0}, 0), now = look_at({0, 0, 0}, 1.5f),
        beside = look_at({0, 0, 0}, 0.5f, 60, 36);
@@ -336,7 +381,10 @@ TEST(WarpPicture, WhatIsNowhereStaysUnknown) {
   float unknown = warp_picture(keyframe, around, now, 1, scratch, out);
   EXPECT_GT(unknown, 0.5f);
   EXPECT_LT(unknown, 1.0f);
-  EXPECT_EQ(warp_picture(Keyframe{}, around, now, 1, scratch, out), 1.0f);
+  // An empty keyframe counts as none.
+  EXPECT_EQ(warp_picture(Keyframe{}, around, now, 1, scratch, out),
+            warp_picture(around, now, 1, scratch, out));
+  EXPECT_EQ(warp_picture(Keyframe{}, Keyframe{}, now, 1, scratch, out), 1.0f);
 }
 
 TEST(SurroundingView, HoldsAllViewsInFewPixels) {

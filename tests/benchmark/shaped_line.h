@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// A line of so many bits a second and of so long a way to a server: tests/shaped_line.mjs, a
+// program of Node.
+#pragma once
+#include <cstdint>
+#include <sys/types.h>
+
+#include "report.h"
+
+namespace wellspring {
+
+class ShapedLine {
+ public:
+  // queue: bytes that are on their way at most, in each direction. Throws std::runtime_error if it
+  // cannot be started.
+  ShapedLine(const BenchOptions& options, uint16_t server, double mbit, double trip_ms,
+             size_t queue = 64 * 1024);
+  ~ShapedLine();
+  ShapedLine(const ShapedLine&) = delete;
+  ShapedLine& operator=(const ShapedLine&) = delete;
+  void set_rate(double mbit);
+  uint16_t port = 0;  // of its near end
+
+ private:
+  pid_t pid_ = 0;
+  int orders_ = -1;
+};
+
+}  // namespace wellspring
