@@ -82,7 +82,9 @@ const draw = (page, steps) => page.evaluate(async (all) => {
       const { view: seen, unit, cuts } = picture.keyframe;
       const { problem, bitmap, units, blocks } = await decode(picture);
       if (problem) throw new Error(problem);
-      warp.add({ view: seen, unit, cuts, bitmap, units, blocks }, 0, picture.around);
+      const keyframe = { view: seen, unit, cuts, bitmap, units, blocks };
+      if (picture.around) warp.set_around(keyframe);
+      else warp.add(keyframe, 0, false);
       continue;
     }
     const { width, height } = view, gl = canvas.getContext('webgl2');
