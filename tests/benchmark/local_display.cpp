@@ -52,6 +52,7 @@ bool LocalDisplay::receive(std::span<const uint8_t> message) {
   const auto packet = read_packet(message);
   if (!packet) return false;
   const PacketHeader& header = packet->header;
+  if (header.flags & packet_layer) return true;
   if (packet->keyframe) {
     const KeyframeHeader& keyframe = *packet->keyframe;
     const auto color = packet->payload.first(keyframe.color_bytes);

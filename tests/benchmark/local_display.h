@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows keyframes with depth as a page does that draws for itself (web/display): from any view, by
 // the same warp (picture/warp_picture.h), newest keyframe over the one before over the wide one. It
-// does not pass from one to the next in time.
+// does not pass from one to the next in time, and leaves out layers of what moves.
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>

@@ -9,7 +9,7 @@ import { after, before, test } from 'node:test';
 import { cross } from '../../web/display/view.js';
 import { read_picture } from '../../web/packet.js';
 import { Visitor, run, start_server, until } from '../server.mjs';
-import { launch, pictures, skip } from './chromium.mjs';
+import { by_processor, launch, pictures, skip } from './chromium.mjs';
 
 const most_flip = 0.01;
 
@@ -17,7 +17,7 @@ let server, browser, folder;
 before(async () => {
   if (skip) return;
   server = await start_server(['--exhibit', 'first-room']);
-  browser = await launch(['--use-angle=swiftshader', '--enable-unsafe-swiftshader']);
+  browser = await launch(by_processor);
   folder = mkdtempSync(join(tmpdir(), 'wellspring_warp_'));
 });
 after(async () => {
@@ -36,7 +36,7 @@ async function walk() {
     if (!binary) return false;
     const { buffer, byteOffset, length } = binary;
     const picture = read_picture(buffer.slice(byteOffset, byteOffset + length));
-    if (!picture?.keyframe) return false;
+    if (!picture?.keyframe || picture.layer) return false;
     got.push({ ...picture, bytes: Buffer.from(binary) });
     return false;
   }).catch(() => {});
