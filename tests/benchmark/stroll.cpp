@@ -51,8 +51,7 @@ std::vector<double> Stroll::gaps() const {
 Stroll stroll_through(const StrollPlan& plan, const std::function<void()>& counting) {
   const double input_interval = 1.0 / 30;
   WsClient client;
-  join_visit(client, plan.port, plan.width, plan.height,
-             plan.local ? "local" : "server");
+  join_visit(client, plan.port, plan.width, plan.height, plan.local ? "local" : "server");
   Stroll seen;
   std::deque<std::pair<uint32_t, double>> asked;  // seq, when sent
   std::vector<uint8_t> before;                    // the picture before
