@@ -133,8 +133,8 @@ void note_lead(Show& show, uint64_t posed_us, uint64_t picture_us) {
 bool takes_parts(const Show& show, const Visitor& visitor, const View& view) {
   const Image8& has = visitor.shown.encoder->has.image;
   return visitor.wants.parts && stands(show, visitor) && view == visitor.shown.view &&
-         !visitor.shown.lost && has.width == view.width && has.height == view.height &&
-         !has.rgb.empty();
+         (visitor.shown.has_still || !visitor.wants.local) && !visitor.shown.lost &&
+         has.width == view.width && has.height == view.height && !has.rgb.empty();
 }
 
 // Of pictures at rest: they are looked at for long, few a second, and yet in the way of what comes
@@ -221,7 +221,7 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   const PacketHeader header = next_header(show, visitor, seq, still);
   note_lead(show, visitor.picture.job.time_us, header.time_us);
   if (takes_parts(show, visitor, view)) send_parts(show, visitor, view, header, seq != shown.seq);
-  else send_complete(show, visitor, view, header);
+  else send_complete(show, visitor, view, header), shown.has_still = still;
   if (shown.sent_at > 0 && show.time > shown.sent_at)
     smooth(shown.measured_fps, float(1 / (show.time - shown.sent_at)));
   shown.sent_at = show.time;

@@ -63,6 +63,7 @@ struct VisitorDelivery {
   double pictured_at = -1e9;     // when it was due
   double warp_core_seconds = 0;  // for the last (process_clock.h); 0: it was drawn for its view
   bool lost = false;             // the browser has not what it was sent
+  bool has_still = false;        // its keyframe is of a picture at rest, and parts of such fit it
   bool has_layer = false;        // what moves was laid over it (packet_layer)
   bool sent_layer = false;       // that was the last to be sent
   double refine_at = -1e9;       // when more of a picture at rest may be sent
