@@ -10,7 +10,7 @@
 
 namespace wellspring {
 
-// What moves alone, with the depth of its pixels, for who lays it over other views of the rest.
+// A layer has what moves alone, with the depth of its pixels, for who lays it over other views.
 struct MovingLayer {
   PictureWindow window;
   std::vector<uint8_t> rgb;      // of the window, row after row
@@ -48,7 +48,7 @@ PictureWindow whole_runs(const PictureWindow& window, const View& view);
 void copy_colors(const Keyframe& keyframe, const PictureWindow& window, Image8& image);
 // The peaks of its pixels, as far as its colours tell them: of white the least.
 void guess_peaks(const Image8& image, const PictureWindow& window, std::vector<uint8_t>& peaks);
-// Of a window of a picture, row after row.
+// Copies the pixels of a window of a picture, row after row.
 void take_window(const Image8& image, const PictureWindow& window, std::vector<uint8_t>& rgb);
 // The part of the view that the window shows, as a view of its own.
 View window_view(const View& view, const PictureWindow& window);

@@ -173,7 +173,7 @@ LaneMask is_inside(const Source& source, const Lanes& x, const Lanes& y) {
          (y <= source.last_y + (1 + found));
 }
 
-// What a keyframe has for a row of eight pixels.
+// This is what a keyframe has for a row of eight pixels.
 struct Row {
   LaneBits color{};    // what it shows, or else how it goes on
   Lanes disparity{};   // of what it shows
@@ -248,8 +248,8 @@ LaneMask sees_past(const Source& source, const Place& base, const Search& search
   return is_inside(source, place.x, place.y) & ((disparity - there) * search.pixels > meets);
 }
 
-// What the first keyframe does not show all of is taken from the next ones, but for what it sees
-// past, and then from how the first goes on. Returns how many pixels lie outside of all.
+// The next keyframes give what the first one does not show all of, but for what it sees
+// past; then it goes on as the first does. Returns how many pixels lie outside of all.
 int mix_row(std::span<const Layer> layers, const View& view, int x, int y, LaneMask wanted,
             const Search& search, const Row& first, LaneBits& color) {
   const float middle_x = float(x) + 0.5f, middle_y = float(y) + 0.5f;

@@ -80,7 +80,7 @@ export function make_screen(canvas, { on_shown, send }) {
     stands(seq) { display?.walker.sent(seq, [0, 0, 0]); },
     rate: () => (display ?? finished).rate(),
     round_trip: trip.milliseconds,
-    // Where pictures are drawn, for technicians: local, or why not.
+    // Tells technicians where pictures are drawn: local, or why not.
     way: () => reason || 'local',
   };
 }

@@ -24,7 +24,7 @@ export function view_of(pose, width, height) {
     tan_half_fov, middle, width, height };
 }
 
-// What one of them shows at a pixel the other does, too.
+// Both show the same at every pixel.
 export function is_same(a, b) {
   const near = (p, q) => p.every((v, i) => Math.abs(v - q[i]) < 1e-5);
   return a.width === b.width && a.height === b.height && near(a.eye, b.eye)

@@ -8,7 +8,7 @@ import { block, carry_bounds, is_coarse, is_same, make_mapping } from './view.js
 const fade_ms = 50;      // from one keyframe to the next
 const seam_across = 64;  // of its width, a keyframe passes into the next
 
-// Where uniforms are: {height, as_it_is, masked, layers: of each layer its fields and textures}.
+// Returns where uniforms are: {height, as_it_is, masked, layers: fields and textures of each}.
 function find_places(gl, program) {
   const at = (name) => gl.getUniformLocation(program, name);
   const layers = Array.from({ length: most_layers }, (_, i) => {

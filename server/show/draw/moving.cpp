@@ -130,7 +130,7 @@ void finish_moving(Show& show, Visitor& visitor) {
   smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
   std::swap(moving, picture.moving);
   picture.job.time_us = renderer.posed_us;
-  // Of what does not move in it a page that has it need not hear.
+  // A page that has what does not move in it need not hear of that again.
   if (!layer || relit || is_first) picture.unshown = true;
   picture.layer_unsent = layer;
   show.totals.posed++;

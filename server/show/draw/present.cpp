@@ -87,7 +87,7 @@ void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, b
   });
 }
 
-// What moves in a picture at rest is sent by itself, as `header` and `keyframe` say.
+// A picture at rest has what moves in it sent by itself, as `header` and `keyframe` say.
 void encode_layer(Visitor& visitor, const PacketHeader& header, const KeyframeHeader& keyframe,
                   MovingLayer layer) {
   Encoder* encoder = visitor.shown.encoder.get();
@@ -318,7 +318,7 @@ static void send_surroundings(Show& show, Visitor& visitor) {
   encode_complete(show, visitor, header, false, 8, keyframe_header(show, view, around.camera_cuts));
 }
 
-// What moves comes before the keyframe that is without it, and in turns with what is new of that.
+// A layer comes before the keyframe that is without it, and in turns with what is new of that.
 static bool takes_layer(const VisitorPicture& picture, const VisitorDelivery& shown) {
   const bool needs_none = !picture.backdrop && shown.has_layer && picture.unshown;
   return needs_none || (picture.layer_unsent && !(picture.unshown && shown.sent_layer));

@@ -32,8 +32,8 @@ struct KeyframePlan {
 // beyond which they come late.
 KeyframePlan plan_keyframe(double seconds, float before, double longest_period);
 
-// What a page that draws by itself shows wrong of its visitor's way, the longer a keyframe has to
-// do: shares of the picture, a second.
+// A page that draws by itself shows more and more wrong, the longer a keyframe has to do. These are
+// shares of the picture, a second.
 struct Ageing {
   float uncovered = 0;  // appear beside what is nearer, and nothing knows them
   float turned_to = 0;  // come in from the side, and the wide keyframe has them in few pixels

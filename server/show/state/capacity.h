@@ -31,7 +31,7 @@ struct PictureCost {
   bool operator==(const PictureCost&) const = default;
 };
 
-// What somebody's pictures are. local: the page draws by itself.
+// Tells what somebody's pictures are. local: the page draws by itself.
 struct SeatSize {
   double pixels = 0;
   bool local = false;
