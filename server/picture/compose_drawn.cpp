@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "light/sample/illumination_map.h"
 #include "picture/cell_rows.h"
@@ -131,6 +132,8 @@ struct Composer {
   bool passing = false;  // what maps say all of is not asked of points: the picture is soon another
   Shade shade = {};
 
+  // Of what nothing is known.
+  vec3 usual_light() const { return vec3(kept.maps ? kept.maps->usual : 0); }
   // Eight lanes each.
   static int parts_of(const VisibleRun& run) {
     return (run.count + half_cell + lane_count - 1) / lane_count;
@@ -154,9 +157,13 @@ const CellRows& Composer::rows_around(const VisibleRun& run) const {
   return rows;
 }
 
-// Pixels of which no cell knows the surface: light of the points around that lie on it.
+// Pixels of which no cell knows the surface: light of the points around that lie on it. Should
+// there be none and no map, that of the object elsewhere, or what is usual in the scene: nothing is
+// black because it has just come into view.
 void Composer::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const {
   Pixels& p = d.pixels;
+  NearbyLight far;  // of the lane before
+  uint32_t far_object = no_object;
   for (unsigned bits = negative_lanes(lonely); bits != 0; bits &= bits - 1) {
     int k = std::countr_zero(bits);
     if (!(p.depth[k] < 0.5f * infinite_depth)) continue;
@@ -166,9 +173,17 @@ void Composer::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) cons
         lx + k, ly,         vec2(p.x[k], p.y[k]), p.depth[k], vec3(p.nx[k], p.ny[k], p.nz[k]),
         albedo, p.object[k]};
     NearbyLight found = find_light_nearby(view, rays, light, place);
-    if (found.samples == 0) continue;
-    p.samples[k] = found.samples;
-    p.deviation[k] = found.deviation;
+    if (found.samples > 0) {
+      p.samples[k] = found.samples;
+      p.deviation[k] = found.deviation;
+    } else {
+      if (d.mapped[k]) continue;
+      if (std::exchange(far_object, place.object) != place.object) {
+        far = find_light_far(cells, place);
+        if (far.samples == 0) far.smooth = usual_light();
+      }
+      found = far;
+    }
     p.smooth.r[k] = found.smooth.x, p.smooth.g[k] = found.smooth.y, p.smooth.b[k] = found.smooth.z;
     p.rest.r[k] = found.rest.x, p.rest.g[k] = found.rest.y, p.rest.b[k] = found.rest.z;
   }
@@ -184,6 +199,8 @@ void Composer::light_run(const RunPixels& p, const VisibleRun& run, const CellRo
     d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
                 lanes_at(p.surface.blue, i)};
     q.samples = Lanes{};
+    const vec3 usual = usual_light();
+    q.smooth = {all_lanes(usual.x), all_lanes(usual.y), all_lanes(usual.z)};
     return light_as_mapped(d.mapped, q);
   }
   q.nx = lanes_at(p.surface.nx, i), q.ny = lanes_at(p.surface.ny, i);

@@ -11,6 +11,7 @@ namespace wellspring {
 namespace {
 
 constexpr int rings = 5;
+constexpr int cell_rings = 16;
 constexpr int enough_points = 6;  // found by a ring: no other is needed
 // Cosines squared: from no less on it is the same surface, and certainly from there on.
 constexpr float turned_away = 0.49f, same_direction = 0.75f;
@@ -146,6 +147,30 @@ NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Fra
   found.rest = mean(sum.rest);
   found.deviation = lanes_sum(sum.deviation) / samples;
   found.samples = samples * samples / lanes_sum(sum.squares) * (samples / lanes_sum(sum.reached));
+  return found;
+}
+
+NearbyLight find_light_far(const Cells& cells, const SeenPlace& place) {
+  const int cx = place.x / cell_size, cy = place.y / cell_size;
+  NearbyLight found;
+  auto add = [&](int x, int y) {
+    const size_t i = size_t(cells.index(x, y));
+    if (cells.object[i] != place.object || !(cells.samples[i] > 0)) return;
+    auto at = [i](const std::array<std::span<float>, 3>& of) {
+      return vec3(of[0][i], of[1][i], of[2][i]);
+    };
+    const float samples = cells.samples[i];
+    found.smooth += samples * at(cells.smooth);
+    found.rest += samples * at(cells.rest) * rest_ratio(place.albedo, at(cells.albedo));
+    found.samples += samples;
+  };
+  for (int ring = 0; ring <= cell_rings && found.samples == 0; ring++)
+    for (int y = std::max(cy - ring, 0); y <= std::min(cy + ring, cells.height - 1); y++) {
+      const bool whole = y == cy - ring || y == cy + ring;
+      for (int x = cx - ring; x <= cx + ring; x += whole || ring == 0 ? 1 : 2 * ring)
+        if (x >= 0 && x < cells.width) add(x, y);
+    }
+  if (found.samples > 0) found.smooth /= found.samples, found.rest /= found.samples;
   return found;
 }
 

@@ -2,6 +2,7 @@
 #include "light/sample/illumination_map.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -17,6 +18,21 @@ size_t memory_bytes(const IlluminationMap& map) {
                bytes_of(map.places->charts);
   for (const IlluminationNodes& layer : *map.layers) sum += bytes(layer);
   return sum;
+}
+
+// Of some nodes, which is enough. What is in shadow counts for a hundredth of the mean at least.
+static float usual_light(const IlluminationMap& map) {
+  constexpr size_t stride = 29;
+  const std::vector<uint32_t>& light = map.nodes.light;
+  double sum = 0, logs = 0, count = 0;
+  auto each = [&](const auto& take) {
+    for (size_t i = 0; i < light.size(); i += stride)
+      take(double(luminance(unpack_rgb9e5(light[i]))));
+  };
+  each([&](double one) { sum += one, count++; });
+  if (!(sum > 0)) return 0;
+  each([&](double one) { logs += std::log(std::max(one, 0.01 * sum / count)); });
+  return float(std::exp(logs / count));
 }
 
 // `levels`: empty where all lamps are full.
@@ -41,6 +57,7 @@ static void sum_layers(std::span<const LampLevel> levels, IlluminationMap& map) 
       if (sloped) map.nodes.slope[i] = pack_slope(slope / std::max(luminance(sum), 1e-20f));
     }
   });
+  map.usual = usual_light(map);
 }
 
 IlluminationMap sum_of_layers(IlluminationMap map) {

@@ -71,6 +71,7 @@ struct IlluminationMap {
   std::shared_ptr<const std::vector<IlluminationNodes>> layers;
   float error = 1;  // estimated: root mean square of what it is wrong by over the mean light
   float mean = 0;   // luminance of the mean light
+  float usual = 0;  // geometric mean of the luminance, of the lamps as they are
   float least_known() const { return mean > 0 ? 0.01f * mean : 1.0f; }  // see known_light()
 };
 // Light of a map that may be wrong by more waits for what visitors' own samples say.

@@ -91,6 +91,30 @@ TEST(MappedLight, IsThereBeforeTheFirstSample) {
   }
 }
 
+// No map has the light of metal: it is shown in what is usual until samples tell it.
+TEST(MappedLight, MetalIsNotBlackBeforeItsFirstSample) {
+  Scene scene = make_cornell_box();
+  Material gold = diffuse({0.8f, 0.6f, 0.2f});
+  gold.metallic = 1, gold.roughness = 0.3f;
+  add_quad(scene, add_material(scene, gold), {-0.2f, 0.2f, -0.1f}, {0.4f, 0, 0}, {0, 0.2f, 0},
+           "board");
+  MappedStage mapped(std::move(scene), [](vec3) { return vec3(0.7f); });
+  for (PictureOf kind : kinds) {
+    DrawnVisit visit = mapped.visit("path");
+    visit.step(mapped.stage, mapped.view, 0, kind);
+    int board = 0;
+    for (int y = 0; y < height; y++)
+      for (int x = 0; x < width; x++) {
+        const Ray ray = view_ray(mapped.view, float(x) + 0.5f, float(y) + 0.5f);
+        const Hit hit = mapped.stage.world->intersect(ray);
+        if (!hit.valid() || mapped.stage.world->material_of(hit.instance).metallic == 0) continue;
+        const vec3 color = visit.frame.color[size_t(y * width + x)];
+        board += length(color - 0.7f * vec3(gold.base_color)) < 0.1f;
+      }
+    EXPECT_GT(board, 300) << int(kind);
+  }
+}
+
 // A fiftieth of the mean light is no more than that.
 TEST(MappedLight, LeavesTheDarkDark) {
   MappedStage mapped([](vec3 p) { return vec3(p.x > 0 ? 2.0f : 0.02f); });

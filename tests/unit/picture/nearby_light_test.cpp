@@ -10,6 +10,7 @@
 
 #include "base/rng.h"
 #include "cache/packing.h"
+#include "cache/scratch.h"
 
 using namespace wellspring;
 
@@ -114,4 +115,38 @@ TEST(NearbyLight, RingsEndAtThePicturesBorders) {
             << x << " " << y << " " << share;
       }
   }
+}
+
+// Cells of other things, and those that were filled from what is around, do not count.
+TEST(NearbyLight, FarOffIsThatOfTheNearestCellsWithSamples) {
+  constexpr int side = 40;  // cells
+  Scratch scratch;
+  scratch.start(cells_bytes(side * cell_size, side * cell_size));
+  Cells cells;
+  take_cells(cells, side * cell_size, side * cell_size, scratch);
+  auto put = [&](int x, int y, uint32_t object, float samples, float light) {
+    const size_t i = size_t(cells.index(x, y));
+    cells.object[i] = object, cells.samples[i] = samples;
+    for (int k = 0; k < 3; k++) {
+      cells.smooth[size_t(k)][i] = light, cells.rest[size_t(k)][i] = 2 * light;
+      cells.albedo[size_t(k)][i] = 0.5f;
+    }
+  };
+  for (int y = 0; y < side; y++)
+    for (int x = 0; x < side; x++) put(x, y, thing + 1, 4, 9);
+  auto light_at = [&](int x, int y) {
+    return find_light_far(cells, {x * cell_size + 1, y * cell_size + 3, vec2(0), 2, vec3(0, 0, 1),
+                                  vec3(0.5f), thing});
+  };
+  EXPECT_EQ(light_at(20, 20).samples, 0);
+  put(22, 20, thing, 0, 7);
+  EXPECT_EQ(light_at(20, 20).samples, 0);
+  put(26, 20, thing, 3, 1), put(20, 14, thing, 1, 5), put(20, 5, thing, 8, 8);
+  const NearbyLight found = light_at(20, 20);
+  EXPECT_EQ(found.samples, 4);
+  EXPECT_FLOAT_EQ(found.smooth.y, 2);
+  EXPECT_FLOAT_EQ(found.rest.y, 4);
+  EXPECT_FLOAT_EQ(light_at(0, 0).smooth.x, 0);    // 20 cells off
+  EXPECT_FLOAT_EQ(light_at(39, 39).smooth.x, 0);  // likewise
+  EXPECT_FLOAT_EQ(light_at(20, 0).smooth.x, 8);   // at the border
 }
