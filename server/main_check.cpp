@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
     if (usable) {
       wellspring::World world(exhibit.scene);
       wellspring::check_places(exhibit, world, problems);
+      wellspring::check_sides(exhibit, world, problems);
       wellspring::check_light(exhibit, world, problems);
       wellspring::check_ground(exhibit, world, problems);
       wellspring::make_tour_roads(exhibit, world, problems);

@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
     if (usable) {
       World world(exhibit.scene);
       check_places(exhibit, world, problems);
+      check_sides(exhibit, world, problems);
       check_light(exhibit, world, problems);
     }
     for (const Problem& problem : problems)

@@ -18,7 +18,9 @@ namespace {
 
 constexpr int directions = 64;
 constexpr float solid_share = 0.85f;  // of the directions that meet backs first
-constexpr float too_bright = 200;     // light on a surface, of which 3.14 makes white paper white
+// Of all directions from all viewpoints, and of those that meet the object.
+constexpr float much_in_view = 0.01f, much_of_it = 0.25f;
+constexpr float too_bright = 200;  // light on a surface, of which 3.14 makes white paper white
 constexpr float white_light = pi;
 constexpr float off_exposure = 30;  // so many times more or less is a mistake
 
@@ -177,6 +179,35 @@ void check_places(const Exhibit& exhibit, const World& world, std::vector<Proble
     check_view(exhibit, world, viewpoint, noter);
   for (size_t i = 0; i < exhibit.storytellers.size(); i++)
     check_storyteller(exhibit, world, i, noter);
+}
+
+void check_sides(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems) {
+  std::vector<int> backs(exhibit.scene.objects.size(), 0), hits = backs;
+  int all = 0;
+  std::string inside;
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) {
+    const vec3 eye = vec3(viewpoint.view.position - exhibit.scene.origin);
+    if (is_in_solid(world, eye, inside)) continue;
+    for (int i = 0; i < directions; i++) {
+      const vec3 way = direction_of(i, directions);
+      const Hit hit = first_solid(world, eye, way);
+      if (!hit.valid()) continue;
+      const uint32_t object = world.object_of(hit.instance);
+      all++, hits[object]++;
+      if (!world.material_of(hit.instance).double_sided && is_back(world, hit, way))
+        backs[object]++;
+    }
+  }
+  std::vector<std::string> names;
+  for (size_t i = 0; i < backs.size(); i++)
+    if (float(backs[i]) > std::max(much_in_view * float(all), much_of_it * float(hits[i])))
+      names.push_back("'" + exhibit.scene.objects[i] + "'");
+  if (names.empty()) return;
+  Noter{exhibit, problems}.note(
+      "/scene", fmt::format("visitors see these from behind, where no light is baked: {}. Turn "
+                            "their faces (Blender: Mesh > Normals > Flip), or make the material "
+                            "double-sided",
+                            list_names(names, 8)));
 }
 
 void check_shipped_light(const Exhibit& exhibit, std::vector<Problem>& problems) {

@@ -67,6 +67,18 @@ TEST(CheckScene, ARoomWithItsBacksInwardsIsSaid) {
   EXPECT_EQ(package.says("/viewpoints/0/position", "faces inwards"), 1) << package.told();
 }
 
+TEST(CheckScene, ACeilingThatFacesAwayIsSaid) {
+  for (bool away : {false, true}) {
+    Asset asset = room_asset(0);
+    add_box(asset, "Vault", {-4, 2.9f, -3}, {4, 2.95f, 3}, away);
+    add_point_light(asset, "Lamp", {0, 2.6f, 0}, 8);
+    RoomPackage package(asset);
+    package.check();
+    EXPECT_EQ(package.says("/scene", "from behind, where no light is baked: 'Vault'"), away)
+        << package.told();
+  }
+}
+
 TEST(CheckScene, MirroredNodesKeepTheirSides) {
   Asset asset = room_asset(0);
   add_point_light(asset, "Lamp", {0, 2.6f, 0}, 8);

@@ -94,6 +94,7 @@ struct RoomPackage {
     Exhibit exhibit = read();
     World world(exhibit.scene);
     check_places(exhibit, world, problems);
+    check_sides(exhibit, world, problems);
     check_light(exhibit, world, problems);
     return exhibit;
   }
