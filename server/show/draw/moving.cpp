@@ -125,6 +125,8 @@ void finish_moving(Show& show, Visitor& visitor) {
   const PictureWindow& moves = layer ? moving.layer.window : moving.window;
   picture.backdrop &= relit || may_be_laid_over(moves, moving.view);
   if (!picture.backdrop) return;
+  // An empty one says that nothing moves any more.
+  picture.layer_unsent = layer && (!moves.empty() || visitor.shown.has_layer);
   float& smoothed = visitor.times.moving;
   float milliseconds = float(1000 * renderer.posed_seconds);
   smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
@@ -132,7 +134,6 @@ void finish_moving(Show& show, Visitor& visitor) {
   picture.job.time_us = renderer.posed_us;
   // A page that has what does not move in it need not hear of that again.
   if (!layer || relit || is_first) picture.unshown = true;
-  picture.layer_unsent = layer;
   show.totals.posed++;
 }
 
