@@ -14,10 +14,9 @@ namespace {
 
 // On each side, of width and height: turning goes sideways.
 constexpr int margin_across = 40, margin_down = 45;
-constexpr int widest_across = 10;                 // of quick turns
-constexpr float widest_tangent = 3;               // from the middle of surroundings to their border
-constexpr int asked_across = 16, asked_down = 9;  // directions that stand for a view
-constexpr float nearest_depth = 1e-4f;            // metres, as in project_points()
+constexpr int widest_across = 10;       // of quick turns
+constexpr float widest_tangent = 3;     // from the middle of surroundings to their border
+constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
 
 float disparity_of(float depth) {
   return depth > 0 ? 1 / std::max(depth, nearest_depth)
@@ -129,20 +128,6 @@ View surrounding_view(std::span<const View> views, float share) {
   around.height = side(float(around.width) * high / wide);
   around.tan_half_fov = std::max(high, wide * float(around.height) / float(around.width));
   return around;
-}
-
-float missing_share(const View& drawn, const View& wanted) {
-  float high = drawn.tan_half_fov, wide = high * float(drawn.width) / float(drawn.height);
-  int missing = 0;
-  for (int y = 0; y < asked_down; y++)
-    for (int x = 0; x < asked_across; x++) {
-      vec3 d =
-          direction_at(wanted, (float(x) + 0.5f) / asked_across, (float(y) + 0.5f) / asked_down);
-      float z = dot(d, drawn.forward);
-      missing += !(std::abs(dot(d, right_of_middle(drawn))) <= wide * z &&
-                   std::abs(dot(d, above_middle(drawn))) <= high * z);
-    }
-  return float(missing) / float(asked_across * asked_down);
 }
 
 void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth,

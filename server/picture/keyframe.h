@@ -40,9 +40,6 @@ View scaled_view(View view, float scale);
 // as it takes, within what a flat picture can hold; about `share` of the first one's pixels, and no
 // larger than that to any side. No views: an empty one.
 View surrounding_view(std::span<const View> views, float share);
-// The share of `wanted`'s directions that `drawn` does not hold, as if both were of the same place:
-// from 0 to 1, in steps of less than a hundredth.
-float missing_share(const View& drawn, const View& wanted);
 
 // The unit in which a display is told disparities of the view (frame/disparity_code.h): they are
 // off by at most half a pixel of parallax for each metre that the eye moves.

@@ -133,7 +133,9 @@ TurnErrors judge_turns(const VisitStage& stage, const VisibilityPass& visibility
         return keyframe_view(expected_view(heading, view, before + 1.5 * drawing), turn);
       };
       finished = time + drawing;
-      if (surrounded) wide = surroundings(heading, view, keyframe(0), 2 * drawing);
+      const View soon = expected_view(heading, view, 2 * drawing);
+      if (surrounded && (frames.around.empty() || is_elsewhere(frames.around.view, soon)))
+        wide = wide_view(soon);
       if (wide)
         finished += surroundings_time * drawing, surrounded_at = time + surroundings_time * drawing;
       frames.draw(keyframe(wide ? surroundings_time * drawing : 0), frames.drawn);

@@ -97,20 +97,16 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
     job.ahead = expected_view(place.heading, now, seen_in + interval);
     float turn = expected_turn(place.heading, now, 0.5 * interval);
     job.view = scaled_view(keyframe_view(job.expected, turn), job.scale);
-    if (job.passing) {
-      job.ahead = scaled_view(keyframe_view(job.ahead), job.scale);
-      if (!points && !visitor.wants.local)
-        job.around = surroundings(place.heading, now, job.view, seen_in + 0.5 * interval);
-    }
+    if (job.passing) job.ahead = scaled_view(keyframe_view(job.ahead), job.scale);
   } else {
     job.ahead = expected_view(place.heading, now, predicted_pictures * interval);
   }
-  if (visitor.wants.local && job.passing && seen && !points) {
+  if (job.passing && seen && !points) {
     const Surroundings& around = picture.around;
-    const bool here = around.camera_cuts == place.camera_cuts && around.ordered_at >= 0;
+    const bool here = around.camera_cuts == place.camera_cuts && !around.keyframe.empty();
     // A turn goes on until it is there.
     const View soon = expected_view(place.heading, now, turn_ahead_seconds);
-    if (!here || is_elsewhere(around.view, soon)) job.around = wide_view(soon);
+    if (!here || is_elsewhere(around.keyframe.view, soon)) job.around = wide_view(soon);
   }
   return job;
 }

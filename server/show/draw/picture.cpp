@@ -21,7 +21,6 @@ namespace wellspring {
 
 namespace {
 
-constexpr double around_kept = 2;  // seconds that what lies around is good for: turns come in bouts
 // What resolution is decided by: follows a change of load within some three keyframes.
 constexpr float soon = 0.3f;
 
@@ -244,13 +243,11 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
       picture.keyframe.view == show.renderer.work.keyframe.view)
     begin_fade(picture.keyframe, show.time, picture.fade);
   std::swap(show.renderer.work.keyframe, picture.keyframe);
-  picture.relief = visitor.wants.local ? uncovered_a_metre(picture.keyframe) : 0;
   picture.around.drawn = false;
+  picture.relief = visitor.wants.local ? uncovered_a_metre(picture.keyframe) : 0;
   if (job.passing || job.dynamic.empty()) picture.surfaces = {}, picture.settled = {};
   bool settles = job.still && !job.passing;  // samples of its pixels take that memory
-  if (settles || job.camera_cuts != picture.around.camera_cuts ||
-      show.time - picture.around.ordered_at > around_kept)
-    picture.around.keyframe = {};
+  if (settles || job.camera_cuts != picture.around.camera_cuts) picture.around = {};
   fit_memory(picture);
   picture.memory_bytes = picture_memory(visitor);
   show.renderer.work_bytes = memory_bytes(show.renderer.work) + memory_bytes(show.pass);
@@ -274,9 +271,7 @@ void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   Surroundings& around = picture.around;
   std::swap(show.renderer.work.around, around.keyframe);
-  around.view = around.keyframe.view;
   around.unsent = visitor.wants.local;
-  around.ordered_at = job.time;
   around.camera_cuts = job.camera_cuts;
   around.drawn = true;
   fit_memory(picture);

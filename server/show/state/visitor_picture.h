@@ -36,15 +36,12 @@ struct PictureWishes {
   float task_weight = 0.5f;
 };
 
-// It shows in fewer pixels what lies around the keyframe: while somebody turns quickly, or for a
-// page that turns by itself.
+// It shows in fewer pixels what lies around the keyframe, while somebody moves.
 struct Surroundings {
   Keyframe keyframe;         // empty: nothing
-  View view;                 // the one that was drawn last
-  bool unsent = false;       // such a page has not got it yet
-  double ordered_at = -1e9;  // show time
+  bool unsent = false;       // the page that shows keyframes has not got it yet
   uint32_t camera_cuts = 0;  // of the visitor, by then
-  bool drawn = false;        // since the last picture was
+  bool drawn = false;        // since the last picture was: they take turns
 };
 
 struct VisitorPicture {

@@ -17,11 +17,10 @@ constexpr size_t most_past = 32;      // views of that time
 constexpr float fastest = 25;         // metres a second; more is a jump
 constexpr float smallest_cut = 0.5f;  // metres
 
-constexpr float much_missing = 0.12f;          // of a picture
-constexpr float widest_turn = 0.8f;            // radians to either side that a page may turn by
-constexpr float turned_away = 0.8f;            // radians
-constexpr float walked_away = 2;               // metres
-constexpr float surrounding_share = 1 / 8.0f;  // of its pixels that its surroundings have
+constexpr float widest_turn = 0.8f;     // radians to either side
+constexpr float turned_away = 0.8f;     // radians
+constexpr float walked_away = 2;        // metres
+constexpr float wide_share = 1 / 8.0f;  // of the view's pixels
 
 }  // namespace
 
@@ -78,22 +77,12 @@ View wide_view(const View& now) {
     view->right = std::cos(turn) * now.right + std::sin(turn) * now.forward;
   }
   const View views[] = {now, left, right};
-  return surrounding_view(views, surrounding_share);
+  return surrounding_view(views, wide_share);
 }
 
 bool is_elsewhere(const View& wide, const View& now) {
   return dot(wide.forward, now.forward) < std::cos(turned_away) ||
          length(wide.position - now.position) > walked_away;
-}
-
-std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,
-                                 double seconds) {
-  View on = expected_view(heading, now, seconds);
-  if (std::max(missing_share(drawn, now), missing_share(drawn, on)) <= much_missing)
-    return std::nullopt;
-  View between = expected_view(heading, now, 0.5 * seconds);
-  const View views[] = {keyframe_view(now), keyframe_view(between), keyframe_view(on)};
-  return surrounding_view(views, surrounding_share);
 }
 
 }  // namespace wellspring

@@ -2,7 +2,6 @@
 // Where a visitor is heading: what its view has done in the last moments, and where that leads by
 // when a picture that is drawn now is seen.
 #pragma once
-#include <optional>
 #include <vector>
 
 #include "world/view.h"
@@ -29,20 +28,12 @@ View expected_view(const Heading& heading, const View& now, double seconds);
 // By how many radians the view may turn away from there in `seconds` more or less.
 float expected_turn(const Heading& heading, const View& now, double seconds);
 
-// Where the keyframe drawn next, as `drawn`, would show much less than all of what may be asked for
-// in the next `seconds`, until another has taken its place, whether the visitor stops at once or
-// goes on: a view of all that (picture/keyframe.h), to be drawn as well in some of the pixels.
-// Nothing: it is enough.
-std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,
-                                 double seconds);
-
 struct EyeMotion {
   float speed = 0, turn = 0;  // metres and radians a second
 };
 EyeMotion motion_of(const Heading& heading, const View& now);
 
-// A page that turns by itself gets a view of all that it may turn to within a moment, in some of
-// the pixels.
+// All that a visitor may turn to within a moment, in some of the pixels.
 View wide_view(const View& now);
 // The visitor has moved away from what such a view shows well.
 bool is_elsewhere(const View& wide, const View& now);

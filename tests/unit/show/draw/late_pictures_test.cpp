@@ -107,10 +107,9 @@ TEST_F(LatePictures, QuickTurnsShowWhatIsDrawn) {
 TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   begin();
   for (int i = 0; i < 30; i++) turn(0.01, 0.5), step(0.08);
-  EXPECT_EQ(show->totals.surroundings, 0u);
-  EXPECT_TRUE(visitor().picture.around.keyframe.empty());
+  EXPECT_EQ(show->totals.surroundings, 1u);
   for (int i = 0; i < 30; i++) turn(0.3), step(0.08);  // a slow machine
-  ASSERT_GT(show->totals.surroundings, 0u);
+  EXPECT_GT(show->totals.surroundings, 2u);
   ASSERT_FALSE(visitor().picture.around.keyframe.empty());
   const View& around = visitor().picture.around.keyframe.view;
   const View& keyframe = visitor().picture.keyframe.view;
@@ -157,8 +156,9 @@ TEST_F(LatePictures, NothingAroundTheOldPlaceAfterACameraCut) {
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   for (int i = 0; i < 6; i++) {
     step();
+    const Surroundings& around = visitor().picture.around;
     if (visitor().picture.job.camera_cuts == visitor().place.camera_cuts) {
-      EXPECT_TRUE(visitor().picture.around.keyframe.empty());
+      EXPECT_TRUE(around.keyframe.empty() || around.camera_cuts == visitor().place.camera_cuts);
     }
   }
   EXPECT_EQ(visitor().picture.job.camera_cuts, visitor().place.camera_cuts);
@@ -196,8 +196,8 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   EXPECT_EQ(show->totals.drawn, drawn);
   EXPECT_EQ(one.picture.keyframe.color, keyframe.color);
   EXPECT_EQ(last_header().seq, seq);
-  step();
-  EXPECT_EQ(show->totals.drawn, drawn + 1);  // at once the next, of where the visitor is now
+  steps(2);
+  EXPECT_EQ(show->totals.drawn, drawn + 1);  // the next, after what lies around the visitor now
   EXPECT_FALSE(one.picture.job.still);
   EXPECT_FALSE(one.picture.costs.given_up);
 }
