@@ -20,6 +20,8 @@ class LocalDisplay {
   // Takes a binary message. False: it is no picture for such a display. Throws LoadError where it
   // is damaged.
   bool receive(std::span<const uint8_t> message);
+  // The newest keyframe's own view; of width 0 before the first.
+  const View& newest_view() const { return newest_.view; }
   // Black before the first keyframe.
   Image8 picture(const View& view);
 

@@ -188,12 +188,22 @@ double WalkJudge::add_had(BenchReport& report, const std::string& name, const Sh
     else screen.receive(message);
   };
   for (const auto& message : walk.before) take(message);
-  Mean flip, halves;
+  Mean flip, halves, own;
+  // What the newest keyframe is wrong by itself, seen from where it was drawn.
+  auto judge_own = [&](const ShownPicture& one) {
+    View view = local.newest_view();
+    view.width = shown_width, view.height = shown_height;
+    own.add(judge(local.picture(view), truth_.converge(view, window_of(one.seq))));
+  };
+  const size_t own_every = std::max<size_t>(walk.pictures.size() * every_ / poses_.size(), 1);
   std::map<int, Mean> times;  // by half seconds
   auto next = walk.pictures.begin();
   for (uint32_t seq = 1; seq <= poses_.size(); seq++) {
     const double now = pose_interval * (seq - 1);
-    for (; next != walk.pictures.end() && next->arrived <= now; ++next) take(next->message);
+    for (; next != walk.pictures.end() && next->arrived <= now; ++next) {
+      take(next->message);
+      if (walk.local && (next - walk.pictures.begin()) % own_every == 0) judge_own(*next);
+    }
     if (!is_judged(seq)) continue;
     const View view = truth_.view(poses_[seq - 1], shown_width, shown_height);
     const Converged& truth = converge(seq);
@@ -206,6 +216,7 @@ double WalkJudge::add_had(BenchReport& report, const std::string& name, const Sh
   for (const auto& [time, errors] : times) worst = std::max(worst, errors.mean());
   where["judged"] = flip.count, where["shown"] = walk.pictures.size(), where["spp"] = truth_.spp();
   report.add(name + ".flip", flip.mean(), "FLIP", where);
+  if (walk.local) report.add(name + ".flip_drawn", own.mean(), "FLIP", where);
   report.add(name + ".flip_worst", worst, "FLIP", where);
   report.add(name + ".truth_halves_flip", halves.mean(), "FLIP", where);
   return flip.mean();

@@ -61,7 +61,8 @@ class WalkJudge {
   void add(BenchReport& report, const std::string& name, const ShownWalk& walk,
            nlohmann::json where);
   // Adds NAME.flip of what the visitor has at the moments of the poses, sixty a second, against
-  // these poses, and NAME.flip_worst, rates, sizes and times likewise. Returns the first.
+  // these poses, NAME.flip_drawn of keyframes seen from where they were drawn, and NAME.flip_worst,
+  // rates, sizes and times likewise. Returns the first.
   double add_had(BenchReport& report, const std::string& name, const ShownWalk& walk,
                  nlohmann::json where);
 

@@ -6,8 +6,10 @@
 // the server's start, where nothing is kept from before: with the light that the package carries
 // and without it. A screen that shows nothing yet is black.
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <optional>
+#include <thread>
 
 #include "base/clock.h"
 #include "frame/flip.h"
@@ -29,8 +31,13 @@ std::vector<Moment> first_moments() {
   return {{"hello", 0.5}, {"hello", 2}, {"hello", 10}, {"start", 10}};
 }
 
+constexpr double most_start = 60;  // seconds until the server has loaded its exhibit
+
 std::vector<Moment> visit_first(const BenchOptions& options, const std::string& exhibit) {
   const ServerProcess server(options, exhibit);
+  while (fetch(server.port, "/healthz").find("ok") == std::string::npos &&
+         seconds_now() < server.started + most_start)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   WsClient client;
   const double hello = seconds_now();
   join_alone(client, server);
