@@ -160,7 +160,7 @@ connection = make_connection({
     told = null;
   },
   lost() { if (!full) notice(word(lang, 'lost')); },
-  silent(on) { notice(on ? word(lang, 'silent') : ''); },
+  silent(on) { if (!full) notice(on ? word(lang, 'silent') : ''); },
   message(message) {
     switch (message.type) {
       case 'welcome':

@@ -19,13 +19,13 @@ after(async () => {
   await server?.stop();
 });
 
-async function open(display) {
-  const page = await browser.newPage({ viewport: { width: 480, height: 270 } }), problems = [];
+async function open(display, from = server, context = { viewport: { width: 480, height: 270 } }) {
+  const page = await browser.newPage(context), problems = [];
   page.on('pageerror', (error) => problems.push(String(error)));
   page.on('console', (message) => {
     if (message.type() === 'error') problems.push(message.text());
   });
-  await page.goto(`${server.url}/?display=${display}`);
+  await page.goto(`${from.url}/?display=${display}`);
   await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3);
   return { page, problems };
 }
@@ -88,6 +88,51 @@ test('a lost context comes back with the picture', { skip }, async () => {
   await until(async () => difference(first, await shot(page)) < 12, 'the picture is back');
   assert.deepEqual(problems, []);
   await page.close();
+});
+
+test('it goes on while the server is frozen, and says so', { skip }, async (t) => {
+  const frozen = await start_server(['--exhibit', 'first-room']);
+  t.after(() => frozen.stop());
+  const { page, problems } = await open('local', frozen);
+  const before = await settled(page);
+  frozen.child.kill('SIGSTOP');
+  t.after(() => frozen.child.kill('SIGCONT'));
+  const said = page.getByText('The server is silent').waitFor();
+  await page.keyboard.down('ArrowLeft');
+  await until(async () => difference(before, await shot(page)) > 8, 'it turns');
+  await page.keyboard.up('ArrowLeft');
+  await said;
+  frozen.child.kill('SIGCONT');
+  await page.getByText('The server is silent').waitFor({ state: 'hidden' });
+  const frame = () => page.evaluate(() =>
+    Number(document.getElementById('picture').dataset.frame));
+  const then = await frame();
+  await page.keyboard.press('ArrowRight');
+  await until(async () => await frame() > then, 'pictures come again');
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('an upright phone of three pixels a point is shown as sharply', { skip }, async () => {
+  const phone = { viewport: { width: 270, height: 480 }, deviceScaleFactor: 3, isMobile: true };
+  const shots = [];
+  for (const display of ['server', 'local']) {
+    const { page, problems } = await open(display, server, phone);
+    if (display === 'local') {
+      await page.waitForSelector('canvas.local:not([hidden])');
+      const { width, height } = await page.evaluate(() => {
+        const { width, height } = document.querySelector('canvas.local');
+        return { width, height };
+      });
+      assert.ok(height > 480 && height > width, `${width}x${height}`);
+    }
+    const clip = { x: 0, y: 100, width: 270, height: 240 };
+    const see = () => look(page, 27, 24, clip);
+    if (display === 'server') shots.push(await see());
+    else await until(async () => difference(shots[0], await see()) < 4, 'both show the same');
+    assert.deepEqual(problems, []);
+    await page.close();
+  }
 });
 
 test('without WebGL2 pictures come finished', { skip }, async () => {

@@ -38,15 +38,25 @@ constexpr double refine_interval = 0.05;   // seconds between parts of it
 constexpr double most_part_bytes = 256e3;  // of one packet of parts
 constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
 
-// One packet is being sent when the next is made.
-void publish(Encoder& encoder, Link& link, std::shared_ptr<Packet> packet, double began,
-             double processor_began) {
-  encoder.bytes = packet->size();
-  encoder.milliseconds = float(1000 * (seconds_now() - began));
-  encoder.processor_seconds = thread_seconds_now() - processor_began;
-  encoder.memory_bytes = bytes_of(encoder.image.rgb, encoder.has.image.rgb) + 2 * encoder.bytes;
-  if (packet->empty()) encoder.unsent = true;
-  else link.send_picture(std::move(packet));
+// Calls make(encoder), which returns the packet, on another thread: the tick goes on meanwhile, and
+// waits before it touches the image again. pixels: as Encoder::pixels.
+template <class Make>
+void encode(Visitor& visitor, int quality, double pixels, Make make) {
+  Encoder* encoder = visitor.shown.encoder.get();
+  encoder->quality = quality;
+  encoder->pixels = pixels;
+  encoder->task.run([encoder, link = visitor.link, make = std::move(make)] {
+    const double began = seconds_now(), processor_began = thread_seconds_now();
+    std::shared_ptr<Packet> packet = make(*encoder);
+    encoder->bytes = packet->size();
+    encoder->milliseconds = float(1000 * (seconds_now() - began));
+    encoder->processor_seconds = thread_seconds_now() - processor_began;
+    // One packet is being sent when the next is made.
+    encoder->memory_bytes =
+        bytes_of(encoder->image.rgb, encoder->has.image.rgb) + 2 * encoder->bytes;
+    if (packet->empty()) encoder->unsent = true;
+    else link->send_picture(std::move(packet));
+  });
 }
 
 // The depth comes behind the JPEG of a keyframe's packet.
@@ -57,62 +67,51 @@ void add_depth(const PacketHeader& header, KeyframeHeader keyframe,
   encode_disparity(disparity, keyframe.width, keyframe.height, keyframe.unit, packet);
 }
 
-// On another thread: the tick goes on meanwhile, and waits before it touches the image again.
 // The image of one that stands comes anew from its keyframe, should there be another: it is not
 // kept, but for a browser that takes parts while these are made of it.
 // eighths: of the image's size, which is that of the header's. keyframe: what its packet says of
 // it, where it is one; the encoder has its disparities.
 void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, bool full_chroma,
                      int eighths, const std::optional<KeyframeHeader>& keyframe) {
-  Encoder* encoder = visitor.shown.encoder.get();
-  encoder->quality = header.quality;
-  encoder->full_chroma = full_chroma;
-  const Image8& whole = encoder->image;
-  encoder->pixels = counted_pixels(double(whole.width) * whole.height, eighths);
+  Encoder& encoder = *visitor.shown.encoder;
+  encoder.full_chroma = full_chroma;
   const bool keeps = visitor.wants.parts && stands(show, visitor);
-  encoder->task.run([encoder, link = visitor.link, header, full_chroma, eighths, keeps, keyframe,
-                     now = show.time] {
-    double began = seconds_now(), processor_began = thread_seconds_now();
+  const double pixels = counted_pixels(double(encoder.image.width) * encoder.image.height, eighths);
+  auto make = [header, full_chroma, eighths, keeps, keyframe, now = show.time](Encoder& encoder) {
     const size_t header_bytes = keyframe ? keyframe_header_bytes : packet_header_bytes;
     auto packet = std::make_shared<Packet>(header_bytes);
     write_packet_header(header, *packet);
-    const Image8& image = encoder->image;
+    const Image8& image = encoder.image;
     encode_jpeg(eighths < 8 ? shrink(image, header.width, header.height) : image, header.quality,
                 full_chroma, *packet, header_bytes);
-    if (keyframe) add_depth(header, *keyframe, std::exchange(encoder->disparity, {}), *packet);
-    if (keeps) note_complete(image, header.quality, eighths == 8, now, encoder->has);
-    else encoder->has = {};
-    if ((header.flags & packet_still) && !keeps) encoder->image = Image8{};
-    publish(*encoder, *link, std::move(packet), began, processor_began);
-  });
+    if (keyframe) add_depth(header, *keyframe, std::exchange(encoder.disparity, {}), *packet);
+    if (keeps) note_complete(image, header.quality, eighths == 8, now, encoder.has);
+    else encoder.has = {};
+    if ((header.flags & packet_still) && !keeps) encoder.image = Image8{};
+    return packet;
+  };
+  encode(visitor, header.quality, pixels, make);
 }
 
-// A picture at rest has what moves in it sent by itself, as `header` and `keyframe` say.
-void encode_layer(Visitor& visitor, const PacketHeader& header, const KeyframeHeader& keyframe,
-                  MovingLayer layer) {
-  Encoder* encoder = visitor.shown.encoder.get();
-  encoder->quality = header.quality;
-  encoder->pixels = 0;
-  encoder->task.run([encoder, link = visitor.link, header, keyframe, layer = std::move(layer)] {
-    double began = seconds_now(), processor_began = thread_seconds_now();
+// What comes beside a keyframe: a layer, or the wide one.
+void encode_beside(Visitor& visitor, const PacketHeader& header, const KeyframeHeader& keyframe,
+                   std::vector<uint8_t> rgb, std::vector<float> disparity) {
+  auto make = [header, keyframe, disparity = std::move(disparity),
+               image = Image8{keyframe.width, keyframe.height, std::move(rgb)}](Encoder&) {
     auto packet = std::make_shared<Packet>(keyframe_header_bytes);
-    encode_jpeg({keyframe.width, keyframe.height, layer.rgb}, header.quality, false, *packet,
-                keyframe_header_bytes);
-    add_depth(header, keyframe, layer.disparity, *packet);
-    publish(*encoder, *link, std::move(packet), began, processor_began);
-  });
+    encode_jpeg(image, header.quality, false, *packet, keyframe_header_bytes);
+    add_depth(header, keyframe, disparity, *packet);
+    return packet;
+  };
+  encode(visitor, header.quality, 0, std::move(make));
 }
 
 void encode_parts(Visitor& visitor, const PacketHeader& header, const PartsOrder& order) {
-  Encoder* encoder = visitor.shown.encoder.get();
-  encoder->quality = header.quality;
-  encoder->pixels = 0;
-  encoder->task.run([encoder, link = visitor.link, header, order] {
-    double began = seconds_now(), processor_began = thread_seconds_now();
+  encode(visitor, header.quality, 0, [header, order](Encoder& encoder) {
     auto packet = std::make_shared<Packet>();
-    make_parts(encoder->image, order, header, encoder->has, *packet);
-    if (!encoder->has.pending) encoder->image = Image8{};
-    publish(*encoder, *link, std::move(packet), began, processor_began);
+    make_parts(encoder.image, order, header, encoder.has, *packet);
+    if (!encoder.has.pending) encoder.image = Image8{};
+    return packet;
   });
 }
 
@@ -308,14 +307,14 @@ static void send_surroundings(Show& show, Visitor& visitor) {
   const Surroundings& around = visitor.picture.around;
   const View& view = around.keyframe.view;
   if (around.keyframe.empty()) return;
-  Encoder& encoder = *visitor.shown.encoder;
-  copy_colors(around.keyframe, {0, 0, view.width, view.height}, encoder.image);
-  encoder.disparity = around.keyframe.disparity;
+  Image8 image;
+  copy_colors(around.keyframe, {0, 0, view.width, view.height}, image);
   PacketHeader header = next_header(show, visitor, visitor.shown.seq, false);
   header.width = uint16_t(view.width), header.height = uint16_t(view.height);
   header.quality = uint8_t(picture_plan(show, visitor).quality);
   header.flags |= packet_depth | packet_around;
-  encode_complete(show, visitor, header, false, 8, keyframe_header(show, view, around.camera_cuts));
+  encode_beside(visitor, header, keyframe_header(show, view, around.camera_cuts),
+                std::move(image.rgb), around.keyframe.disparity);
 }
 
 // A layer comes before the keyframe that is without it, and in turns with what is new of that.
@@ -341,8 +340,8 @@ static void send_layer(Show& show, Visitor& visitor) {
                                            double(view.width) * view.height, false));
   header.flags |= packet_depth | packet_layer;
   note_lead(show, picture.job.time_us, header.time_us);
-  encode_layer(visitor, header, keyframe_header(show, view, picture.job.camera_cuts),
-               std::move(layer));
+  encode_beside(visitor, header, keyframe_header(show, view, picture.job.camera_cuts),
+                std::move(layer.rgb), std::move(layer.disparity));
 }
 
 // Sends the newest keyframe as it is, or what is new of it where the page has it: the page shows it
