@@ -151,7 +151,8 @@ NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Fra
 }
 
 NearbyLight find_light_far(const Cells& cells, const SeenPlace& place) {
-  const int cx = place.x / cell_size, cy = place.y / cell_size;
+  const int cx = std::min(place.x / cell_size, cells.width - 1),
+            cy = std::min(place.y / cell_size, cells.height - 1);
   NearbyLight found;
   auto add = [&](int x, int y) {
     const size_t i = size_t(cells.index(x, y));
@@ -164,13 +165,14 @@ NearbyLight find_light_far(const Cells& cells, const SeenPlace& place) {
     found.rest += samples * at(cells.rest) * rest_ratio(place.albedo, at(cells.albedo));
     found.samples += samples;
   };
-  for (int ring = 0; ring <= cell_rings && found.samples == 0; ring++)
-    for (int y = std::max(cy - ring, 0); y <= std::min(cy + ring, cells.height - 1); y++) {
-      const bool whole = y == cy - ring || y == cy + ring;
-      for (int x = cx - ring; x <= cx + ring; x += whole || ring == 0 ? 1 : 2 * ring)
-        if (x >= 0 && x < cells.width) add(x, y);
-    }
-  if (found.samples > 0) found.smooth /= found.samples, found.rest /= found.samples;
+  add(cx, cy);
+  for (int ring = 1; ring <= cell_rings && found.samples == 0; ring++)
+    for (int y : {cy - ring, cy, cy + ring})
+      for (int x : {cx - ring, cx, cx + ring})
+        if (x >= 0 && x < cells.width && y >= 0 && y < cells.height && (x != cx || y != cy))
+          add(x, y);
+  if (found.samples == 0) return found;
+  found.smooth /= found.samples, found.rest /= found.samples;
   return found;
 }
 
