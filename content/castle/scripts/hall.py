@@ -158,8 +158,7 @@ def vault(mesh):
                     else:
                         row.append((centre + sign * half_x * t, sign * half_y * t * u, z))
                 points.append(row)
-            mesh.grid([row[::-1] for row in points], 'plaster', repeat=(1.6, 0.9),
-                      offset=(centre * 0.31, axis * 0.4))
+            mesh.grid(points, 'plaster', repeat=(1.6, 0.9), offset=(centre * 0.31, axis * 0.4))
 
 
 def ribs(mesh):
