@@ -92,7 +92,7 @@ void compute_dynamic_light(const World& world, const Lights& lights,
                            const VisibilityPass& visibility, const View& view,
                            std::span<const DynamicLight> from, const SplatSettings& settings,
                            DynamicImage& image) {
-  see_surfaces(visibility, dynamic_light_view(view), image.surfaces);
+  see_surfaces(visibility, dynamic_light_view(view, passing_dynamic_pixels), image.surfaces);
   begin_bounce(world, lights, from, image.surfaces, settings, {}, image.bounce);
   light_surfaces(world, lights, from, image.surfaces, settings, image.bounce, image.light);
 }

@@ -10,12 +10,13 @@
 
 namespace wellspring {
 
-// Pixels of a picture above which the light has half of its resolution.
-inline constexpr size_t fine_dynamic_pixels = 320 * 1024;
+// Pixels of a picture above which the light has half of its resolution: of one that stays, and of
+// one that is soon followed by the next.
+inline constexpr size_t fine_dynamic_pixels = 320 * 1024, passing_dynamic_pixels = 64 * 1024;
 inline constexpr int light_scale = 2;  // pixels of such a picture a side of one pixel of its light
 // The view in which light for pictures of `view` is computed.
-inline View dynamic_light_view(const View& view) {
-  if (size_t(view.width) * size_t(view.height) <= fine_dynamic_pixels) return view;
+inline View dynamic_light_view(const View& view, size_t fine = fine_dynamic_pixels) {
+  if (size_t(view.width) * size_t(view.height) <= fine) return view;
   View light = view;
   light.width = (view.width + light_scale - 1) / light_scale;
   light.height = (view.height + light_scale - 1) / light_scale;

@@ -24,12 +24,14 @@ constexpr double settled_samples = 8;       // a pixel, after which the referenc
 
 // Seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
+  const int walkers = count_moving(show);
+  if (!stands(show, visitor)) busy = std::max(busy, walkers);
   double period =
       (1 - moving_share(show)) / std::max(drawing_rate(show, visitor), least_sampling_rate);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
   double least = least_share * period;
   // Where many walk, keyframes come late enough without: what one takes is what counts.
-  if (int walkers = count_moving(show); walkers > 1)
+  if (walkers > 1)
     least = std::max(least / walkers, least_share * drawing_costs(show, visitor).drawing_seconds);
   return std::max((period - slack) / std::max(busy, 1) - display, least);
 }
