@@ -31,9 +31,10 @@ void use_cores(Show& show, std::function<void()> work) {
 // Whoever has had the renderer's time comes later with the next picture, given up or not.
 void charge(Show& show, double seconds) {
   Renderer& renderer = show.renderer;
-  if (show.pass.at_work) show.pass.visitor->picture.served += seconds;
-  else if (renderer.posed) renderer.posed->picture.served += seconds;
-  else if (renderer.drawn) renderer.drawn->picture.served += seconds;
+  Visitor* visitor = show.pass.at_work ? show.pass.visitor
+                     : renderer.posed  ? renderer.posed
+                                       : renderer.drawn;
+  if (visitor) visitor->picture.served += seconds * charge_weight(show, *visitor);
 }
 
 void draw_what_moves(Show& show, Visitor& visitor) {

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "cache/trace_waiting.h"
+#include "show/draw/pace.h"
 #include "show/state/visitor_world.h"
 
 namespace wellspring {
@@ -47,7 +48,8 @@ void finish_samples(Show& show) {
     smooth(visitor.times.trace,
            float(1000 * renderer.traced_seconds / double(renderer.brokers.size())));
     visitor.picture.at_work = false;
-    visitor.picture.served += renderer.traced_seconds / double(renderer.brokers.size());
+    visitor.picture.served +=
+        renderer.traced_seconds / double(renderer.brokers.size()) * charge_weight(show, visitor);
   }
   renderer.brokers.clear();
 }

@@ -23,8 +23,11 @@ constexpr double closed_rate = 1;                // before a kiosk while the hou
 constexpr double learning_rate = 1.5;            // of pictures before the first reconstruction,
 constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not move
 constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
-constexpr double most_moving_share = 0.5;  // of the time, for what moves
+// Of the time, for what moves before those who stand: while nobody walks, and while some do.
+constexpr double most_moving_share = 0.5, least_moving_share = 0.25;
 constexpr float nearly_all = 0.999f;       // converged
+constexpr double standing_weight = 4;      // of the renderer's time, for charge_weight()
+constexpr double most_unlike = 3;          // keyframes of two visitors, in what they cost
 
 // What a picture for each who moves takes: a warp takes all cores, its JPEG one.
 double showing_seconds(const Show& show) {
@@ -75,7 +78,8 @@ int count_backdrops(const Show& show) {
 double moving_rate(const Show& show, const Visitor& visitor, int backdrops) {
   double seconds = 0.001 * double(visitor.times.moving) * double(std::max(backdrops, 1));
   double rate = picture_rate(show, visitor);
-  return seconds > 0 ? std::min(rate, most_moving_share / seconds) : rate;
+  const double share = count_moving(show) > 0 ? least_moving_share : most_moving_share;
+  return seconds > 0 ? std::min(rate, share / seconds) : rate;
 }
 
 VisitorDrawState state_of(const Show& show, const Visitor& visitor, int backdrops) {
@@ -118,6 +122,17 @@ bool asks_for_samples(const Show& show, const Visitor& visitor) {
 int count_moving(const Show& show) {
   auto moves = [&](const Visitor& one) { return is_shown(one) && !stands(show, one); };
   return int(std::count_if(show.visitors.begin(), show.visitors.end(), moves));
+}
+
+double charge_weight(const Show& show, const Visitor& visitor) {
+  if (stands(show, visitor)) return standing_weight;
+  double sum = 0;
+  int count = 0;
+  for (const Visitor& one : show.visitors)
+    if (is_shown(one) && !stands(show, one) && one.times.whole > 0)
+      sum += double(one.times.whole), count++;
+  if (count == 0 || !(visitor.times.whole > 0)) return 1;
+  return std::clamp(sum / count / double(visitor.times.whole), 1 / most_unlike, most_unlike);
 }
 
 bool may_take(const Show& show, const Visitor& visitor) {

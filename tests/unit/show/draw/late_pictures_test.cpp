@@ -9,6 +9,7 @@
 #include "base/rng.h"
 #include "show/http/answer.h"
 #include "show/draw/make_picture_job.h"
+#include "show/draw/pace.h"
 #include "show/draw/picture.h"
 #include "show/tick.h"
 #include "unit/show/show_stage.h"
@@ -162,6 +163,19 @@ TEST_F(LatePictures, NothingAroundTheOldPlaceAfterACameraCut) {
     }
   }
   EXPECT_EQ(visitor().picture.job.camera_cuts, visitor().place.camera_cuts);
+}
+
+// Time counts so that all who walk get as many keyframes; who stands waits for them.
+TEST_F(LatePictures, WhoseKeyframesAreDearIsChargedLess) {
+  begin(3);
+  for (int i = 0; i < 30; i++) turn(0.05, 0.5, 0), turn(0.05, 0.5, 1), step();
+  auto visitors = show->visitors.begin();
+  Visitor &cheap = *visitors++, &dear = *visitors++, &standing = *visitors;
+  cheap.times.whole = 20, dear.times.whole = 40;
+  EXPECT_NEAR(20 * charge_weight(*show, cheap), 40 * charge_weight(*show, dear), 1e-3);
+  EXPECT_GT(charge_weight(*show, standing), 2);
+  dear.times.whole = 4000;
+  EXPECT_GT(charge_weight(*show, dear), 0.3);  // within bounds
 }
 
 // What a still picture waits for is samples, which whoever moves on needs no more.
