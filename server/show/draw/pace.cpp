@@ -25,9 +25,9 @@ constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not mo
 constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
 // Of the time, for what moves before those who stand: while nobody walks, and while some do.
 constexpr double most_moving_share = 0.5, least_moving_share = 0.25;
-constexpr float nearly_all = 0.999f;       // converged
-constexpr double standing_weight = 4;      // of the renderer's time, for charge_weight()
-constexpr double most_unlike = 3;          // keyframes of two visitors, in what they cost
+constexpr float nearly_all = 0.999f;   // converged
+constexpr double standing_weight = 4;  // of the renderer's time, for charge_weight()
+constexpr double most_unlike = 3;      // keyframes of two visitors, in what they cost
 
 // What a picture for each who moves takes: a warp takes all cores, its JPEG one.
 double showing_seconds(const Show& show) {
