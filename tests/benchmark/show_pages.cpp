@@ -18,8 +18,7 @@ ReportPage show_walk_page() {
       "to somebody who has just come? A server as museums run it, a visitor alone, 1280x720.",
       {"FLIP: what the screen shows, sixty times a second, against a converged picture of where "
        "the visitor is then, each in a window of 160x90 that is elsewhere for each moment. local: "
-       "the visitor's device shows keyframes from there; server: pictures come finished; drawn: "
-       "keyframes from where they were drawn.",
+       "the visitor's device shows keyframes from there; server: pictures come finished.",
        "Wanted, local over server: 0.6 at 0 ms, 0.35 at 150 ms.", truth_note,
        "First visits: nothing is kept from before; shipped: the package carries its light. Wanted "
        "with it, after hello: 0.10 after half a second, 0.08 after two; without, 0.13 ten seconds "
@@ -29,11 +28,6 @@ ReportPage show_walk_page() {
         .columns = {{"show.walk.flip", "FLIP"}},
         .across = "round_trip_ms",
         .most_rows = 6},
-       {.caption = "Drawn, by the round trip, ms",
-        .rows = {{"trace", "walk"}},
-        .columns = {{"show.walk.flip_drawn", "FLIP"}},
-        .across = "round_trip_ms",
-        .most_rows = 3},
        {.caption = "Local over server by the round trip, ms",
         .rows = {{"trace", "walk"}},
         .columns = {{"show.walk.ratio", "ratio"}},

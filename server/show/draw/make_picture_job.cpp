@@ -103,7 +103,8 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   } else {
     job.ahead = expected_view(place.heading, now, predicted_pictures * interval);
   }
-  if (job.passing && seen && !points) {
+  const EyeMotion motion = motion_of(place.heading, now);
+  if (job.passing && seen && !points && motion.speed + motion.turn > 0) {
     const Surroundings& around = picture.around;
     const bool here = around.camera_cuts == place.camera_cuts && !around.keyframe.empty();
     // A turn goes on until it is there.
