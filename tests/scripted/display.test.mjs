@@ -255,7 +255,10 @@ test('a turn is seen at once, and not again when the server has heard of it', ()
     middle: [0, 0], cut: 0,
     led: false });
   walker.told(told(0, 0), 0, 100);
+  assert.ok(!walker.advance(0.016, 0));
   walker.turn([0.5, 2]);
+  assert.ok(walker.advance(0.016, 16), 'it is to be drawn before the server says anything');
+  assert.ok(!walker.advance(0.016, 32));
   walker.sent(1, [0, 0, 0]);
   assert.equal(walker.pose().yaw, 0.5);
   assert.ok(walker.pose().pitch < 1.5);  // as far up as one can look

@@ -23,6 +23,7 @@ export function make_walker() {
   let rates = null;         // of a led camera, a second: {position, yaw, pitch, lens, at}
   let past = [];            // {time, position}
   const turned = new Map();  // seq -> yaw and pitch after that input
+  let shown = null;          // the pose that advance() left
 
   const copy = (one) => ({ ...one, position: [...one.position], lens: [...one.lens] });
   const minus = (a, b) => a.map((v, i) => v - b[i]);
@@ -126,10 +127,10 @@ export function make_walker() {
       const then = past.findLast((one) => one.time <= now - round_trip) ?? past[0];
       apart = minus(told.position, (then ?? pose).position);
     },
-    // Returns whether the camera has moved.
+    // Returns whether the camera has moved or turned since the last call.
     advance(dt, now) {
       if (!pose) return false;
-      const before = copy(pose);
+      const before = shown ?? pose;
       if (!led) walk(dt);
       else if (rates && now - rates.at < 200) {
         pose.position = pose.position.map((v, i) => v + rates.position[i] * dt);
@@ -140,6 +141,7 @@ export function make_walker() {
       agree(dt);
       past.push({ time: now, position: [...pose.position] });
       while (past.length > 2 && now - past[1].time > remembered_ms) past.shift();
+      shown = copy(pose);
       const differs = (a, b) => a.some((v, i) => Math.abs(v - b[i]) > 1e-5);
       return differs(before.position, pose.position) || differs(before.lens, pose.lens)
         || Math.abs(before.yaw - pose.yaw) + Math.abs(before.pitch - pose.pitch)

@@ -103,8 +103,10 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   } else {
     job.ahead = expected_view(place.heading, now, predicted_pictures * interval);
   }
+  // A page that draws for itself turns before the server hears of it.
   const EyeMotion motion = motion_of(place.heading, now);
-  if (job.passing && seen && !points && motion.speed + motion.turn > 0) {
+  const bool may_turn = visitor.wants.local || motion.speed + motion.turn > 0;
+  if (job.passing && seen && !points && may_turn) {
     const Surroundings& around = picture.around;
     const bool here = around.camera_cuts == place.camera_cuts && !around.keyframe.empty();
     // A turn goes on until it is there.
