@@ -12,7 +12,8 @@ export function hide_in_page(hides) {
   if (!all.only_picture) {
     all.only_picture = new CSSStyleSheet();
     all.only_picture.replaceSync(
-        'body :not(:has(#picture)):not(#picture):not(.local) { opacity: 0 !important; }');
+        'body :not(:has(#picture)):not(#picture):not(.local) ' +
+        '{ opacity: 0 !important; transition: none !important; }');  // at once, not after a while
   }
   document.adoptedStyleSheets = hides ? [all.only_picture] : [];
 }
