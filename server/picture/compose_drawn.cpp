@@ -132,7 +132,7 @@ struct Composer {
   bool passing = false;  // what maps say all of is not asked of points: the picture is soon another
   Shade shade = {};
 
-  // Of what nothing is known.
+  // Lights what nothing is known of.
   vec3 usual_light() const { return vec3(kept.maps ? kept.maps->usual : 0); }
   // Eight lanes each.
   static int parts_of(const VisibleRun& run) {
@@ -157,9 +157,9 @@ const CellRows& Composer::rows_around(const VisibleRun& run) const {
   return rows;
 }
 
-// Pixels of which no cell knows the surface: light of the points around that lie on it. Should
-// there be none and no map, that of the object elsewhere, or what is usual in the scene: nothing is
-// black because it has just come into view.
+// Lights pixels whose surface no cell knows by the points around that lie on it. Should there be
+// none and no map, they take the object's light from elsewhere, or what is usual in the scene:
+// nothing is black because it has just come into view.
 void Composer::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const {
   Pixels& p = d.pixels;
   NearbyLight far;  // of the lane before

@@ -28,8 +28,9 @@ struct NearbyLight {
 // `light`: the packed planes of a picture with these `rays`.
 NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Frame& light,
                               const SeenPlace& place);
-// Where no pixel around tells it: the light of the nearest cells in eight directions that know the
-// place's object, whichever way their surfaces face, within 64 pixels. `samples`: theirs.
+// Returns the light of the nearest cells in eight directions that know the place's object,
+// whichever way their surfaces face, within 64 pixels: for places that no pixel around tells of.
+// `samples`: theirs.
 NearbyLight find_light_far(const Cells& cells, const SeenPlace& place);
 
 }  // namespace wellspring

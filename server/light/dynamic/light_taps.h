@@ -10,8 +10,8 @@
 
 namespace wellspring {
 
-// Pixels of a picture above which the light has half of its resolution: of one that stays, and of
-// one that is soon followed by the next.
+// Pictures of more pixels get light of half their resolution: those that stay, and those that are
+// soon followed by the next.
 inline constexpr size_t fine_dynamic_pixels = 320 * 1024, passing_dynamic_pixels = 64 * 1024;
 inline constexpr int light_scale = 2;  // pixels of such a picture a side of one pixel of its light
 // The view in which light for pictures of `view` is computed.

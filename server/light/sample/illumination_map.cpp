@@ -20,7 +20,8 @@ size_t memory_bytes(const IlluminationMap& map) {
   return sum;
 }
 
-// Of some nodes, which is enough. What is in shadow counts for a hundredth of the mean at least.
+// Returns the geometric mean of some nodes, which is enough. Shadows count for a hundredth of the
+// mean at least.
 static float usual_light(const IlluminationMap& map) {
   constexpr size_t stride = 29;
   const std::vector<uint32_t>& light = map.nodes.light;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int directions = 64;
 constexpr float solid_share = 0.85f;  // of the directions that meet backs first
-// Of all directions from all viewpoints, and of those that meet the object.
+// These are shares of all directions from all viewpoints, and of those that meet the object.
 constexpr float much_in_view = 0.01f, much_of_it = 0.25f;
 constexpr float too_bright = 200;  // light on a surface, of which 3.14 makes white paper white
 constexpr float white_light = pi;

@@ -23,8 +23,8 @@ bool rests(const Show& show, const Visitor& visitor);
 bool asks_for_samples(const Show& show, const Visitor& visitor);
 // Visitors who do not stand: the time is divided among them.
 int count_moving(const Show& show);
-// What a second of the renderer's time counts for in VisitorPicture::served: more for who stands,
-// and for who walks so much that all get as many keyframes, whatever theirs cost.
+// Returns how much a second of the renderer's time counts in VisitorPicture::served: more for who
+// stands; for who walks, so much that all get as many keyframes, whatever theirs cost.
 double charge_weight(const Show& show, const Visitor& visitor);
 // The visitor's browser and socket can take a picture.
 bool may_take(const Show& show, const Visitor& visitor);

@@ -51,7 +51,7 @@ void encode(Visitor& visitor, int quality, double pixels, Make make) {
     encoder->bytes = packet->size();
     encoder->milliseconds = float(1000 * (seconds_now() - began));
     encoder->processor_seconds = thread_seconds_now() - processor_began;
-    // One packet is being sent when the next is made.
+    // One packet is being sent while the next is made.
     encoder->memory_bytes =
         bytes_of(encoder->image.rgb, encoder->has.image.rgb) + 2 * encoder->bytes;
     if (packet->empty()) encoder->unsent = true;
@@ -93,7 +93,7 @@ void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, b
   encode(visitor, header.quality, pixels, make);
 }
 
-// What comes beside a keyframe: a layer, or the wide one.
+// Encodes a picture that comes beside a keyframe: a layer, or the wide one.
 void encode_beside(Visitor& visitor, const PacketHeader& header, const KeyframeHeader& keyframe,
                    std::vector<uint8_t> rgb, std::vector<float> disparity) {
   auto make = [header, keyframe, disparity = std::move(disparity),

@@ -33,7 +33,7 @@ struct EyeMotion {
 };
 EyeMotion motion_of(const Heading& heading, const View& now);
 
-// All that a visitor may turn to within a moment, in some of the pixels.
+// Returns a view of all that a visitor may turn to within a moment, in an eighth of the pixels.
 View wide_view(const View& now);
 // The visitor has moved away from what such a view shows well.
 bool is_elsewhere(const View& wide, const View& now);
