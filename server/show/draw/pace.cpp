@@ -23,7 +23,8 @@ constexpr double closed_rate = 1;                // before a kiosk while the hou
 constexpr double learning_rate = 1.5;            // of pictures before the first reconstruction,
 constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not move
 constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
-// What moves before those who stand gets so much of the time, while nobody walks and while some do.
+// The storyteller and all else that moves before those who stand get at most this share of the
+// time: the first while nobody walks, the second while somebody does.
 constexpr double most_moving_share = 0.5, least_moving_share = 0.25;
 constexpr float nearly_all = 0.999f;   // converged
 constexpr double standing_weight = 4;  // of the renderer's time, for charge_weight()
