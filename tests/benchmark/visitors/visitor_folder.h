@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of visitors as a folder that the kiosk's eye watches: PNG files and truth.json, which
-// says how long each is shown and what is true in it. wellspring_kiosk_watch (kiosk/main_watch.cpp)
+// says how long each is shown and what is true in it. wellspring_kiosk_watch (tests/benchmark/kiosk/main_watch.cpp)
 // watches it, so that OpenCV stays out of the benchmark's program.
 #pragma once
 #include <functional>
@@ -8,7 +8,7 @@
 
 #include "visitor_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct VisitorFrame {
   VisitorShot shot;
@@ -47,4 +47,4 @@ std::vector<std::vector<VisitorSeen>> watch_visitors(VisitorStage& stage,
                                                      const std::vector<VisitorSequence>& sequences,
                                                      const VisitorWatch& watch);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

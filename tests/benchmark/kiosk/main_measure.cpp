@@ -22,6 +22,7 @@
 namespace {
 
 using namespace wellspring;
+using namespace wellspring::test;
 namespace fs = std::filesystem;
 using nlohmann::json;
 

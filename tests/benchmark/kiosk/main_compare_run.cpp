@@ -17,12 +17,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "kiosk/main_compare.h"
+#include "main_compare.h"
 #include "wire/json.h"
 
 extern char** environ;
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace beast = boost::beast;
@@ -153,4 +153,4 @@ void measure_memory(const CompareOptions& options) {
   tell("kiosk.memory.growth_mib", last - first, "MiB", fields);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

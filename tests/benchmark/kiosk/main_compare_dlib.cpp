@@ -8,14 +8,14 @@
 #include "base/clock.h"
 #include "kiosk/camera.h"
 #include "kiosk/face/face_finder.h"
-#include "kiosk/main_compare.h"
+#include "main_compare.h"
 
 #ifdef WELLSPRING_DLIB
 #include <dlib/image_processing.h>
 #include <dlib/image_processing/frontal_face_detector.h>
 #endif
 
-namespace wellspring {
+namespace wellspring::test {
 
 #ifdef WELLSPRING_DLIB
 namespace {
@@ -107,4 +107,4 @@ void compare_landmarks(const CompareOptions&) {
 }
 #endif
 
-}  // namespace wellspring
+}  // namespace wellspring::test

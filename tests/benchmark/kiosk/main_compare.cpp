@@ -2,7 +2,7 @@
 // wellspring_kiosk_compare: what the kiosk's eye could have been made of otherwise, and what the
 // whole program costs, for `wellspring bench --only kiosk.eye`, which starts it.
 #include "about/version.h"
-#include "kiosk/main_compare.h"
+#include "main_compare.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void tell(const std::string& name, double value, const std::string& unit, nlohmann::json fields) {
   if (std::isnan(value)) return;
@@ -28,10 +28,11 @@ double mean(const std::vector<double>& values) {
              : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  using namespace wellspring::test;
   if (answer_version(argc, argv, {"Boost", "CLI11", "GLM", "nlohmann-json", "stb"})) return 0;
   CLI::App app{"Compares parts of the kiosk's eye for wellspring bench."};
   CompareOptions options;

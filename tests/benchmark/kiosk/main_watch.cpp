@@ -23,6 +23,7 @@
 namespace {
 
 using namespace wellspring;
+using namespace wellspring::test;
 using nlohmann::json;
 
 // Standard deviation in grey levels: what electronics add, and what light itself does at white.

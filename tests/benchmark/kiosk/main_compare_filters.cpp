@@ -8,10 +8,10 @@
 #include "kiosk/face/head_pose.h"
 #include "kiosk/figure.h"
 #include "kiosk/frame/one_euro.h"
-#include "kiosk/main_compare.h"
+#include "main_compare.h"
 #include "kiosk/observe.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float degree = pi / 180;
@@ -148,4 +148,4 @@ void compare_filters(const CompareOptions& options) {
     });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct CompareOptions {
   std::string weights, data, kiosk;  // folders, and the kiosk's program
@@ -26,4 +26,4 @@ void measure_way(const CompareOptions& options);
 // Of the eye's process, over simulated minutes.
 void measure_memory(const CompareOptions& options);
 
-}  // namespace wellspring
+}  // namespace wellspring::test
