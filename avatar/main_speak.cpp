@@ -20,7 +20,7 @@
 #include "base/load_error.h"
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::program {
 namespace {
 
 struct Options {
@@ -184,10 +184,11 @@ int run(const Options& options) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::program
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  using namespace wellspring::program;
   if (answer_version(argc, argv)) return 0;
   log::start("speak");
   CLI::App app{"Speaks a text, and tells when each word, phoneme and mouth shape of it comes."};

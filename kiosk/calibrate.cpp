@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 namespace {
 
 constexpr double steady_for = 2;   // seconds
@@ -88,4 +88,4 @@ std::string Calibration::advice() const {
   return text;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -9,7 +9,7 @@
 #include "kiosk/frame/head.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Metres of the marks from the screen.
 inline constexpr float near_mark = 1, far_mark = 2;
@@ -40,4 +40,4 @@ class Calibration {
   std::vector<vec3> found_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -18,7 +18,7 @@
 #include "base/log.h"
 #include "kiosk/figure.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -291,4 +291,4 @@ std::unique_ptr<Camera> make_camera(const CameraSettings& settings) {
   return std::make_unique<FileCamera>(settings);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

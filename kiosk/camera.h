@@ -8,7 +8,7 @@
 #include "kiosk/frame/gray_frame.h"
 #include "kiosk/frame/head.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 enum class Got : uint8_t {
   frame,
@@ -44,4 +44,4 @@ struct CameraSettings {
 // for a folder without any. A device that is not there is no error: next() says lost.
 std::unique_ptr<Camera> make_camera(const CameraSettings& settings);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 namespace {
 
 constexpr int every = 4;         // pixel of both ways is looked at
@@ -41,4 +41,4 @@ CameraState CameraWatch::step_blind() {
   return CameraState::missing;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

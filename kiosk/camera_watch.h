@@ -7,7 +7,7 @@
 #include "kiosk/frame/gray_frame.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 class CameraWatch {
  public:
@@ -24,4 +24,4 @@ class CameraWatch {
   std::deque<double> times_;  // of the last frames
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

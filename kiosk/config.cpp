@@ -13,7 +13,7 @@
 #include "wire/json.h"
 #include "wire/json_line.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 namespace {
 
 using nlohmann::json;
@@ -166,4 +166,4 @@ void save_mount(const std::string& file, const std::string& source, const Mount&
   if (!out.flush()) throw LoadError(file, "", "cannot be written");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -18,7 +18,7 @@
 #include "kiosk/camera.h"
 #include "kiosk/presence.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct KioskConfig {
   CameraSettings camera;                // of every camera; the mount within counts
@@ -38,4 +38,4 @@ void load_config(const std::string& file, KioskConfig& config);
 // the file lists that camera, there, else as that of every camera. Throws LoadError.
 void save_mount(const std::string& file, const std::string& source, const Mount& mount);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -10,7 +10,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 std::chrono::duration<double> seconds(double s) { return std::chrono::duration<double>(s); }
@@ -99,4 +99,4 @@ Fed Feed::take(GrayFrame& frame, double wait) {
   return s.ended ? Fed::end : Fed::nothing;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 
 #include "kiosk/camera.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 enum class Fed : uint8_t {
   frame,
@@ -27,4 +27,4 @@ class Feed {
   std::shared_ptr<Shared> shared_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

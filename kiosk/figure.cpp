@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "kiosk/figure_head.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -143,4 +143,4 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
   return frame;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

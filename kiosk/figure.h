@@ -7,7 +7,7 @@
 #include "kiosk/frame/gray_frame.h"
 #include "kiosk/frame/head.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Where the visitor is at a time; position and rotation as in wire/messages.h (Person).
 struct FigurePose {
@@ -34,4 +34,4 @@ struct FigureRoom {
 GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePose& pose,
                       double time);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -115,4 +115,4 @@ std::optional<HeadHit> hit_head(vec3 origin, vec3 direction) {
   return HeadHit{t, normal / steep, albedo_at(p)};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct HeadHit {
   float t = 0;     // along the ray
@@ -19,4 +19,4 @@ struct HeadHit {
 // Where a ray (direction of any length) meets the head first.
 std::optional<HeadHit> hit_head(vec3 origin, vec3 direction);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

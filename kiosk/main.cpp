@@ -37,6 +37,7 @@
 namespace {
 
 using namespace wellspring;
+using namespace wellspring::program;
 
 std::atomic<bool> stop_asked{false};
 void ask_to_stop(int) { stop_asked = true; }

@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/background_segm.hpp>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -139,4 +139,4 @@ float MotionWatch::changed(const Box& box) const {
   return area.empty() ? 0 : float(cv::countNonZero(m.changed_now(area))) / float(area.area());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

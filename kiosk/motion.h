@@ -10,7 +10,7 @@
 
 #include "kiosk/frame/gray_frame.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct MotionSettings {
   int width = 160;              // pixels of the working picture's longer side
@@ -40,4 +40,4 @@ class MotionWatch {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

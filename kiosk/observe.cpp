@@ -11,7 +11,7 @@
 #include "kiosk/face/head_pose.h"
 #include "kiosk/person_gestures.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -178,4 +178,4 @@ Observation Observer::step_blind(double time) {
   return impl_->finish(time, false, false);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -14,7 +14,7 @@
 #include "kiosk/presence.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Of a head's rotation, radians; docs/benchmarks/kiosk.eye.md compares it.
 inline constexpr OneEuroSettings rotation_filter{0.6f, 6.f, 1.f};
@@ -47,4 +47,4 @@ class Observer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

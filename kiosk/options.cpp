@@ -14,7 +14,7 @@
 #include "wire/json.h"
 #include "wire/tokens.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 namespace {
 
 constexpr float one_degree = pi / 180;
@@ -243,4 +243,4 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   return options;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -11,7 +11,7 @@ namespace CLI {
 class App;
 }
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct KioskOptions {
   std::vector<CameraSettings> cameras;  // one or more, but for --replay and --train
@@ -38,4 +38,4 @@ struct KioskOptions {
 // LoadError.
 KioskOptions parse_options(int argc, char** argv, CLI::App& app);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -179,4 +179,4 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
   return m.result;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

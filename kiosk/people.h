@@ -10,7 +10,7 @@
 #include "kiosk/face/face.h"
 #include "kiosk/motion.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct PeopleSettings {
   double search_alone = 0.1;  // seconds between searches of the frame while nobody is followed
@@ -49,4 +49,4 @@ class People {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -6,7 +6,7 @@
 #include "kiosk/gesture/hand.h"
 #include "kiosk/gesture/spot.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -49,4 +49,4 @@ std::string PersonGestures::step(const GrayFrame& frame, uint32_t id, const Box&
 
 void PersonGestures::forget(uint32_t id) { impl_->arms.erase(id); }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

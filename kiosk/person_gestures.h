@@ -8,7 +8,7 @@
 #include "kiosk/gesture/gesture_model.h"
 #include "kiosk/frame/gray_frame.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 class PersonGestures {
  public:
@@ -26,4 +26,4 @@ class PersonGestures {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -65,4 +65,4 @@ Presence step_presence(PresenceState& state, const PresenceSettings& settings, d
   return state.now;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

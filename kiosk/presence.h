@@ -5,7 +5,7 @@
 #pragma once
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct PresenceSettings {
   double wake_after = 0.4;     // seconds of movement before absent becomes motion
@@ -30,4 +30,4 @@ struct PresenceState {
 Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
                        bool moving, bool face);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

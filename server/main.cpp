@@ -25,6 +25,7 @@
 namespace {
 
 using namespace wellspring;
+using namespace wellspring::program;
 
 // Until it is serving there is nothing to be written before the end; sums are all that may be lost.
 enum Phase : int { loading, serving, written };

@@ -22,7 +22,7 @@
 #include "show/exhibit/exhibit_load.h"
 #include "show/storyteller/contact_sheet.h"
 
-namespace wellspring {
+namespace wellspring::program {
 namespace {
 
 struct Options {
@@ -247,10 +247,11 @@ int run(Options options) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::program
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  using namespace wellspring::program;
   if (answer_version(argc, argv)) return 0;
   log::start("avatar");
   CLI::App app{"Inspects an H-Anim figure and takes pictures of it."};

@@ -23,6 +23,7 @@
 #include "show/exhibit/eye_places.h"
 
 using namespace wellspring;
+using namespace wellspring::program;
 
 namespace {
 

@@ -16,14 +16,16 @@
 #include "show/visit/walk.h"
 
 int main(int argc, char** argv) {
-  if (wellspring::answer_version(argc, argv)) return 0;
-  wellspring::log::start("check");
+  using namespace wellspring;
+  using namespace wellspring::program;
+  if (answer_version(argc, argv)) return 0;
+  log::start("check");
   CLI::App app{"Validates an exhibit package and lists every problem with file and place."};
   std::string folder;
   app.add_option("package", folder, "folder of the exhibit, e.g. content/castle")->required();
   std::string house;
   app.add_option("--house", house, "a house file that goes with it");
-  wellspring::RecordingOptions recordings;
+  RecordingOptions recordings;
   app.add_option("--cache", recordings.cache,
                  "folder that keeps what is found out about recordings");
   try {
@@ -31,31 +33,31 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  std::vector<wellspring::Problem> problems;
+  std::vector<Problem> problems;
   int fatal = 0;
   try {
-    wellspring::Exhibit exhibit = wellspring::read_exhibit(folder, problems);
-    wellspring::read_recordings(exhibit, recordings, problems);
-    if (!house.empty()) wellspring::read_house(house, exhibit, problems);
+    Exhibit exhibit = read_exhibit(folder, problems);
+    read_recordings(exhibit, recordings, problems);
+    if (!house.empty()) read_house(house, exhibit, problems);
     bool usable =
         std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
     if (usable) {
-      wellspring::World world(exhibit.scene);
-      wellspring::check_places(exhibit, world, problems);
-      wellspring::check_sides(exhibit, world, problems);
-      wellspring::check_light(exhibit, world, problems);
-      wellspring::check_ground(exhibit, world, problems);
-      wellspring::make_tour_roads(exhibit, world, problems);
+      World world(exhibit.scene);
+      check_places(exhibit, world, problems);
+      check_sides(exhibit, world, problems);
+      check_light(exhibit, world, problems);
+      check_ground(exhibit, world, problems);
+      make_tour_roads(exhibit, world, problems);
     }
     if (usable) {  // light is known by what stands still, as servers and bakes have it
-      wellspring::take_movers(exhibit);
-      wellspring::take_lights(exhibit);
-      wellspring::check_shipped_light(exhibit, problems);
+      take_movers(exhibit);
+      take_lights(exhibit);
+      check_shipped_light(exhibit, problems);
     }
   } catch (const std::exception& error) {
     problems.push_back({folder, "", error.what(), true});
   }
-  for (const wellspring::Problem& problem : problems) {
+  for (const Problem& problem : problems) {
     std::cout << (problem.fatal ? "error: " : "note: ") << to_string(problem) << "\n";
     fatal += problem.fatal;
   }

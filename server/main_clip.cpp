@@ -23,7 +23,7 @@
 
 extern char** environ;
 
-namespace wellspring {
+namespace wellspring::program {
 namespace {
 
 struct Options {
@@ -139,10 +139,11 @@ int run(Options& options) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::program
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  using namespace wellspring::program;
   if (answer_version(argc, argv)) return 0;
   log::start("clip");
   CLI::App app{

@@ -12,6 +12,7 @@
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  using namespace wellspring::program;
   if (answer_version(argc, argv)) return 0;
   log::start("new");
   CLI::App app{"Makes an exhibit of a glTF file."};

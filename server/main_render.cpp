@@ -35,6 +35,7 @@
 #include "world/sky.h"
 
 using namespace wellspring;
+using namespace wellspring::program;
 
 namespace {
 

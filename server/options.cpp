@@ -10,7 +10,7 @@
 #include "base/log_output.h"
 #include "config/config_file.h"
 
-namespace wellspring {
+namespace wellspring::program {
 namespace {
 
 // What is no setting yet when it is read.
@@ -204,4 +204,4 @@ void reread_options(ServerOptions& options, int argc, char** argv) {
   if (!changed.empty()) log::warn("needs a restart to count: {}", changed);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::program

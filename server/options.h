@@ -7,7 +7,7 @@
 #include "museum/museum.h"
 #include "stream/stream.h"
 
-namespace wellspring {
+namespace wellspring::program {
 
 struct ServerOptions {
   std::string web;     // folder of the pages
@@ -28,4 +28,4 @@ int read_options(ServerOptions& options, int argc, char** argv);
 // is named, and needs a restart. A wrong file changes nothing.
 void reread_options(ServerOptions& options, int argc, char** argv);
 
-}  // namespace wellspring
+}  // namespace wellspring::program

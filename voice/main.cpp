@@ -31,7 +31,7 @@
 
 namespace {
 
-namespace protocol = wellspring::speech_protocol;
+namespace protocol = wellspring::avatar::speech_protocol;
 using nlohmann::json;
 
 constexpr int seconds_for_one = 20;        // a child that takes longer is ended by SIGALRM
@@ -259,7 +259,7 @@ bool serve_one(const std::vector<Language>& languages, int rate) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (wellspring::answer_version(argc, argv, {"nlohmann-json"})) return 0;
+  if (wellspring::about::answer_version(argc, argv, {"nlohmann-json"})) return 0;
   signal(SIGPIPE, SIG_IGN);
   int rate = initialise(false);
   if (rate <= 0) {

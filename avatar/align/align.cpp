@@ -10,7 +10,7 @@
 #include "avatar/align/template.h"
 #include "avatar/align/time_warp.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -210,4 +210,4 @@ Speech align_speech(const Speech& spoken, const Sound& recording) {
   return speech;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

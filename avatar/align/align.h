@@ -16,7 +16,7 @@
 #include "avatar/speech/sound_file.h"
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Text, language, words and phonemes of `spoken`, sound and times of `recording`. Blocks for one to
 // three seconds a minute of recording and takes some 25 MB a minute. Throws std::runtime_error with
@@ -27,4 +27,4 @@ Speech align_speech(const Speech& spoken, const Sound& recording);
 // the narrator's own speed are met better.
 double measure_pace(const Speech& spoken, const Sound& recording);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

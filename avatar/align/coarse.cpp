@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -127,4 +127,4 @@ CoarseWay warp_coarsely(const SoundPair& pair, const std::vector<SoundState>& fi
   return result;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

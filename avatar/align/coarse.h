@@ -7,7 +7,7 @@
 #include "avatar/align/time_warp.h"
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct SoundPair {
   Features spoken, recorded;  // both normalised over their speech
@@ -35,4 +35,4 @@ struct CoarseWay {
 // Means of some frames against means of as many states of a word: at most 20 million comparisons.
 CoarseWay warp_coarsely(const SoundPair& pair, const std::vector<SoundState>& states);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

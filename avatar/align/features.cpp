@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -198,4 +198,4 @@ void normalise(Features& features, const std::vector<bool>& speech) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

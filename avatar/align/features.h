@@ -6,7 +6,7 @@
 
 #include "avatar/speech/sound_file.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 inline constexpr int cepstra = 13;                 // the zeroth is loudness
 inline constexpr int feature_count = 2 * cepstra;  // and the slopes of all of them
@@ -34,4 +34,4 @@ std::vector<bool> find_speech(const Features& features);
 // Shifts and scales every feature so that it has mean 0 and variance 1 over the frames of `speech`.
 void normalise(Features& features, const std::vector<bool>& speech);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

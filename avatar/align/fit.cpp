@@ -8,7 +8,7 @@
 #include "avatar/align/coarse.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -49,4 +49,4 @@ double eval_fit(const Speech& spoken, const Sound& recording) {
   return (mean - own.cost) / std::sqrt(std::max(variance, 1e-12));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -4,7 +4,7 @@
 #include "avatar/speech/sound_file.h"
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // How much better the text explains the recording than its own words in other orders do: their mean
 // cost of a coarse alignment less the text's, in standard deviations of theirs. Of a recording of
@@ -19,4 +19,4 @@ inline constexpr int fit_orders = 12, fit_words = 15;
 // Quantile 0.9999 of t with 11 degrees of freedom, 5.45, times sqrt(13 / 12).
 inline constexpr double least_fit = 5.7;
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 constexpr double prior_frames = 12;  // how many recorded frames the template's mean is worth
@@ -173,4 +173,4 @@ float nearest_cost(const SoundModel& model, const float* frame) {
   return least;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 #include "avatar/align/features.h"
 #include "avatar/align/template.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct SoundModel {
   std::vector<float> mean;                                    // feature_count a kind
@@ -42,4 +42,4 @@ float sound_cost(const SoundModel& model, uint32_t kind, const float* frame);
 float silence_cost(const SoundModel& model, const float* frame);
 float nearest_cost(const SoundModel& model, const float* frame);  // of the likeliest kind
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 
 #include "avatar/align/features.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::vector<std::vector<WarpReturn>> find_returns(const std::vector<SoundState>&
   return returns;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

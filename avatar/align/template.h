@@ -7,7 +7,7 @@
 #include "avatar/align/time_warp.h"
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // A piece of a phoneme.
 struct SoundState {
@@ -34,4 +34,4 @@ std::vector<WarpGap> gaps_before(const std::vector<SoundState>& states, bool blo
 std::vector<std::vector<WarpReturn>> find_returns(const std::vector<SoundState>& states, float cost,
                                                   float cost_of_word);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -138,4 +138,4 @@ WarpResult warp(const WarpTask& task) {
   return result;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

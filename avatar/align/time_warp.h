@@ -12,7 +12,7 @@
 #include <functional>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 enum class WarpGap : uint8_t { none, silence, anything };
 
@@ -52,4 +52,4 @@ struct WarpResult {
 
 WarpResult warp(const WarpTask& task);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include "avatar/body/point_at.h"
 #include "avatar/figure/joint_limits.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 quat about_x(float a) { return glm::angleAxis(a, vec3(1, 0, 0)); }
@@ -233,4 +233,4 @@ void aim_eyes(const Rig& rig, vec3 gaze_point, Pose& pose) {
   for (int side = 0; side < 2; side++) pose_eye(rig, side, gaze_point, pose);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

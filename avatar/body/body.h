@@ -8,7 +8,7 @@
 #include "avatar/figure/pose.h"
 #include "avatar/figure/rig.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct FootPlan {
   float facing = 0;  // radians about +Y
@@ -39,4 +39,4 @@ void aim_eyes(const Rig& rig, vec3 gaze_point, Pose& pose);
 // Largest turns of an eye in its socket.
 inline constexpr float eye_limit_yaw = 0.62f, eye_limit_up = 0.45f, eye_limit_down = 0.55f;
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include <bit>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr float settle_rate = 9;  // what a broken-off motion leaves is nine tenths gone in 0.43 s
@@ -141,4 +141,4 @@ ArmPose folded_arm(int side) {
   return {9_deg + over, 9_deg, 38_deg, 72_deg + over, 22_deg, 8_deg, -6_deg, 26_deg, {}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

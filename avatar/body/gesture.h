@@ -10,7 +10,7 @@
 #include "avatar/body/gesture_library.h"
 #include "avatar/figure/spring.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // What is asked of the arms in one tick.
 struct GestureOrder {
@@ -50,4 +50,4 @@ ArmPose limit_arm(const ArmPose& arm);
 ArmPose hanging_arm(float spread);
 ArmPose folded_arm(int side);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 
 #include "avatar/face/library.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr std::array<std::string_view, 13> arm_fields = {
@@ -81,4 +81,4 @@ int find_gesture(const GestureLibrary& library, std::string_view name) {
 
 int find_gesture(std::string_view name) { return find_gesture(default_gestures(), name); }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

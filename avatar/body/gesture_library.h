@@ -9,7 +9,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // One arm; radians. All zero: it hangs straight down, palm to the thigh.
 struct ArmPose {
@@ -79,4 +79,4 @@ int find_gesture(const GestureLibrary& library, std::string_view name);
 GestureLibrary read_gestures(std::string_view json, const std::string& file);
 GestureLibrary load_gestures(const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include "avatar/body/gesture_library.h"
 #include "avatar/face/library_json.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using nlohmann::json;
@@ -248,4 +248,4 @@ GestureLibrary load_gestures(const std::string& file) {
   return read_gestures(read_text_file(file), file);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/body/grip.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 std::optional<mat4> eval_grip(const Rig& rig, const Pose& pose, int side) {
   const ArmRig& arm = rig.arm[size_t(side)];
@@ -30,4 +30,4 @@ std::optional<mat4> eval_grip(const Rig& rig, const Pose& pose, int side) {
               vec4(frame.center + frame.rotation * (place - wrist), 1));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 const GestureClip* clip_of(const HoldState& state, const GestureLibrary& library) {
@@ -73,4 +73,4 @@ void keep_to_free_arm(GestureOrder& order, const GestureLibrary& library, const 
   order.mirrored = clip.uses_arm[size_t(state.held.side)];
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 
 #include "avatar/body/gesture.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // What a hand is to hold.
 struct HeldThing {
@@ -48,4 +48,4 @@ bool is_held_up(const HoldState& state, const GestureLibrary& library);
 // A gesture that only the busy arm would make is made by the other one.
 void keep_to_free_arm(GestureOrder& order, const GestureLibrary& library, const HoldState& state);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

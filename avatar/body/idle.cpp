@@ -3,7 +3,7 @@
 
 #include "avatar/figure/noise.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 IdleMotion tick_idle(IdleState& state, Rng& rng, float lively, bool hands_busy, bool humanlike,
                      double now, float dt) {
@@ -50,4 +50,4 @@ IdleMotion tick_idle(IdleState& state, Rng& rng, float lively, bool hands_busy, 
   return motion;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

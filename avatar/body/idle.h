@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct IdleState {
   double breath = 0;  // cycles, 0..1
@@ -31,4 +31,4 @@ struct IdleMotion {
 IdleMotion tick_idle(IdleState& state, Rng& rng, float lively, bool hands_busy, bool humanlike,
                      double now, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 
 #include "avatar/figure/joint_limits.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 quat between(vec3 from, vec3 to) {
@@ -163,4 +163,4 @@ float point_arm(const Rig& rig, int side, Aim with, vec3 target, float weight, P
                 : angle_of(along, goal - from);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 #include "avatar/figure/pose.h"
 #include "avatar/figure/rig.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // How far the upper arm swings before the chest, from straight ahead: across the body and outwards;
 // and up and down. Radians.
@@ -27,4 +27,4 @@ PointingLine eval_pointing_line(const Rig& rig, const Pose& pose, int side, Aim 
 // is pi.
 float point_arm(const Rig& rig, int side, Aim with, vec3 target, float weight, Pose& pose);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 constexpr float step_seconds = 0.55f, widest_step = 50_deg, least_step = 8_deg;
 }
@@ -54,4 +54,4 @@ void tick_stance(StanceState& state, bool has_legs, float aim, float reach, floa
   settle(state.lean, 0.035f * stand, 9, dt);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 
 #include "avatar/figure/spring.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct Foot {
   float from = 0, to = 0;  // facing before and after the step, radians about +Y
@@ -30,4 +30,4 @@ struct StanceState {
 void tick_stance(StanceState& state, bool has_legs, float aim, float reach, float patience,
                  double now, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

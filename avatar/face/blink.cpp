@@ -3,7 +3,7 @@
 
 #include "avatar/figure/spring.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 constexpr float down = 0.07f, held = 0.035f, up = 0.12f;
 }
@@ -34,4 +34,4 @@ void ask_blink(BlinkState& state, double now) {
   if (now - state.begun > 0.8 && state.next - now > 0.25) state.next = now;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

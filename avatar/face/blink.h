@@ -3,7 +3,7 @@
 #pragma once
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct BlinkState {
   double next = 1.5;     // when the coming blink starts
@@ -18,4 +18,4 @@ float tick_blink(BlinkState& state, Rng& rng, double now, bool humanlike);
 // gaze.
 void ask_blink(BlinkState& state, double now);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

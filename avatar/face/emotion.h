@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 enum class Emotion : uint8_t { joy, sadness, anger, fear, disgust, surprise };
 inline constexpr size_t emotion_count = 6;
@@ -29,4 +29,4 @@ constexpr int find_emotion(std::string_view name) {
   return -1;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // [seen][shown]: joy, sadness, anger, fear, disgust, surprise.
@@ -38,4 +38,4 @@ Emotions tick_empathy(EmpathyState& state, const Emotions* seen, float dt) {
   return felt;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

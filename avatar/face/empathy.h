@@ -9,7 +9,7 @@
 #include "avatar/face/emotion.h"
 #include "avatar/figure/spring.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct EmpathyState {
   std::array<Spring, emotion_count> felt;
@@ -26,4 +26,4 @@ Emotions answer_to(const Emotions& seen);
 // `seen` null: nobody, or nothing known of the face; the feeling fades.
 Emotions tick_empathy(EmpathyState& state, const Emotions* seen, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 
 #include "avatar/face/library.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 int find_expression(const ExpressionSet& set, std::string_view name) {
   for (size_t i = 0; i < set.expressions.size(); i++)
@@ -37,4 +37,4 @@ const ExpressionSet& default_expressions() {
   return set;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -11,7 +11,7 @@
 
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // To a joint what a displacer is to a mesh: orientations at growing weights, interpolated in
 // between, the outermost ones beyond.
@@ -73,4 +73,4 @@ const ExpressionSet& default_expressions();
 ExpressionSet read_expressions(std::string_view json, const std::string& file);
 ExpressionSet load_expressions(const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 #include "avatar/face/expression.h"
 #include "avatar/face/library_json.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using nlohmann::json;
@@ -173,4 +173,4 @@ ExpressionSet load_expressions(const std::string& file) {
   return read_expressions(read_text_file(file), file);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

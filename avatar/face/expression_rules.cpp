@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 float clamp_weight(float v) { return v > 0 ? std::min(v, 1.0f) : 0; }  // NaN: 0
@@ -62,4 +62,4 @@ void eval_appearance_changes(const Character& character, const Pose& pose,
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 #pragma once
 #include "avatar/figure/pose.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Holds a pose's displacers, and the turns of its eyes, to character.expression_rules. Once a tick,
 // after everything that sets them. A figure without rules costs nothing. Weights that are not
@@ -17,4 +17,4 @@ void follow_expression_rules(const Character& character, Pose& pose);
 void eval_appearance_changes(const Character& character, const Pose& pose,
                              std::vector<AppearanceChange>& changes);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 
 #include "avatar/speech/visemes.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 std::string small(std::string_view text) {
@@ -291,4 +291,4 @@ Emotions bounded(const Emotions& sum) {
   return result;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -17,7 +17,7 @@
 #include "avatar/face/perlin_face.h"
 #include "avatar/figure/pose.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // A set as one figure can show it. Made once for each figure; everything nested is flattened.
 struct ExpressionRig {
@@ -80,4 +80,4 @@ Emotions mix(const Emotions& a, const Emotions& b, float t);
 // is within 0..1, and all together weigh at most 1, so that no mixture becomes a grimace.
 Emotions bounded(const Emotions& sum);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include "avatar/figure/noise.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr double syllables_a_second = 4.6;
@@ -113,4 +113,4 @@ void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& inpu
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

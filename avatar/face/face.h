@@ -11,7 +11,7 @@
 #include "avatar/face/perlin_face.h"
 #include "avatar/figure/spring.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct FaceState {
   PerlinFace perlin;                          // the situation's layer
@@ -43,4 +43,4 @@ Emotions layered(const Emotions& story, const Emotions& visitor, float weight,
 void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& input, double now,
                float dt, ExpressionSum& sum, Protected& words, StorytellerWork& work);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,9 +3,9 @@
 #pragma once
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 std::string_view default_gestures_json();
 std::string_view default_expressions_json();
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

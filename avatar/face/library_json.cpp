@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 constexpr size_t most_bytes = size_t(16) << 20;
 constexpr int most_depth = 8;
@@ -95,4 +95,4 @@ std::string read_text_file(const std::string& file) {
   return text;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -9,7 +9,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct LibraryReader {
   const std::string& file;
@@ -46,4 +46,4 @@ struct LibraryReader {
 
 std::string read_text_file(const std::string& file);  // throws LoadError; at most 16 MiB
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 
 #include "avatar/figure/noise.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 const std::array<const char*, flex_count> flex_names = {"turn",  "nod",   "tilt",  "sayAh",
                                                         "blink", "brows", "lookX", "lookY",
@@ -101,4 +101,4 @@ int tick_perlin(PerlinFace& face, float stir, float settle_seconds, double now, 
   return drawn;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -13,7 +13,7 @@
 
 #include "avatar/face/emotion.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 enum class Flex : uint8_t {
   turn,
@@ -52,4 +52,4 @@ void add_targets(PerlinFace& face, Emotion emotion, float weight);
 // times `stir`; 0 lets it die away. Returns the number of noise values that were drawn.
 int tick_perlin(PerlinFace& face, float stir, float settle_seconds, double now, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

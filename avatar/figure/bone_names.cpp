@@ -7,7 +7,7 @@
 
 #include "avatar/figure/hanim_names.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 struct Namer {
@@ -264,4 +264,4 @@ quat upright_turn(const std::vector<std::string>& joints, const std::vector<vec3
   return best;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

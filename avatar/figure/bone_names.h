@@ -9,7 +9,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct Bone {
   std::string name;
@@ -81,4 +81,4 @@ std::vector<std::string> name_bones_by_shape(const std::vector<Bone>& bones);
 std::vector<std::string> spine_names(size_t count);
 std::vector<std::string> neck_names(size_t count);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

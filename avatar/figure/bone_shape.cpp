@@ -6,7 +6,7 @@
 
 #include "avatar/figure/bone_names.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 struct Shape {
@@ -152,4 +152,4 @@ std::vector<std::string> name_bones_by_shape(const std::vector<Bone>& bones) {
   return names;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 void add_triangle(Character& character, Part& part, int joint, vec3 a, vec3 b, vec3 c) {
@@ -78,4 +78,4 @@ void add_bone_surface(Character& character) {
   character.parts.push_back(std::move(part));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

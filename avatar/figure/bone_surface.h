@@ -3,9 +3,9 @@
 #pragma once
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Adds bones to a figure without parts; leaves others as they are.
 void add_bone_surface(Character& character);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

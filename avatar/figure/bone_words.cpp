@@ -7,7 +7,7 @@
 
 #include "avatar/figure/bone_names.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // Words of a name: cut at punctuation, at small-to-capital and letter-to-digit borders.
@@ -282,4 +282,4 @@ std::string vrm_bone_joint(std::string_view bone, int version) {
   return "";
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

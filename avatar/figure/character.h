@@ -11,7 +11,7 @@
 
 #include "avatar/figure/motion.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct Joint {
   std::string name;  // H-Anim v2 name ("l_shoulder"); aliases and prefixes of the file resolved
@@ -176,4 +176,4 @@ struct Character {
 int find_joint(const Character& character, std::string_view name);      // -1: none
 int find_displacer(const Character& character, std::string_view name);  // -1: none
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

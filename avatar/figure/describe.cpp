@@ -8,7 +8,7 @@
 
 #include "avatar/figure/hanim_names.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // Displacers that change materials, each once.
@@ -179,4 +179,4 @@ std::string describe_json(const Character& character) {
   return all.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,9 +5,9 @@
 
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 std::string describe_text(const Character& character);
 std::string describe_json(const Character& character);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

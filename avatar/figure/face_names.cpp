@@ -6,7 +6,7 @@
 #include <map>
 #include <unordered_set>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // Which vertices of a shape a control takes: a side, or a region told by what lids and mouth move.
@@ -284,4 +284,4 @@ void complete_face(Character& character) {
   complete_rules(character);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

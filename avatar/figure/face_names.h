@@ -4,11 +4,11 @@
 #pragma once
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Adds displacers ("blink_l", "smile_r", "viseme_aa", ...) that the figure lacks and that can be
 // made from those it has: renamed, summed, or cut to one side or one region of the face. What the
 // figure has under our names stays as it is.
 void complete_face(Character& character);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

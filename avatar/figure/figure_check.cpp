@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 struct Box {
@@ -116,4 +116,4 @@ void check_figure(Character& character) {
         "the figure is more than 20 m large: perhaps its unit is not the metre");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,10 +3,10 @@
 #pragma once
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Puts the figure on y = 0 (motions along with it) and adds warnings: joints of the face that lie
 // where no face is, a size no person has. Called once, at the end of loading.
 void check_figure(Character& character);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

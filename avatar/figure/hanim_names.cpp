@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 struct Row {
@@ -175,4 +175,4 @@ int hanim_joint_count(int level) {
   return level < 0 || level > 4 ? 0 : counts[level];
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

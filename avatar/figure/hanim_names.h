@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // "Joe_HumanoidRoot " -> "humanoid_root", "r_thumb2" -> "r_metacarpophalangeal_1". Blanks are
 // trimmed, H-Anim 1 names translated and a prefix dropped where what follows it is known. Empty
@@ -20,4 +20,4 @@ int hanim_joint_level(std::string_view joint);
 int level_of_articulation(const std::vector<std::string_view>& joints);
 int hanim_joint_count(int level);  // 1, 18, 71, 94, 146
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

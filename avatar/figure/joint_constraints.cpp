@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using Kind = JointConstraint::Kind;
@@ -103,4 +103,4 @@ std::vector<JointConstraint> sort_constraints(const std::vector<Joint>& joints,
   return circular;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

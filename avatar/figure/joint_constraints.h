@@ -6,7 +6,7 @@
 #pragma once
 #include "avatar/figure/pose.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // The turn that a constraint asks of its joint, relative to the joint's parent; the identity where
 // it says nothing: an aim without a direction, a source that is not finite.
@@ -23,4 +23,4 @@ void follow_constraints(const Character& character, Pose& pose);
 std::vector<JointConstraint> sort_constraints(const std::vector<Joint>& joints,
                                               std::vector<JointConstraint>& constraints);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -47,4 +47,4 @@ float readiness(const Joint& joint) {
   return 1 - (stiffness.x + stiffness.y + stiffness.z) / 3;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #pragma once
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Whether the file's limits say anything: exporters write zeros where they know none.
 bool has_limits(const Joint& joint);
@@ -20,4 +20,4 @@ quat limit_turn(const Joint& joint, quat turn);
 // How readily the joint turns when a chain of joints shares a turn: 1 without stiffness, 0 at full.
 float readiness(const Joint& joint);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/figure/lod.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 const char* to_string(Detail detail) {
   switch (detail) {
@@ -20,4 +20,4 @@ Detail next_detail(Detail before, float distance, const DetailWalls& walls) {
   return distance < near ? Detail::full : distance < far ? Detail::medium : Detail::none;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

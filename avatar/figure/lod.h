@@ -18,7 +18,7 @@
 #pragma once
 #include <cstdint>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 enum class Detail : uint8_t { none, medium, full };
 const char* to_string(Detail detail);
@@ -39,4 +39,4 @@ struct StorytellerWork {
   bool operator==(const StorytellerWork&) const = default;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 size_t width_of(TrackKind kind) {
@@ -81,4 +81,4 @@ void eval_motion(const Motion& motion, double time, bool loop, MotionPose& pose)
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -9,7 +9,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // A joint of the motion's own skeleton at rest: +Y up, facing +Z, standing on y = 0.
 struct MotionJoint {
@@ -57,4 +57,4 @@ struct MotionPose {
 double motion_time(const Motion& motion, double time, bool loop);
 void eval_motion(const Motion& motion, double time, bool loop, MotionPose& pose);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // About -1..1 with mean 0; changes about once a second. `time` in seconds times the wanted
 // frequency.
@@ -22,4 +22,4 @@ inline float smooth_noise(uint32_t channel, double time) {
   return 2 * (a + (b - a) * fade);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

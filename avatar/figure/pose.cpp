@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/figure/pose.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 Pose make_rest_pose(const Character& character) {
   Pose pose;
@@ -45,4 +45,4 @@ JointFrame eval_joint_frame(const Character& character, const Pose& pose, int jo
   return {rotation, place};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct Pose {
   vec3 translation{0};            // of the root, humanoid space
@@ -30,4 +30,4 @@ struct JointFrame {
 };
 JointFrame eval_joint_frame(const Character& character, const Pose& pose, int joint);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

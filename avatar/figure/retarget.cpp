@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using Index = std::unordered_map<std::string, int>;
@@ -243,4 +243,4 @@ void apply_motion(const Motion& motion, const Retarget& retarget, const Characte
   if (is_finite(way)) pose.translation = glm::mix(pose.translation, rest + way - without, weight);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

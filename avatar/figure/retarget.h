@@ -6,7 +6,7 @@
 #include "avatar/figure/motion.h"
 #include "avatar/figure/pose.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct Retarget {
   struct Link {
@@ -30,4 +30,4 @@ Retarget make_retarget(const Motion& motion, const Character& character);
 void apply_motion(const Motion& motion, const Retarget& retarget, const Character& character,
                   double time, bool loop, float weight, Pose& pose);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr vec3 down{0, -1, 0};
@@ -201,4 +201,4 @@ Rig make_rig(const Character& character) {
   return rig;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

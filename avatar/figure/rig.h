@@ -7,7 +7,7 @@
 
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct WeightedJoint {
   int joint = -1;
@@ -61,4 +61,4 @@ struct Rig {
 
 Rig make_rig(const Character& character);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

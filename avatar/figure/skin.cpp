@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 vec3 unit_or(vec3 v, vec3 otherwise) {
@@ -195,4 +195,4 @@ void skin(const Character& character, const Pose& pose, const mat4& placement, S
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include "avatar/figure/pose.h"
 #include "avatar/figure/skin_dual.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Faces around the vertices that displacers move, so that a closing lid is shaded as it lies.
 struct SkinFolds {
@@ -40,4 +40,4 @@ void skin(const Character& character, const Pose& pose, const mat4& placement, S
 // Unit area-weighted mean normal of the faces around a group; zero where they cancel.
 vec3 eval_fold_normal(const SkinFolds& folds, uint32_t group, const std::vector<vec3>& positions);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

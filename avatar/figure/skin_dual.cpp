@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 bool is_turn(const mat3& m) {
@@ -88,4 +88,4 @@ glm::mat3x4 blend_dual_quaternions(const JointWeight* begin, const JointWeight* 
   return glm::mat3x4(vec4(rows[0], way.x), vec4(rows[1], way.y), vec4(rows[2], way.z));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

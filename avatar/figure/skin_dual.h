@@ -8,7 +8,7 @@
 
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct DualQuaternion {
   quat real{1, 0, 0, 0}, dual{0, 0, 0, 0};
@@ -32,4 +32,4 @@ glm::mat3x4 blend_dual_quaternions(const JointWeight* begin, const JointWeight* 
                                    const std::vector<DualQuaternion>& joints,
                                    const std::vector<mat3>& stretches);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct Spring {
   float value = 0, velocity = 0;
@@ -37,4 +37,4 @@ inline constexpr float degrees_to_radians = 0.017453292519943295f;
 constexpr float operator""_deg(long double v) { return float(v) * degrees_to_radians; }
 constexpr float operator""_deg(unsigned long long v) { return float(v) * degrees_to_radians; }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using Frame = SpringBonesState::Frame;
@@ -179,4 +179,4 @@ void tick_spring_bones(SpringBonesState& state, const Character& character, floa
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

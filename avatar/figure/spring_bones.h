@@ -11,7 +11,7 @@
 
 #include "avatar/figure/pose.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // One a bone of Character::springs: where its end is, and how fast the bone turns.
 struct SpringBoneState {
@@ -33,4 +33,4 @@ struct SpringBonesState {
 // finite hangs as modelled.
 void tick_spring_bones(SpringBonesState& state, const Character& character, float dt, Pose& pose);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

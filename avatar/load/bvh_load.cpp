@@ -12,7 +12,7 @@
 #include "avatar/figure/hanim_names.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr size_t most_joints = 4096, depth_limit = 512;
@@ -351,4 +351,4 @@ Character character_from_bvh(const std::string& path, const std::string& text) {
   return character;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 bool is_bvh(const std::string& text);
 
@@ -15,4 +15,4 @@ bool is_bvh(const std::string& text);
 // Sizes in other units than metres become metres by the skeleton's height. Throws LoadError.
 Character character_from_bvh(const std::string& path, const std::string& text);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -10,7 +10,7 @@
 #include "avatar/load/x3d_humanoid.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 std::string read_file(const std::string& path) {
@@ -65,4 +65,4 @@ int find_displacer(const Character& character, std::string_view name) {
   return -1;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

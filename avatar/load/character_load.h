@@ -7,8 +7,8 @@
 
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 Character load_character(const std::string& path);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 #include "avatar/figure/figure_check.h"
 #include "avatar/figure/hanim_names.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // A figure brings no light and no eye of its own.
@@ -57,4 +57,4 @@ Character character_from_gltf(const std::string& path) {
   return std::move(character);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

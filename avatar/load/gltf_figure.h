@@ -9,7 +9,7 @@
 #include "avatar/load/vrm_extension.h"
 #include "gltf/pose.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 inline constexpr size_t most_displacements = 20'000'000;  // of a figure's vertices
 
@@ -38,4 +38,4 @@ void read_gltf_motions(GltfFigure& figure);
 // without a skeleton.
 Character character_from_gltf(const std::string& path);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

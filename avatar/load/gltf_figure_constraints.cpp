@@ -5,7 +5,7 @@
 #include "avatar/load/gltf_frames.h"
 #include "avatar/figure/joint_constraints.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 void read_gltf_constraints(GltfFigure& figure) {
   Character& character = figure.character;
@@ -44,4 +44,4 @@ void read_gltf_constraints(GltfFigure& figure) {
           names + (circular.size() > 8 ? ", ..." : ""));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 
 #include "avatar/load/gltf_figure.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using gltf::items;
@@ -142,4 +142,4 @@ void read_gltf_expressions(GltfFigure& figure) {
   all = std::move(reader.made);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

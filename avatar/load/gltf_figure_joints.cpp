@@ -9,7 +9,7 @@
 #include "avatar/load/gltf_frames.h"
 #include "gltf/data.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using gltf::at;
@@ -310,4 +310,4 @@ void read_gltf_joints(GltfFigure& figure) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

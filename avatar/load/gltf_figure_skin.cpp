@@ -9,7 +9,7 @@
 #include "gltf/instances.h"
 #include "gltf/primitive.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using gltf::at;
@@ -310,4 +310,4 @@ void read_gltf_surfaces(GltfFigure& figure) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 
 #include "avatar/load/gltf_figure.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 void read_gltf_springs(GltfFigure& figure) {
   Character& character = figure.character;
@@ -63,4 +63,4 @@ void read_gltf_springs(GltfFigure& figure) {
             [](const SpringBone& a, const SpringBone& b) { return a.joint < b.joint; });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 #include "avatar/load/gltf_frames.h"
 #include "gltf/animation.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 TrackCurve curve_of(gltf::Curve curve) {
@@ -148,4 +148,4 @@ void read_gltf_motions(GltfFigure& figure) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

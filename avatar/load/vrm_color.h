@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // IEC 61966-2-1 up to 1, beyond it, where colours glow, a power of 2.2. Below 0: 0.
 inline vec3 linear_of_unity(vec3 color) {
@@ -21,4 +21,4 @@ inline vec3 linear_of_unity(vec3 color) {
   return linear;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

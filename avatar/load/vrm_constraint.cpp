@@ -5,7 +5,7 @@
 #include "avatar/load/vrm_extension.h"
 #include "avatar/load/vrm_json.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using namespace vrm_json;
@@ -71,4 +71,4 @@ void read_vrm_constraints(File& file, Vrm& vrm) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

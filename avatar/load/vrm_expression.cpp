@@ -9,7 +9,7 @@
 #include "avatar/load/vrm_extension.h"
 #include "avatar/load/vrm_json.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using namespace vrm_json;
@@ -206,4 +206,4 @@ void read_vrm_expressions(File& file, const json& object, Vrm& vrm) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 #include "avatar/figure/bone_names.h"
 #include "avatar/load/vrm_json.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using namespace vrm_json;
@@ -172,4 +172,4 @@ Vrm read_vrm(File& file) {
   return vrm;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -13,7 +13,7 @@
 #include "avatar/figure/character.h"
 #include "gltf/file.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct VrmBind {
   int node = -1, mesh = -1;  // one of them names whose morph targets are meant
@@ -102,4 +102,4 @@ void read_vrm_expressions(gltf::File& file, const gltf::json& object, Vrm& vrm);
 void read_vrm_springs(gltf::File& file, Vrm& vrm);
 void read_vrm_constraints(gltf::File& file, Vrm& vrm);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

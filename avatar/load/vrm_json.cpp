@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/load/vrm_json.h"
 
-namespace wellspring::vrm_json {
+namespace wellspring::avatar::vrm_json {
 
 namespace {
 
@@ -65,4 +65,4 @@ int index_in(const File& file, const json& object, const char* key, const char* 
   return int(index);
 }
 
-}  // namespace wellspring::vrm_json
+}  // namespace wellspring::avatar::vrm_json

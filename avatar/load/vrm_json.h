@@ -7,7 +7,7 @@
 #include "base/vec.h"
 #include "gltf/file.h"
 
-namespace wellspring::vrm_json {
+namespace wellspring::avatar::vrm_json {
 
 using gltf::at;
 using gltf::File;
@@ -27,4 +27,4 @@ vec3 vector_in(const json& object, const char* key, vec3 otherwise);
 int index_in(const File& file, const json& object, const char* key, const char* into,
              const std::string& where);
 
-}  // namespace wellspring::vrm_json
+}  // namespace wellspring::avatar::vrm_json

@@ -7,7 +7,7 @@
 #include "avatar/load/vrm_extension.h"
 #include "avatar/load/vrm_json.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using namespace vrm_json;
@@ -149,4 +149,4 @@ std::set<size_t> rewrite_vrm_materials(File& file) {
   return cartoons;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

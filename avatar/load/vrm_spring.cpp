@@ -6,7 +6,7 @@
 #include "avatar/load/vrm_extension.h"
 #include "avatar/load/vrm_json.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using namespace vrm_json;
@@ -217,4 +217,4 @@ void read_vrm_springs(File& file, Vrm& vrm) {
   else if (vrm.version == 0) reader.read_version_0();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

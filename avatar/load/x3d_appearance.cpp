@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 vec3 linear_from_srgb(vec3 c) {
@@ -160,4 +160,4 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, std::vecto
   return result;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

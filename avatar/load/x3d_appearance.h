@@ -5,7 +5,7 @@
 #include "avatar/figure/character.h"
 #include "avatar/load/x3d_node.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct X3dAppearance {
   Appearance appearance;
@@ -18,4 +18,4 @@ struct X3dAppearance {
 // that only glows).
 X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, std::vector<vec4>& colors);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 #include "avatar/load/x3d_node.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 enum class TokenType { end, word, string, open_brace, close_brace, open_bracket, close_bracket };
@@ -276,4 +276,4 @@ X3dFile parse_x3d_classic(const std::string& path, const std::string& text) {
   return file;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

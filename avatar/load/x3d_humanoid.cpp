@@ -12,7 +12,7 @@
 #include "avatar/load/x3d_reader.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr int max_visits = 2'000'000;
@@ -254,4 +254,4 @@ Character character_from_x3d(X3dFile& file) {
   return std::move(reader.character);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

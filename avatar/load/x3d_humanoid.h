@@ -5,8 +5,8 @@
 #include "avatar/figure/character.h"
 #include "avatar/load/x3d_node.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 Character character_from_x3d(X3dFile& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 #include "avatar/load/x3d_node.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 using json = nlohmann::json;
@@ -180,4 +180,4 @@ X3dFile parse_x3d_json(const std::string& path, const std::string& text) {
   return file;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

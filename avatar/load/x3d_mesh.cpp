@@ -8,7 +8,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr size_t max_corners = 6'000'000;
@@ -374,4 +374,4 @@ X3dMesh make_x3d_mesh(X3dFile& file, int geometry) {
   return mesh;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -4,7 +4,7 @@
 #pragma once
 #include "avatar/load/x3d_node.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct X3dMesh {
   std::vector<vec3> points;        // the Coordinate's points, or the primitive's
@@ -25,4 +25,4 @@ X3dMesh make_x3d_mesh(X3dFile& file, int geometry);
 // The mesh of Box, Sphere, Cylinder or Cone.
 X3dMesh make_x3d_primitive(const X3dFile& file, const X3dNode& node);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

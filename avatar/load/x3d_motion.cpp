@@ -11,7 +11,7 @@
 #include "avatar/figure/hanim_names.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // From the humanoid's own coordinates to humanoid space, as turns and ways go.
@@ -352,4 +352,4 @@ void read_x3d_motions(HumanoidReader& reader, int humanoid) {
                   " ROUTEs are no way from a TimeSensor to a joint or displacer: not followed");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,11 +5,11 @@
 #pragma once
 #include "avatar/load/x3d_reader.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Adds to reader.character.motions. Angles of HAnimMotion are degrees, as all files have them;
 // where it gives the root's place instead of its way, the way is found by putting the feet on the
 // floor.
 void read_x3d_motions(HumanoidReader& reader, int humanoid);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

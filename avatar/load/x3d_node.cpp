@@ -9,7 +9,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 std::string x3d_type_name(std::string_view name) {
   size_t colon = name.rfind(':');
@@ -213,4 +213,4 @@ void note_left_out(X3dFile& file) {
                   " beside the humanoid and " + (shapes == 1 ? "is" : "are") + " left out");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -10,7 +10,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct X3dField {
   std::string name, text;  // text as in the file, lists without their brackets
@@ -111,4 +111,4 @@ std::vector<int> shown_children(const X3dFile& file, const X3dNode& node);
 // read (lights, sensors, lines, ...), and the shapes that stand beside all humanoids.
 void note_left_out(X3dFile& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

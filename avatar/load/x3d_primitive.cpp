@@ -2,7 +2,7 @@
 // Box, Sphere, Cylinder and Cone of X3D 4, clause 13.
 #include "avatar/load/x3d_mesh.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr int around = 24, along = 12;
@@ -84,4 +84,4 @@ X3dMesh make_x3d_primitive(const X3dFile& file, const X3dNode& node) {
   return mesh;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 #include "avatar/figure/character.h"
 #include "avatar/load/x3d_mesh.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 inline constexpr int max_joints = 4096;
 inline constexpr size_t max_vertices = 3'000'000;
@@ -63,4 +63,4 @@ struct SkinPoints {
   std::vector<JointWeight> weights;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 #include "avatar/load/x3d_reader.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // Gathers skinCoordIndex/skinCoordWeight of all joints by point, normalised.
@@ -285,4 +285,4 @@ void HumanoidReader::read_skin(int humanoid) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

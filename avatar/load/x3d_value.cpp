@@ -6,7 +6,7 @@
 #include "avatar/load/x3d_node.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 bool is_space(char c) {
@@ -198,4 +198,4 @@ mat4 transform_of(const X3dFile& file, const X3dNode& node) {
   return glm::translate(matrix, -center);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 #include "avatar/load/x3d_node.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // Lines of byte offsets; UTF-16 and UTF-32 files have none.
@@ -162,4 +162,4 @@ X3dFile parse_x3d_xml(const std::string& path, const std::string& text) {
   return file;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr double same_person_seconds =
@@ -130,4 +130,4 @@ void decide(BehaviourState& state, const StorytellerInput& input, double now,
   else become(Mood::idle);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 #pragma once
 #include "avatar/mind/storyteller_io.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct BehaviourState {
   struct Person {
@@ -34,4 +34,4 @@ inline constexpr double confirm_seconds = 0.25, lost_seconds = 2.0, greeting_sec
 void decide(BehaviourState& state, const StorytellerInput& input, double now,
             StorytellerEvents& events);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

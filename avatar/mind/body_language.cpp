@@ -5,7 +5,7 @@
 
 #include "avatar/mind/gaze.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr float near_place = 1.3f;   // metres: nearer than this is pointed at with a bent arm
@@ -94,4 +94,4 @@ GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
   return {};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

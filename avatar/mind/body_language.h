@@ -9,7 +9,7 @@
 #include "avatar/mind/storyteller_io.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct BodyLanguageState {
   double next_nod = 0;
@@ -32,4 +32,4 @@ GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
                             const StorytellerEvents& events, Mood mood, const mat4& to_body,
                             Rng& rng, double now);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

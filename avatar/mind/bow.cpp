@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 static constexpr float bow_rate = 2.5f;  // 90 % after 1.6 s
 
@@ -16,4 +16,4 @@ void tick_bow(BowState& state, std::optional<vec3> guest, vec3 eyes, float dt) {
   settle(state.share, wanted, bow_rate, dt);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include "avatar/figure/spring.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct BowState {
   Spring share;  // 0: upright, 1: as far as it bends
@@ -25,4 +25,4 @@ inline constexpr float bow_sink = 0.1f, bow_lean = 14.0_deg;
 // null: nobody.
 void tick_bow(BowState& state, std::optional<vec3> guest, vec3 eyes, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 
 #include "avatar/body/body.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr float nine_tenths =
@@ -180,4 +180,4 @@ bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour
   return jump;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

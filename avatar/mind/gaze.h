@@ -12,7 +12,7 @@
 #include "avatar/figure/spring.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Metres within which a visitor's camera is looked at, and while it is told a story.
 inline constexpr float remote_radius = 8, listener_radius = 20;
@@ -63,4 +63,4 @@ vec3 eyes_origin(const Rig& rig, float heading);
 // The point the eyes converge on.
 vec3 gaze_point(const GazeState& state, const Rig& rig, float heading);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

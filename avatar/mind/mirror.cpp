@@ -3,7 +3,7 @@
 
 #include "avatar/figure/spring.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // Nothing below the dead zone and no jump at its edge: full size again at twice the zone.
@@ -48,4 +48,4 @@ void tick_mirror(MirrorState& state, bool present, vec3 rotation, double now, fl
   advance(now);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

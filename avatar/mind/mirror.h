@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 inline constexpr float mirror_share = 0.5f, mirror_delay = 0.35f, mirror_lag = 0.6f;
 
@@ -26,4 +26,4 @@ struct MirrorState {
 // `dt`.
 void tick_mirror(MirrorState& state, bool present, vec3 rotation, double now, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -9,7 +9,7 @@
 #include "avatar/face/expression_rules.h"
 #include "avatar/figure/joint_constraints.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 std::shared_ptr<const Rig> rig_of(const StorytellerState& state, const Character& character) {
@@ -335,4 +335,4 @@ StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& stor
   return gaze;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -20,7 +20,7 @@
 #include "avatar/body/stance.h"
 #include "avatar/mind/storyteller_io.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // The figure and where it stands; what never changes while an exhibit runs.
 struct Storyteller {
@@ -77,4 +77,4 @@ struct StorytellerGaze {
 StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller,
                           const Pose& pose);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

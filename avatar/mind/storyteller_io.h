@@ -11,7 +11,7 @@
 #include "avatar/story/story_cue.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Somebody the storyteller can be aware of. Coordinates are the world's (as `placement`).
 struct Guest {
@@ -56,4 +56,4 @@ struct StorytellerEvents {
   uint64_t guest = 0;  // whom it concerns
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -9,7 +9,7 @@
 #include "avatar/speech/mouth_shapes.h"
 #include "avatar/speech/text.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -221,4 +221,4 @@ std::shared_ptr<const Speech> read_speech_answer(const SpeechRequest& request,
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -10,11 +10,11 @@
 #include "avatar/speech/request.h"
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Null with one sentence in `error` when the answer is an error or makes no sense.
 std::shared_ptr<const Speech> read_speech_answer(const SpeechRequest& request,
                                                  std::string_view json_text,
                                                  std::vector<int16_t> pcm, std::string& error);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

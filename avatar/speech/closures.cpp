@@ -7,7 +7,7 @@
 
 #include "avatar/speech/mouth_shapes.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -58,4 +58,4 @@ void include_closures(Speech& speech) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 #pragma once
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // eSpeak NG's voiceless stops begin with their burst; the closure before it, when the lips of a p
 // are shut and nothing is heard, counts as the end of the sound before. Moves their begin to where
@@ -13,4 +13,4 @@ void include_closures(Speech& speech);
 
 inline constexpr double usual_closure = 0.04;  // seconds; where it cannot be heard
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 constexpr double shortest_sound = 0.015;  // shorter ones are passed over
@@ -154,4 +154,4 @@ VisemeTrack make_visemes(const std::vector<MouthSound>& sounds) {
   return track;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -12,7 +12,7 @@
 #include "avatar/speech/mouth_shapes.h"
 #include "avatar/speech/visemes.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // A phoneme as the mouth sees it.
 struct MouthSound {
@@ -24,4 +24,4 @@ struct MouthSound {
 // `sounds` in order of time. Sounds shorter than 15 ms are passed over, but for closures.
 VisemeTrack make_visemes(const std::vector<MouthSound>& sounds);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -117,4 +117,4 @@ std::vector<MouthShape> mouth_shapes(std::string_view ipa, std::string* unknown)
   return shapes;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -9,7 +9,7 @@
 
 #include "avatar/speech/visemes.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 enum class MouthKind : uint8_t {
   closure,    // lips shut from the beginning: p b m
@@ -32,4 +32,4 @@ std::vector<MouthShape> mouth_shapes(std::string_view ipa, std::string* unknown 
 // Whether an eSpeak NG mnemonic is a pause ("_", "_:", "_::", "_!", "_|" ...).
 bool is_pause(std::string_view mnemonic);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -23,7 +23,7 @@
 
 extern char** environ;
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace protocol = speech_protocol;
 
@@ -232,4 +232,4 @@ std::shared_ptr<const Speech> SpeechProcess::speak(const SpeechRequest& request,
   return nullptr;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -10,7 +10,7 @@
 #include "avatar/speech/request.h"
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct VoiceProgram {
   std::string path;           // empty: WELLSPRING_VOICE, else wellspring_voice beside this program
@@ -42,4 +42,4 @@ class SpeechProcess {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -19,7 +19,7 @@
 #include <cstring>
 #include <string>
 
-namespace wellspring::speech_protocol {
+namespace wellspring::avatar::speech_protocol {
 
 inline constexpr size_t header_bytes = 8;
 inline constexpr size_t max_text_bytes = 10000;           // of one request, some ten minutes
@@ -47,4 +47,4 @@ inline std::string write_header(uint32_t json, uint32_t sound) {
   return bytes;
 }
 
-}  // namespace wellspring::speech_protocol
+}  // namespace wellspring::avatar::speech_protocol

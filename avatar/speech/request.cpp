@@ -6,7 +6,7 @@
 #include "avatar/speech/protocol.h"
 #include "avatar/speech/text.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 namespace protocol = speech_protocol;
@@ -38,4 +38,4 @@ std::string check_speech_request(const SpeechRequest& request) {
   return {};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 
 #include "avatar/speech/style.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct SpeechRequest {
   std::string text;            // UTF-8, at most 10,000 bytes
@@ -21,4 +21,4 @@ struct SpeechRequest {
 // What is wrong with a request, in words that name it; empty when nothing is.
 std::string check_speech_request(const SpeechRequest& request);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -15,7 +15,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::vector<float> from_pcm(const std::vector<int16_t>& pcm) {
   return samples;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

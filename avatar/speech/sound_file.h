@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct Sound {
   int rate = 22050;            // samples a second
@@ -31,4 +31,4 @@ std::vector<float> resample(const std::vector<float>& samples, int from, int to)
 std::vector<int16_t> to_pcm(const std::vector<float>& samples);
 std::vector<float> from_pcm(const std::vector<int16_t>& pcm);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -10,7 +10,7 @@
 
 #include "avatar/speech/speech_folder.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -181,4 +181,4 @@ Speaker::Counts Speaker::counts() const {
   return counts;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

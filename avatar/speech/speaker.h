@@ -19,7 +19,7 @@
 
 #include "avatar/speech/process.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct SpeechAnswer {
   std::shared_ptr<const Speech> speech;  // null: `error` says why
@@ -65,4 +65,4 @@ inline bool is_ready(const std::shared_future<SpeechAnswer>& answer) {
   return answer.valid() && answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

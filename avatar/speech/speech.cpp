@@ -8,7 +8,7 @@
 #include "avatar/speech/make_visemes.h"
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -86,4 +86,4 @@ void fill_visemes(Speech& speech) {
   speech.visemes = make_visemes(sounds);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

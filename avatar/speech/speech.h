@@ -10,7 +10,7 @@
 
 #include "avatar/speech/visemes.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct SpeechWord {
   double begin = 0, end = 0;
@@ -44,4 +44,4 @@ void fit_phonemes(Speech& speech);
 // Mouth shapes from phonemes and their times: fills `speech.visemes`.
 void fill_visemes(Speech& speech);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -16,7 +16,7 @@
 #include "base/log.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace fs = std::filesystem;
 namespace protocol = speech_protocol;
@@ -130,4 +130,4 @@ void SpeechFolder::save(const SpeechRequest& request, const Speech& speech) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -8,7 +8,7 @@
 
 #include "avatar/speech/process.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Everything that decides the sound of a request, as one string.
 std::string speech_key(const SpeechRequest& request);
@@ -29,4 +29,4 @@ class SpeechFolder {
   bool said_ = false;  // that it cannot be written
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

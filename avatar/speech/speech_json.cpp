@@ -9,7 +9,7 @@
 #include "avatar/speech/text.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -204,4 +204,4 @@ Speech load_speech_marks(std::string_view text, const std::string& file) {
   return speech;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

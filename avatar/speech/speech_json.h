@@ -20,7 +20,7 @@
 
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 std::string write_speech_json(const Speech& speech);
 
@@ -29,4 +29,4 @@ std::string write_speech_json(const Speech& speech);
 // order or beyond the duration, characters outside the text, more than a million entries.
 Speech load_speech_marks(std::string_view json, const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -133,4 +133,4 @@ std::string describe_styles(const std::vector<SpeechStyle>& styles) {
   return all;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

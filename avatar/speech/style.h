@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct SpeechStyle {
   uint32_t begin = 0, end = 0;            // bytes of the text; equal: only the pause
@@ -32,4 +32,4 @@ Ssml make_ssml(std::string_view text, const std::vector<SpeechStyle>& styles);
 // A text that equal styles share and others do not: for keys of caches. Empty for no styles.
 std::string describe_styles(const std::vector<SpeechStyle>& styles);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

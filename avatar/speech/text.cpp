@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::vector<SpeechWord> words_of(std::string_view text,
   return words;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

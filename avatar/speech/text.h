@@ -9,7 +9,7 @@
 
 #include "avatar/speech/speech.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 inline bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
@@ -29,4 +29,4 @@ uint32_t skip_spaces(std::string_view text, uint32_t at);
 std::vector<SpeechWord> words_of(std::string_view text,
                                  const std::function<bool(uint32_t byte, bool begins)>& is_said);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 const std::array<const char*, viseme_count> viseme_names = {
     "sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "ih", "oh", "ou"};
@@ -29,4 +29,4 @@ VisemeWeights eval_visemes(const VisemeTrack& track, double time) {
   return weights;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 enum class Viseme : uint8_t { sil, PP, FF, TH, DD, kk, CH, SS, nn, RR, aa, E, ih, oh, ou };
 inline constexpr size_t viseme_count = 15;
@@ -32,4 +32,4 @@ struct VisemeTrack {
 // Weights at `time`; an empty track and a time that is not a number are silence.
 VisemeWeights eval_visemes(const VisemeTrack& track, double time);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 
 #include "avatar/speech/text.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 namespace {
 
 // From U+00A0 on, one a code point.
@@ -127,4 +127,4 @@ size_t read_character_reference(std::string_view text, std::string& to) {
   return end + 1;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

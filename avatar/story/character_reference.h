@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Appends what the reference at the beginning of `text` stands for. Returns its bytes; 0 when none
 // begins there.
 size_t read_character_reference(std::string_view text, std::string& to);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -13,7 +13,7 @@
 #include "avatar/story/story_speech.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -194,4 +194,4 @@ std::vector<std::shared_ptr<const Speech>> divide_recording(const Speech& marked
   return parts;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

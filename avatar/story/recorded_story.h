@@ -10,7 +10,7 @@
 #include "avatar/speech/sound_file.h"
 #include "avatar/story/story_script.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // The text such a recording says: a line for each sentence.
 std::string text_of(const std::vector<StoryLine>& lines);
@@ -39,4 +39,4 @@ std::vector<std::shared_ptr<const Speech>> divide_recording(const Speech& marked
                                                             const std::vector<StoryLine>& lines,
                                                             double lead);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

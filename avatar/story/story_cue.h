@@ -9,7 +9,7 @@
 #include "avatar/body/hold.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct StoryCue {
   // Held until the story says otherwise.
@@ -27,4 +27,4 @@ struct StoryCue {
   uint32_t seed = 0;         // of the story: what is random in telling it starts from here
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 StoryScript load_story(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
@@ -20,4 +20,4 @@ StoryScript load_story(const std::string& file) {
   return read_story(text, file);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

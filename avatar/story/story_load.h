@@ -5,11 +5,11 @@
 
 #include "avatar/story/story_script.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 // Throws LoadError naming the file: it cannot be read, it is larger than most_markup_bytes, and
 // what read_story, read_plain_story and
 // read_subtitle_story throw.
 StoryScript load_story(const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include "avatar/story/character_reference.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -209,4 +209,4 @@ std::vector<MarkupPiece> read_markup(std::string_view text, const std::string& f
   return std::move(reader.pieces);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

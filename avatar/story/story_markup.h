@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct MarkupPlace {
   int line = 1, column = 1;  // from 1; columns are characters
@@ -36,4 +36,4 @@ std::vector<MarkupPiece> read_markup(std::string_view text, const std::string& f
 // One piece of text, in which nothing is a tag or an entity.
 std::vector<MarkupPiece> read_plain_markup(std::string_view text, const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

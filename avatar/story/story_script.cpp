@@ -10,7 +10,7 @@
 #include "avatar/story/subtitle.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -357,4 +357,4 @@ StoryScript read_story_line(std::string_view text, const std::string& file) {
   return read_pieces(read_markup(text, file), file, true);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -12,7 +12,7 @@
 #include "avatar/speech/style.h"
 #include "avatar/story/story_markup.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct Speech;
 
@@ -61,4 +61,4 @@ StoryScript read_subtitle_story(std::string_view text, const std::string& file);
 // One line whatever it says: a greeting, or a sentence of a list. <s> and <p> inside still divide.
 StoryScript read_story_line(std::string_view text, const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 
 #include "avatar/speech/text.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -86,4 +86,4 @@ std::vector<TextSpan> find_sentences(std::string_view text) {
   return spans;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct TextSpan {
   uint32_t begin = 0, end = 0;  // bytes, without spaces around
@@ -16,4 +16,4 @@ struct TextSpan {
 // sentence.
 std::vector<TextSpan> find_sentences(std::string_view text);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include "base/cancel.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -89,4 +89,4 @@ StorySpeech join_lines(const std::vector<StoryLine>& lines,
   return story;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

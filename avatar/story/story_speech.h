@@ -11,7 +11,7 @@
 #include "avatar/story/story_script.h"
 #include "avatar/story/subtitle.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 inline constexpr double story_breath = 0.55;  // between two sentences of a show: breath and lead
 
@@ -33,4 +33,4 @@ std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
 StorySpeech join_lines(const std::vector<StoryLine>& lines,
                        const std::vector<std::shared_ptr<const Speech>>& spoken);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

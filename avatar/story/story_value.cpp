@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::optional<int> read_emphasis(const std::string& text) {
   return word ? std::optional(int(*word)) : std::nullopt;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

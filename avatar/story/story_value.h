@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 std::optional<float> read_seconds(const std::string& text);         // "500ms", "1.5s"; at most 10 s
 std::optional<float> read_break_strength(const std::string& text);  // seconds; none .. x-strong
@@ -15,4 +15,4 @@ std::optional<float> read_volume(const std::string& text);  // "+6dB", "loud", "
 std::optional<float> read_weight(const std::string& text);  // 0 .. 1, or "60%"
 std::optional<int> read_emphasis(const std::string& text);  // -1 .. 2
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -10,7 +10,7 @@
 #include "avatar/story/character_reference.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -214,4 +214,4 @@ Subtitles load_subtitles(std::string_view text, const std::string& file) {
   return read;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct SubtitleCue {
   double begin = 0, end = 0;  // seconds
@@ -30,4 +30,4 @@ std::string write_subtitles(const std::vector<SubtitleCue>& cues);
 // before it begins, more than 100,000 cues.
 Subtitles load_subtitles(std::string_view text, const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -6,7 +6,7 @@
 #include "avatar/body/gesture_library.h"
 #include "avatar/speech/text.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 namespace {
 
@@ -87,4 +87,4 @@ StoryHold hold_before(const std::vector<StoryLine>& lines, size_t index) {
   return held;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

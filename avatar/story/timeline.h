@@ -11,7 +11,7 @@
 #include "avatar/story/story_cue.h"
 #include "avatar/story/story_script.h"
 
-namespace wellspring {
+namespace wellspring::avatar {
 
 struct ActionEvent {
   StoryMarkKind kind = StoryMarkKind::mark;
@@ -52,4 +52,4 @@ void hold(StoryHold& held, const ActionEvent& event);
 // What holds before line `index`, had all lines before it been told.
 StoryHold hold_before(const std::vector<StoryLine>& lines, size_t index);
 
-}  // namespace wellspring
+}  // namespace wellspring::avatar

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -113,4 +113,4 @@ Expression step_expression(ExpressionState& state, const ExpressionSettings& set
   return state.shown;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

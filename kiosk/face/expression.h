@@ -10,7 +10,7 @@
 #include "kiosk/network/face_marks.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct ExpressionSettings {
   double learn = 2;         // seconds in which a face's rest is learnt
@@ -35,4 +35,4 @@ Expression expression_of(const Faps& faps);
 Expression step_expression(ExpressionState& state, const ExpressionSettings& settings, double time,
                            const FacePlane& face, const FaceClasses* classes);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

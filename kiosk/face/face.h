@@ -12,7 +12,7 @@
 #include "kiosk/frame/gray_frame.h"
 #include "kiosk/network/face_marks.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 enum class FaceView : uint8_t {
   frontal,
@@ -55,4 +55,4 @@ class FaceFinder {
   virtual bool finds_landmarks() const = 0;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -12,7 +12,7 @@
 #include "base/load_error.h"
 #include "kiosk/face/face_finder.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -244,4 +244,4 @@ std::unique_ptr<FaceFinder> make_cascade_finder(const FaceSettings& settings) {
   return std::make_unique<CascadeFinder>(settings);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 #include "base/load_error.h"
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 std::string weights_folder(const FaceSettings& settings) {
   if (!settings.weights.empty()) return settings.weights;
@@ -30,4 +30,4 @@ std::unique_ptr<FaceFinder> make_face_finder(const FaceSettings& settings) {
   return make_cascade_finder(settings);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -6,7 +6,7 @@
 
 #include "kiosk/face/face.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Where the networks' weights should be; empty: nobody says.
 std::string weights_folder(const FaceSettings& settings);
@@ -20,4 +20,4 @@ std::unique_ptr<FaceFinder> make_network_finder(const std::string& folder);
 // Throws LoadError naming the cascade's path and the package that brings it.
 std::unique_ptr<FaceFinder> make_cascade_finder(const FaceSettings& settings = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

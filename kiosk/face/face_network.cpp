@@ -11,7 +11,7 @@
 #include "kiosk/face/head_pose.h"
 #include "kiosk/network/face_boxes.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -200,4 +200,4 @@ std::unique_ptr<FaceFinder> make_network_finder(const std::string& folder) {
   return std::make_unique<NetworkFinder>(folder);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::optional<Faps> measure_faps(const FacePlane& rest, const FacePlane& now) {
   return faps;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -8,7 +8,7 @@
 
 #include "kiosk/face/head_pose.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Landmarks in the plane of the face, metres: x to the picture's right when the face looks into the
 // lens, y down; each on its depth in the model, with the head's pose taken out.
@@ -27,4 +27,4 @@ using Faps = std::array<float, 69>;
 // finite.
 std::optional<Faps> measure_faps(const FacePlane& rest, const FacePlane& now);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

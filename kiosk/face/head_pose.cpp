@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -131,4 +131,4 @@ float trust_of_error(float error) {
   return glm::clamp((bad_error - error) / (bad_error - good_error), 0.f, 1.f);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

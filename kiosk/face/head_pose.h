@@ -10,7 +10,7 @@
 #include "kiosk/frame/head.h"
 #include "kiosk/network/face_marks.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Point k of the face, metres, in axes of a face that looks into the lens: x to image right, y
 // down, z away from the lens; 0 is between the pupils. Measures of adults, means of women and men,
@@ -31,4 +31,4 @@ std::optional<HeadPose> solve_head_pose(const FaceMarks& marks, float focal, int
 // How far landmarks can be believed that leave this error: 1 for a good fit, 0 from a bad one on.
 float trust_of_error(float error);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

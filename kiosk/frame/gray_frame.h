@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct GrayFrame {
   double time = 0;  // seconds: a file's own time, or the monotonic clock of a live camera
@@ -33,4 +33,4 @@ inline float overlap(const Box& a, const Box& b) {
   return w * h / (a.width * a.height + b.width * b.height - w * h);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

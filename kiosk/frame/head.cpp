@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -92,4 +92,4 @@ vec3 rotation_to_center(vec3 position) {
   return {std::atan2(forward.x, -forward.z), std::asin(glm::clamp(forward.y, -1.f, 1.f)), 0};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -13,7 +13,7 @@
 #include "base/vec.h"
 #include "kiosk/frame/gray_frame.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // How the camera is fixed to the screen, and its lens.
 struct Mount {
@@ -57,4 +57,4 @@ mat3 rotation_as_seen(const Mount& mount, vec3 yaw_pitch_roll, vec3 camera);
 // the screen's centre.
 vec3 rotation_to_center(vec3 position);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct OneEuroSettings {
   float min_cutoff = 1;    // Hz
@@ -44,4 +44,4 @@ inline vec3 step_one_euro(OneEuro& filter, const OneEuroSettings& settings, doub
   return filter.value;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -10,7 +10,7 @@
 #include "base/load_error.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -205,4 +205,4 @@ void save_gesture_models(const GestureModels& models, const std::string& file) {
   if (!out.flush()) throw LoadError(file, "", "cannot be written");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

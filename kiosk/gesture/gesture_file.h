@@ -13,7 +13,7 @@
 
 #include "kiosk/gesture/gesture_model.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 inline constexpr size_t most_label = 32;  // bytes
 
@@ -26,4 +26,4 @@ GestureModels load_gesture_models(const std::string& file);
 // Throws LoadError when the file cannot be written.
 void save_gesture_models(const GestureModels& models, const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -93,4 +93,4 @@ std::string recognise(const GestureModels& models, const HandPath& path, double 
   return label;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

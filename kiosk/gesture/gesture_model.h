@@ -14,7 +14,7 @@
 #include "kiosk/gesture/hmm.h"
 #include "kiosk/gesture/trajectory.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 inline constexpr int least_states = 3, most_states = 5;
 
@@ -60,4 +60,4 @@ double median(std::vector<double> values);  // 0 of none
 // Isolated recognition: the gesture that the whole path is; empty where no model can make it.
 std::string recognise(const GestureModels& models, const HandPath& path, double evidence = 1);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 
 #include "kiosk/gesture/skin.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -197,4 +197,4 @@ std::optional<HandSeen> HandTracker::step(const ColorView& view, const HeadInVie
   return seen;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -10,7 +10,7 @@
 
 #include "kiosk/gesture/mean_shift.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct HeadInView {
   vec2 center{0};  // of the face, pixels of the view
@@ -41,4 +41,4 @@ class HandTracker {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -187,4 +187,4 @@ void raise_outputs(Hmm& model, double share) {
     for (double& p : row) p = (1 - share) * p + share / orientation_codes;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

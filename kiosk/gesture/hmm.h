@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 inline constexpr int orientation_codes = 18;
 using Code = uint8_t;  // 0..17
@@ -47,4 +47,4 @@ void smooth_outputs(Hmm& model, double deviation);
 // No output is less likely than `share` / 18: a stray code costs much, but not everything.
 void raise_outputs(Hmm& model, double share);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -89,4 +89,4 @@ Shifted mean_shift(const ChromaPicture& picture, const ChromaHistogram& model, v
   return out;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

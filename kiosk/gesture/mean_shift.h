@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Rows of blue, green, red bytes, top row first; borrowed.
 struct ColorView {
@@ -44,4 +44,4 @@ struct Shifted {
 Shifted mean_shift(const ChromaPicture& picture, const ChromaHistogram& model, vec2 center,
                    float radius, const std::vector<float>& emphasis = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -77,4 +77,4 @@ Hmm make_non_gesture(std::span<const Hmm> gestures, std::span<const double> last
   return model;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 
 #include "kiosk/gesture/hmm.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct NonGestureSettings {
   double smoothing = 1;  // standard deviation of the filter over outputs, codes
@@ -28,4 +28,4 @@ void join_states(Hmm& model);
 double divergence(const std::array<double, orientation_codes>& a,
                   const std::array<double, orientation_codes>& b);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 SpotCounts& SpotCounts::operator+=(const SpotCounts& other) {
   tests += other.tests;
@@ -49,4 +49,4 @@ SpotCounts count_spotted(std::span<const TrueGesture> truth,
   return counts;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 #include "kiosk/gesture/spot.h"
 #include "kiosk/gesture/writer.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct SpotCounts {
   int tests = 0, inserted = 0, deleted = 0, substituted = 0, correct = 0;
@@ -25,4 +25,4 @@ double reliability(const SpotCounts& counts);
 SpotCounts count_spotted(std::span<const TrueGesture> truth,
                          std::span<const SpottedGesture> spotted);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -58,4 +58,4 @@ bool SkinColor::has(uint8_t y, uint8_t cb, uint8_t cr) const {
   return distance_squared(vec2(cb, cr) - mean_, spread_) < widest * widest;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -3,7 +3,7 @@
 #pragma once
 #include "kiosk/gesture/mean_shift.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 class SkinColor {
  public:
@@ -20,4 +20,4 @@ class SkinColor {
   vec3 spread_{0};  // variance of Cb, covariance, variance of Cr
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

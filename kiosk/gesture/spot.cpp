@@ -6,7 +6,7 @@
 #include <cmath>
 #include <deque>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -282,4 +282,4 @@ std::vector<SpottedGesture> spot_path(const GestureModels& models, const SpotSet
   return out;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -17,7 +17,7 @@
 
 #include "kiosk/gesture/gesture_model.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct SpotSettings {
   int window = 5;        // steps
@@ -53,4 +53,4 @@ class GestureSpotter {
 std::vector<SpottedGesture> spot_path(const GestureModels& models, const SpotSettings& settings,
                                       const HandPath& path);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

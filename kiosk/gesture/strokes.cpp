@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -59,4 +59,4 @@ std::vector<HandPlace> watch_strokes(std::span<const Stroke> strokes, vec2 start
   return places;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

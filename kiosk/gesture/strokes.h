@@ -9,7 +9,7 @@
 #include "base/rng.h"
 #include "kiosk/gesture/trajectory.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct Stroke {
   vec2 chord{0};       // from its first to its last place
@@ -35,4 +35,4 @@ float normal(Rng& rng);                          // mean 0, standard deviation 1
 float between(Rng& rng, float low, float high);  // uniform
 vec2 turned(vec2 v, float angle);                // clockwise on the screen
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 
 #include "kiosk/gesture/spot.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -185,4 +185,4 @@ GestureModels train_gestures(std::span<const HandPath> paths, const NonGestureSe
   return models;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

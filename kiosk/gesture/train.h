@@ -6,7 +6,7 @@
 #include "kiosk/gesture/gesture_model.h"
 #include "kiosk/gesture/non_gesture.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Trains a model for each label and variant by Baum-Welch, with one state for each straight piece
 // of the motion, 3 to 5. `paths` hold one gesture each, or without a label any other motion: the
@@ -15,4 +15,4 @@ namespace wellspring {
 GestureModels train_gestures(std::span<const HandPath> paths,
                              const NonGestureSettings& settings = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 Code orientation_code(vec2 step) {
   const float turns = std::atan2(step.y, step.x) / (2 * pi);
@@ -73,4 +73,4 @@ std::vector<CodedStep> code_path(const HandPath& path) {
   return longest;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

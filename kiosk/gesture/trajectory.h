@@ -10,7 +10,7 @@
 #include "base/vec.h"
 #include "kiosk/gesture/hmm.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct HandPlace {
   double time = 0;
@@ -60,4 +60,4 @@ class OrientationCoder {
 std::vector<std::vector<CodedStep>> code_motions(const HandPath& path);
 std::vector<CodedStep> code_path(const HandPath& path);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -307,4 +307,4 @@ std::vector<HandPath> write_set(WriterGroup group, int writers, int each, uint64
   return out;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

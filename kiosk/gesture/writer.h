@@ -8,7 +8,7 @@
 
 #include "kiosk/gesture/strokes.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Writers of the test set differ more from each other than those the models have seen, and no seed
 // gives the same person in both.
@@ -53,4 +53,4 @@ HandPath write_other(const HandWriter& writer, double seconds, uint64_t seed);
 // persons.
 std::vector<HandPath> write_set(WriterGroup group, int writers, int each, uint64_t seed);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -77,4 +77,4 @@ std::vector<FaceBox> FaceBoxes::find(const GrayView& picture, const Cut& cut, in
   return kept;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 
 #include "kiosk/network/gray_view.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct FaceBox {
   vec2 middle{0};               // pixels of the picture
@@ -30,4 +30,4 @@ class FaceBoxes {
   Network network_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

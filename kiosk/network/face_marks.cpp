@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -46,4 +46,4 @@ FaceClasses ClassReader::read(const GrayView& picture, const Cut& square) {
   return classes;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 
 #include "kiosk/network/gray_view.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Pixels of the picture, in the order of 300-W (Sagonas et al. 2013), from image left to right:
 // 0-16 outline of cheeks and chin, 17-21 and 22-26 brows, 27-30 bridge of the nose, 31-35 its lower
@@ -40,4 +40,4 @@ class ClassReader {
   Network network_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 vec2 cut_to_picture(const Cut& cut, vec2 share) {
   const float c = std::cos(cut.angle), s = std::sin(cut.angle);
@@ -50,4 +50,4 @@ NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int r
   return input;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -6,7 +6,7 @@
 #include "base/vec.h"
 #include "kiosk/network/network.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct GrayView {
   const uint8_t* pixels = nullptr;  // row by row, top row first
@@ -27,4 +27,4 @@ NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int r
 // Where a point of the cut (shares 0..1 from its upper left) is in the picture, pixels.
 vec2 cut_to_picture(const Cut& cut, vec2 share);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

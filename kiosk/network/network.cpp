@@ -7,7 +7,7 @@
 #include "base/load_error.h"
 #include "kiosk/network/weights.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -213,4 +213,4 @@ Network load_face_expression(const std::string& folder) {
   return load_marks(folder, "face_expression_model", 7, true);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Planes of red, green and blue, each row by row from the top; levels 0 to 255.
 struct NetworkInput {
@@ -49,4 +49,4 @@ Network load_face_landmarks(const std::string& folder);
 // 112x112. Output: probabilities of neutral, happy, sad, angry, fearful, disgusted, surprised.
 Network load_face_expression(const std::string& folder);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -10,7 +10,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace {
 
@@ -155,4 +155,4 @@ WeightTensor take_tensor(WeightSet& set, const std::string& name, const std::vec
   return out;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct WeightTensor {
   std::vector<int> shape;     // slowest first, as TensorFlow orders filters: rows, columns, in, out
@@ -27,4 +27,4 @@ WeightSet load_weight_set(const std::string& folder, const std::string& name);
 // The tensor of that name, moved out of `set`. Throws LoadError unless it has that shape.
 WeightTensor take_tensor(WeightSet& set, const std::string& name, const std::vector<int>& shape);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

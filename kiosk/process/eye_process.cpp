@@ -18,7 +18,7 @@
 
 extern char** environ;
 
-namespace wellspring {
+namespace wellspring::kiosk {
 namespace {
 
 constexpr size_t longest_line = 64 * 1024;
@@ -135,4 +135,4 @@ int EyeProcess::status() {
   return status_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -11,7 +11,7 @@
 
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // The arguments: the open file that lines are written to, and which of the cameras it is of.
 inline constexpr const char* observe_to = "--observe-to";
@@ -54,4 +54,4 @@ class EyeProcess {
   int status_ = 0;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -30,7 +30,7 @@
 #include "base/log.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
@@ -261,4 +261,4 @@ bool ServerLink::connected() const { return impl_->connected; }
 uint64_t ServerLink::sent() const { return impl_->sent; }
 uint64_t ServerLink::connections() const { return impl_->connections; }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -12,7 +12,7 @@
 #include "kiosk/process/server_address.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 // Seconds to wait before attempt 1, 2, ...: first * 2^(attempt - 1), at most `longest`, times 0.5
 // to 1 by `jitter` (0..1).
@@ -42,4 +42,4 @@ class ServerLink {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

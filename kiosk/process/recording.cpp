@@ -7,7 +7,7 @@
 #include "base/load_error.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 Recorder::Recorder(const std::string& file) : file_(std::fopen(file.c_str(), "w")) {
   if (!file_) throw LoadError(file, "", std::string("cannot be written: ") + std::strerror(errno));
@@ -40,4 +40,4 @@ bool Replay::next(Observation& seen, std::string& text) {
   return false;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -9,7 +9,7 @@
 
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 class Recorder {
  public:
@@ -39,4 +39,4 @@ class Replay {
   bool begun_ = false;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -19,7 +19,7 @@ static bool entered = false;
 extern "C" int __lsan_is_turned_off() { return entered; }
 #endif
 
-namespace wellspring {
+namespace wellspring::kiosk {
 namespace {
 
 [[noreturn]] void refuse(const char* what, int error) {
@@ -96,4 +96,4 @@ void enter_sandbox(const SandboxSettings& settings) {
 #endif
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

@@ -4,7 +4,7 @@
 // has open already it keeps. Enforced by the kernel (seccomp), for all threads and for good.
 #pragma once
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct SandboxSettings {
   // A camera device has to be opened to read and write; also again, when it was unplugged.
@@ -14,4 +14,4 @@ struct SandboxSettings {
 // Throws std::runtime_error where the kernel does not do it.
 void enter_sandbox(const SandboxSettings& settings = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

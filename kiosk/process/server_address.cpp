@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kiosk/process/server_address.h"
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 std::optional<ServerAddress> parse_address(const std::string& url) {
   ServerAddress address;
@@ -39,4 +39,4 @@ std::optional<ServerAddress> parse_address(const std::string& url) {
   return address;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

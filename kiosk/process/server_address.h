@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace wellspring {
+namespace wellspring::kiosk {
 
 struct ServerAddress {
   std::string host, port = "80", path;
@@ -14,4 +14,4 @@ struct ServerAddress {
 // 80, or 443. Nothing for anything else.
 std::optional<ServerAddress> parse_address(const std::string& url);
 
-}  // namespace wellspring
+}  // namespace wellspring::kiosk

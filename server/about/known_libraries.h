@@ -3,7 +3,7 @@
 // what for. One that is linked and not here fails tests/scripted/version.test.mjs.
 #pragma once
 
-namespace wellspring {
+namespace wellspring::about {
 
 struct KnownLibrary {
   const char *begins, *name, *licence, *purpose;
@@ -64,4 +64,4 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"stb", "stb", "MIT OR Unlicense", "HDR pictures, and PNG written"},
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::about

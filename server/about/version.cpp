@@ -16,7 +16,7 @@
 
 #include "about/known_libraries.h"
 
-namespace wellspring {
+namespace wellspring::about {
 
 namespace {
 
@@ -222,4 +222,4 @@ bool answer_version(int argc, char** argv, std::initializer_list<const char*> co
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::about

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::about {
 
 // What is compiled into a program, or loaded with it.
 struct Component {
@@ -33,4 +33,4 @@ bool answer_version(int argc, char** argv,
                     std::initializer_list<const char*> compiled_in = {"CLI11", "GLM",
                                                                       "nlohmann-json", "stb"});
 
-}  // namespace wellspring
+}  // namespace wellspring::about

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-namespace wellspring {
+namespace wellspring::attention {
 namespace {
 
 double usable(float attention) {
@@ -91,4 +91,4 @@ void eval_weights(std::span<const SeenObject> seen, std::span<const float> atten
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

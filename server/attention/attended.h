@@ -8,7 +8,7 @@
 
 #include "attention/task.h"
 
-namespace wellspring {
+namespace wellspring::attention {
 
 // (1 - task_weight) * saliency + task_weight * importance of every object. The weight is the
 // visitor's slider: 0 listens to the picture alone, 1 to the task alone.
@@ -59,4 +59,4 @@ inline constexpr float attention_contrast = 3;
 void eval_weights(std::span<const SeenObject> seen, std::span<const float> attention,
                   std::vector<float>& weights);
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

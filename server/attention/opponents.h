@@ -2,7 +2,7 @@
 // Intensity of a colour given as 8-bit codes, and the differences of its opponent colours.
 #pragma once
 
-namespace wellspring {
+namespace wellspring::attention {
 
 // `out`: intensity (r + g + b) / 3, 0 to 1, and the differences of the broadly tuned colours R, G,
 // B and Y, each colour over r + g + b, so that hue counts and brightness does not. Hue cannot be
@@ -19,4 +19,4 @@ void eval_channels(T r, T g, T b, T dark, const Least& least, const Positive& po
   out[2] = choose(sum > dark, (blue - yellow) / sum);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

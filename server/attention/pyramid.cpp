@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::attention {
 namespace {
 
 // Rows of which a thread takes no fewer: less than that is done before another thread wakes up.
@@ -121,4 +121,4 @@ void expand(const Plane& coarse, int width, int height, Plane& narrow, Plane& fi
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

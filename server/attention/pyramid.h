@@ -9,7 +9,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::attention {
 
 // One number a pixel, top row first.
 struct Plane {
@@ -45,4 +45,4 @@ void reduce(const Plane& fine, Plane& narrow, Plane& coarse);
 // `narrow` is scratch.
 void expand(const Plane& coarse, int width, int height, Plane& narrow, Plane& fine);
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

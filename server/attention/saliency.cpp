@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 
-namespace wellspring {
+namespace wellspring::attention {
 namespace {
 
 // --- Channels --------------------------------------------------------------------------------
@@ -246,4 +246,4 @@ size_t memory_bytes(const SaliencyWork& work) {
   return bytes;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

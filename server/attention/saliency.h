@@ -18,7 +18,7 @@
 #include "attention/pyramid.h"
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::attention {
 
 // Of the pyramids, scale 0 is the picture. Centres are the scales 2, 3 and 4, surrounds are 3 and 4
 // scales coarser. The maps of all scales are added at scale 4, a sixteenth of the picture's size.
@@ -59,4 +59,4 @@ void eval_saliency(const Image8& picture, SaliencyWork& work, SaliencyMap& salie
 inline constexpr float least_range = 0.01f;
 void promote_peaks(Plane& map);
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

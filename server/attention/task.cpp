@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::attention {
 namespace {
 
 using Band = TaskWork::Band;
@@ -176,4 +176,4 @@ void eval_objects(std::span<const uint32_t> object, int width, int height,
             [](const SeenObject& a, const SeenObject& b) { return a.object < b.object; });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

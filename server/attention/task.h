@@ -9,7 +9,7 @@
 #include "attention/saliency.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::attention {
 
 // Somebody points there: a visitor's pointer or finger, where a head at a kiosk is turned to, what
 // the storyteller shows. Pixels count from the picture's upper left corner: the first pixel's
@@ -69,4 +69,4 @@ void eval_objects(std::span<const uint32_t> object, int width, int height,
                   const SaliencyMap& saliency, std::span<const AttentionHint> hints, TaskWork& work,
                   std::vector<SeenObject>& seen);
 
-}  // namespace wellspring
+}  // namespace wellspring::attention

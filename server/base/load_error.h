@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/layers.h"
+
 namespace wellspring {
 
 struct LoadError : std::runtime_error {

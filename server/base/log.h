@@ -6,6 +6,8 @@
 #pragma once
 #include <fmt/core.h>
 
+#include "base/layers.h"
+
 namespace wellspring::log {
 
 enum class Level { debug, info, warn, error };

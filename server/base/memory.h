@@ -3,6 +3,8 @@
 #pragma once
 #include <cstddef>
 
+#include "base/layers.h"
+
 namespace wellspring {
 
 template <class... Vectors>

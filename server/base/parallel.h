@@ -9,6 +9,8 @@
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
+
+#include "base/layers.h"
 #endif
 
 namespace wellspring {

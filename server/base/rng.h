@@ -5,6 +5,8 @@
 #pragma once
 #include <cstdint>
 
+#include "base/layers.h"
+
 namespace wellspring {
 
 // A good 64-bit mixer (SplitMix64's finaliser; Steele, Lea, Flood 2014).

@@ -8,6 +8,8 @@
 #include <cstring>
 #ifdef __AVX__
 #include <immintrin.h>
+
+#include "base/layers.h"
 #endif
 
 namespace wellspring {

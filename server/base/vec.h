@@ -13,6 +13,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "base/layers.h"
+
 namespace wellspring {
 using glm::dmat4;
 using glm::dvec2;

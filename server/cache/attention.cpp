@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "cache/packing.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 constexpr float darkest_lit = 0.01f;  // reflectance that can tell of light, or show it
@@ -299,4 +299,4 @@ void weigh(const PointCache& points, std::span<const uint8_t> of_object, uint32_
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -9,7 +9,7 @@
 #include "cache/point_image.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // Where the change samples of 3x3 tiles agree that the light has changed, by more than their noise
 // can explain, points of the tile get older by an eighth of the scale and forget their light as
@@ -35,4 +35,4 @@ void prioritise(const PointCache& points, const CacheSettings& settings, PointIm
 void weigh(const PointCache& points, std::span<const uint8_t> of_object, uint32_t turn,
            PointImage& image);
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

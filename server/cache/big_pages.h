@@ -12,7 +12,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace wellspring {
+namespace wellspring::cache {
 
 template <class T>
 struct BigPages {
@@ -41,4 +41,4 @@ struct BigPages {
 template <class T>
 using BigVector = std::vector<T, BigPages<T>>;
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -7,7 +7,7 @@
 #include "base/spread.h"
 #include "cache/point_cache.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 Broker::Broker(const BrokerSettings& settings) : settings_(settings) {
   settings_.piece = std::max(settings_.piece, 1);
@@ -131,4 +131,4 @@ int land(std::span<const Answer> answers, const World& world, uint64_t pose, Ren
   return landed;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

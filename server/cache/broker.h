@@ -15,7 +15,7 @@
 #include "cache/cache.h"
 #include "light/technique/technique.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // What to trace, and how.
 struct TraceJob {
@@ -98,4 +98,4 @@ void follow_meshes(const World& world, std::span<Sample> samples);
 // samples.
 int land(std::span<const Answer> answers, const World& world, uint64_t pose, RenderCache& cache);
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -19,7 +19,7 @@
 #include "cache/remember.h"
 #include "cache/scratch.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 constexpr int largest_side = 16384;
@@ -250,7 +250,7 @@ Scratch& RenderCache::scratch() { return impl_->work->scratch; }
 
 void RenderCache::lend_light() {
   Impl& c = *impl_;
-  if (c.relit) c.relit = wellspring::lend_light(c.points, c.image);
+  if (c.relit) c.relit = wellspring::cache::lend_light(c.points, c.image);
 }
 
 void RenderCache::end_frame(const ShownPoints& shown) {
@@ -323,7 +323,7 @@ size_t RenderCache::memory_bytes() const {
   size_t sum = points_bytes(c.points) + bytes_of(c.paints_of, c.repainted, c.weights) +
                bytes_of(c.image.point, c.image.depth, c.image.priority, c.image.renewed,
                         c.image.changed, c.image.change_samples, c.image.weight);
-  return sum + (c.shares ? 0 : wellspring::memory_bytes(*c.work));
+  return sum + (c.shares ? 0 : wellspring::cache::memory_bytes(*c.work));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

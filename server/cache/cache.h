@@ -17,7 +17,7 @@
 #include "light/sample.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 struct PointCache;  // cache/point_cache.h: the points
 struct PointImage;  // cache/point_image.h: what projects where, priorities
@@ -111,4 +111,4 @@ class RenderCache {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -2,7 +2,7 @@
 // What a render cache is told once, with the paper's words (Walter, Drettakis, Parker 1999).
 #pragma once
 
-namespace wellspring {
+namespace wellspring::cache {
 
 struct CacheSettings {
   float points_per_pixel = 1.0625f;  // capacity over pixels (paper, section 4.3: slightly larger)
@@ -12,4 +12,4 @@ struct CacheSettings {
   bool attention = true;       // false: samples spread evenly
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

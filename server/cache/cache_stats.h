@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // What the last frame looked like, in numbers (for /metrics, the status page and tests).
 struct CacheStats {
@@ -18,4 +18,4 @@ struct ShownPoints {
   int64_t points = 0, converged = 0;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -8,7 +8,7 @@
 #include "base/simd.h"
 #include "cache/project.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 namespace {
 
@@ -121,4 +121,4 @@ void depth_cull(PointCache& points, float threshold, PointImage& image) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -11,7 +11,7 @@
 #include "base/rgb9e5.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // Reflectance in [0, 1], 11:11:10 bits of its square root.
 inline uint32_t pack_albedo(vec3 c) {
@@ -86,4 +86,4 @@ inline uint16_t pack_half(float v, uint32_t random = 0x1000) {
 }
 inline float unpack_half(uint16_t h) { return std::bit_cast<float>(uint32_t(h) << 13) * 0x1p112f; }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -4,7 +4,7 @@
 #include "base/rgb9e5_simd.h"
 #include "base/simd.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 inline void unpack_albedo(const LaneBits& p, Lanes& r, Lanes& g, Lanes& b) {
   r = to_float(p & 2047u) * (1.0f / 2047);
@@ -45,4 +45,4 @@ inline Lanes luminance(const Lanes& r, const Lanes& g, const Lanes& b) {
   return 0.2126f * r + 0.7152f * g + 0.0722f * b;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

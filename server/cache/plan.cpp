@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 constexpr int band_rows = 64;  // dithered by one thread
@@ -202,4 +202,4 @@ void plan_requests(const PointCache& points, const View& view, const PlanSetting
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -9,7 +9,7 @@
 #include "light/sample.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 struct PlanSettings {
   int budget = 0;
@@ -24,4 +24,4 @@ struct PlanSettings {
 void plan_requests(const PointCache& points, const View& view, const PlanSettings& settings,
                    PointImage& image, std::vector<Request>& requests);
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -14,7 +14,7 @@
 #include "light/walk/first_surface.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 using ManyBytes = uint8_t __attribute__((vector_size(32)));
@@ -194,4 +194,4 @@ size_t points_bytes(const PointCache& points) {
                   points.count, points.color, points.anchors, points.seen);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

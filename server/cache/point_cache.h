@@ -12,7 +12,7 @@
 #include "light/sample.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 enum PointFlags : uint8_t {
   point_used = 1,
@@ -103,4 +103,4 @@ inline bool is_alive(const PointCache& points, uint32_t i) {
   return (points.flags[i] & point_used) && points.age[i] != evicted_age;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -9,7 +9,7 @@
 
 #include "cache/big_pages.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 inline constexpr uint32_t no_point = 0xffffffffu;
 inline constexpr float infinite_depth = 1e18f;  // of points at infinity; Frame::depth says infinity
@@ -91,4 +91,4 @@ inline void resize_image(PointImage& image, int width, int height) {
   image.changed.assign(size_t(image.changed_width) * size_t(image.changed_height), TileChange{});
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 constexpr float near_depth = 1e-4f;  // metres, as in project_points()
@@ -129,4 +129,4 @@ void predict_requests(const PointCache& points, const View& ahead, int most, uin
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -9,7 +9,7 @@
 #include "light/sample.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // The view after `steps` more of the motion that led from `before` to `now`: straight on, and round
 // the same axis. `now` itself where there is no motion to go on with: another size or field of
@@ -28,4 +28,4 @@ void find_occupied(const PointCache& points, const View& ahead, std::vector<uint
 void predict_requests(const PointCache& points, const View& ahead, int most, uint64_t seed,
                       std::vector<uint8_t>& cells, std::vector<Request>& requests);
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 constexpr int tile_bits = 6, tile_size = 1 << tile_bits, tile_pixels = tile_size * tile_size;
@@ -214,4 +214,4 @@ void project_points(PointCache& points, const WindowView& view, bool same_view, 
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

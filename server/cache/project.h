@@ -9,7 +9,7 @@
 #include "cache/scratch.h"
 #include "cache/window_view.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // Overwrites image.point and image.depth (image has the view's size) and the points' visible flag.
 // Points behind the camera, facing away, evicted or not finite fall nowhere. The nearest wins; of
@@ -27,4 +27,4 @@ void depth_cull(PointCache& points, float threshold, PointImage& image);
 // Bytes project_points() takes from the scratch.
 size_t project_scratch_bytes(int capacity, int width, int height);
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "cache/packing.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 vec3 color_of(const PointColor& point) {
@@ -55,4 +55,4 @@ ShownPoints reconstruct_points(const PointCache& points, const PointImage& image
   return {shown, converged};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

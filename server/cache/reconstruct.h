@@ -7,7 +7,7 @@
 #include "cache/point_image.h"
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // Each pixel becomes the mean of the points in its 3x3 neighbourhood: weights 4 for its own, 2 for
 // those beside it and 1 for those diagonally; where there are none it stays as it was. Depth and
@@ -15,4 +15,4 @@ namespace wellspring {
 // the frame.
 ShownPoints reconstruct_points(const PointCache& points, const PointImage& image, Frame& frame);
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -9,7 +9,7 @@
 #include "base/rng.h"
 #include "cache/packing.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 constexpr float same_place = 0.01f;  // of the distance: farther off is another surface
@@ -365,4 +365,4 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   return result;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

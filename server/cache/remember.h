@@ -11,7 +11,7 @@
 #include "light/sample.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 struct RememberSettings {
   float color_change = 0.25f;
@@ -39,4 +39,4 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
                             std::span<const Sample> samples, const RememberSettings& settings,
                             PointImage& image, std::vector<uint32_t>& targets);
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -10,7 +10,7 @@
 
 #include "cache/big_pages.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 class Scratch {
  public:
@@ -49,4 +49,4 @@ class Scratch {
   size_t used_ = 0;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 namespace {
 
 void trace_piece(const Piece& piece, const World& world, const Lights& lights,
@@ -50,4 +50,4 @@ size_t trace_waiting(std::span<Broker* const> brokers, const World& world, const
   return answered;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -8,11 +8,11 @@
 #include "cache/broker.h"
 #include "light/sample/lights.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // Traces what waits, a piece of each broker in turn, until nothing does or it is later than `until`
 // (as seconds_now(); a piece that was begun is finished). Returns how many samples were answered.
 size_t trace_waiting(std::span<Broker* const> brokers, const World& world, const Lights& lights,
                      uint64_t pose, double until, std::mutex& guard);
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

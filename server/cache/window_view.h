@@ -3,7 +3,7 @@
 #pragma once
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::cache {
 
 // Pixels of a picture, from (left, top) on.
 struct PictureWindow {
@@ -24,4 +24,4 @@ struct WindowView : View {
   }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::cache

@@ -10,7 +10,7 @@
 
 #include "base/near_name.h"
 
-namespace wellspring {
+namespace wellspring::config {
 namespace {
 
 constexpr size_t most_bytes = 1 << 20;  // of a file
@@ -196,4 +196,4 @@ std::map<std::string, std::string> config_values(const CLI::App& app) {
   return values;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::config

@@ -17,7 +17,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace wellspring {
+namespace wellspring::config {
 
 // All that is wrong with a file: "FILE: line N: what".
 struct ConfigError : std::runtime_error {
@@ -45,4 +45,4 @@ std::string write_config(const CLI::App& app);
 // The value of every key, those of a list on lines of their own. `app` has been parsed.
 std::map<std::string, std::string> config_values(const CLI::App& app);
 
-}  // namespace wellspring
+}  // namespace wellspring::config

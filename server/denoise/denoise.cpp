@@ -13,7 +13,7 @@
 #include "base/parallel.h"
 #include "denoise/transfer.h"
 
-namespace wellspring {
+namespace wellspring::denoise {
 namespace {
 
 constexpr const char* net_names[] = {"small", "base", "large"};
@@ -136,4 +136,4 @@ std::unique_ptr<Denoiser> load_denoiser(NetSize size, std::string& problem,
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

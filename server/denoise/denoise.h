@@ -13,7 +13,7 @@
 
 #include "denoise/unet.h"
 
-namespace wellspring {
+namespace wellspring::denoise {
 
 enum class NetSize : uint8_t { small, base, large };
 std::optional<NetSize> find_net_size(std::string_view name);  // "small", "base", "large"
@@ -65,4 +65,4 @@ std::string weights_file(NetSize size, std::string folder = {});
 std::unique_ptr<Denoiser> load_denoiser(NetSize size, std::string& problem,
                                         const std::string& folder = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace wellspring {
+namespace wellspring::denoise {
 
 inline int round_up(int value, int step) { return (value + step - 1) / step * step; }
 
@@ -99,4 +99,4 @@ inline int tile_extent(int extent, int wanted) {
   return round_up((extent + count - 1) / count, 2);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::denoise {
 
 namespace transfer {
 inline constexpr float a = 1412.83765f, b = 1.64593172f, c = 0.431384981f, d = -0.00294139609f,
@@ -36,4 +36,4 @@ inline float decode_radiance(float x) {
   return std::exp((x - g) / e) - f;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

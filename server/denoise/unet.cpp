@@ -18,7 +18,7 @@
 #include "denoise/tile.h"
 #include "denoise/unet_form.h"
 
-namespace wellspring {
+namespace wellspring::denoise {
 namespace {
 
 constexpr int levels = 5;      // full resolution and four halvings
@@ -459,4 +459,4 @@ std::string UNet::implementation() const {
   return all;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

@@ -19,7 +19,7 @@
 #include "base/vec.h"
 #include "denoise/weights.h"
 
-namespace wellspring {
+namespace wellspring::denoise {
 
 // Nine numbers of a pixel, each a share of 65535: encoded colour, albedo, encoded normal.
 inline constexpr int input_channels = 9;
@@ -58,4 +58,4 @@ class UNet {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::denoise {
 
 // Names of its layers in turn; 0: full resolution.
 struct StageForm {
@@ -33,4 +33,4 @@ inline const std::vector<StageForm> large_form = {
     {1, {"dec_conv2a", "dec_conv2b"}, false},
     {0, {"dec_conv1a", "dec_conv1b", "dec_conv1c"}, false}};
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

@@ -10,7 +10,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::denoise {
 namespace {
 
 constexpr uint16_t magic = 0x41d7;
@@ -135,4 +135,4 @@ Weights load_weights(const std::string& path) {
   return read_weights(bytes, path);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::denoise {
 
 struct Tensor {
   std::vector<int> sizes;  // oihw: outputs, inputs, rows, columns; x: one
@@ -24,4 +24,4 @@ using Weights = std::map<std::string, Tensor>;
 Weights read_weights(std::span<const std::byte> file, const std::string& path);
 Weights load_weights(const std::string& path);
 
-}  // namespace wellspring
+}  // namespace wellspring::denoise

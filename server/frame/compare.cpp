@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 void check_sizes(const Frame& test, const Frame& reference) {
@@ -36,4 +36,4 @@ double relative_mse(const Frame& test, const Frame& reference) {
   return sum / double(test.color.size());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

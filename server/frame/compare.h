@@ -3,7 +3,7 @@
 #pragma once
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 // Root of the mean squared difference over pixels and channels, linear radiance.
 double rmse(const Frame& test, const Frame& reference);
@@ -11,4 +11,4 @@ double rmse(const Frame& test, const Frame& reference);
 // brightness.
 double relative_mse(const Frame& test, const Frame& reference);
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 constexpr int tolerance = 2;  // units; rounding to whole ones is the rest of worst_units
@@ -324,4 +324,4 @@ bool decode_disparity(std::span<const uint8_t> bytes, int width, int height, flo
   return reader.done();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

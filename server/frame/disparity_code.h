@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::frame {
 
 inline constexpr float worst_units = 2.5f;
 inline constexpr int most_disparity = 65535;  // units; what is nearer is as far away as that
@@ -33,4 +33,4 @@ void encode_disparity(std::span<const float> disparity, int width, int height, f
 bool decode_disparity(std::span<const uint8_t> bytes, int width, int height, float unit,
                       std::vector<float>& disparity);
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -17,7 +17,7 @@
 #include "base/load_error.h"
 #include "frame/linear_picture.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 // A file of a few bytes may claim any number of pixels, which take memory before they are read.
@@ -181,4 +181,4 @@ Frame decode_exr(std::istream& in, const std::string& path) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

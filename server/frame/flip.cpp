@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 // One number a pixel.
@@ -276,4 +276,4 @@ double flip(const Frame& test, const Frame& reference, const Tonemap& display) {
   return eval_flip(test, reference, display).mean;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

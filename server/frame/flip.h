@@ -8,7 +8,7 @@
 #include "frame/frame.h"
 #include "frame/tonemap.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 struct FlipSettings {
   // Of the viewer's visual angle: the paper's default, a 0.7 m wide screen of 3840 pixels seen from
@@ -34,4 +34,4 @@ FlipMap eval_flip(const Frame& test, const Frame& reference, const Tonemap& disp
 // The mean alone.
 double flip(const Frame& test, const Frame& reference, const Tonemap& display = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

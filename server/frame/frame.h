@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 // Row-major, top row first; every plane is width*height long or empty where nobody needs it.
 struct Frame {
@@ -38,4 +38,4 @@ struct Image8 {
   std::vector<uint8_t> rgb;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

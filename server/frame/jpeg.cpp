@@ -10,7 +10,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 constexpr int largest_side = 16384;
@@ -78,4 +78,4 @@ Image8 decode_jpeg(std::span<const uint8_t> bytes, const char* file) {
   return image;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -9,7 +9,7 @@
 #include "frame/frame.h"
 #include "frame/tiles.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 // quality 1..100; full_chroma: 4:4:4 instead of 4:2:0. Overwrites what follows the first `skip`
 // bytes of `out`, which is grown to hold them; nothing but `out` is kept afterwards.
@@ -23,4 +23,4 @@ void add_jpeg_comment(const std::string& comment, std::vector<uint8_t>& jpeg);
 // Throws LoadError{file,...} when the bytes are no JPEG or larger than 16384 a side.
 Image8 decode_jpeg(std::span<const uint8_t> bytes, const char* file);
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

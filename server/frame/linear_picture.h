@@ -9,7 +9,7 @@
 
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 inline constexpr int largest_picture_side = 16384;
 
@@ -23,4 +23,4 @@ Frame decode_pfm(std::istream& in, const std::string& path);
 // them.
 Frame decode_exr(std::istream& in, const std::string& path);
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -7,7 +7,7 @@
 #include "base/load_error.h"
 #include "frame/linear_picture.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 static_assert(std::endian::native == std::endian::little, "PFM is written as little-endian floats");
 static_assert(sizeof(vec3) == 12, "a row of colours is a row of floats");
@@ -61,4 +61,4 @@ Frame decode_pfm(std::istream& in, const std::string& path) {
   return frame;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

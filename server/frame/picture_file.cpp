@@ -21,7 +21,7 @@
 #pragma GCC diagnostic pop
 #include <zlib.h>
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 std::string ending_of(const std::string& path) {
@@ -117,4 +117,4 @@ Frame load_linear_picture(const std::string& path) {
   return ending == "pfm" ? decode_pfm(file, path) : decode_exr(file, path);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -6,7 +6,7 @@
 #include "frame/frame.h"
 #include "frame/tonemap.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 // True for a file name whose ending we can write.
 bool is_picture_name(const std::string& path);
@@ -20,4 +20,4 @@ void save_image8(const std::string& path, const Image8& image, const std::string
 // Linear pictures back (.pfm .exr): colour only. Throws LoadError.
 Frame load_linear_picture(const std::string& path);
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 // Of one target: the first source, and the weights of it and of those that follow, 256 in all.
@@ -57,4 +57,4 @@ Image8 shrink(const Image8& image, int width, int height) {
   return small;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -3,10 +3,10 @@
 #pragma once
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 // width and height: at least 1, at most the picture's. Bytes are averaged as they are, in sRGB:
 // what is shown small for a moment need not be exact.
 Image8 shrink(const Image8& image, int width, int height);
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

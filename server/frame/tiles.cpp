@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 constexpr int cheap_tiles = 4;  // with a rectangle more costs about as many bytes in tables
@@ -128,4 +128,4 @@ void copy_part(const Image8& from, const ImagePart& part, Image8& to) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -8,7 +8,7 @@
 
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 struct ImagePart {
   int x = 0, y = 0, width = 0, height = 0;  // pixels from the upper left
@@ -35,4 +35,4 @@ std::vector<ImagePart> cover(const TileGrid& grid, const std::vector<char>& want
 std::vector<size_t> tiles_in(const TileGrid& grid, const ImagePart& part);
 void copy_part(const Image8& from, const ImagePart& part, Image8& to);
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

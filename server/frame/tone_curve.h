@@ -8,7 +8,7 @@
 
 #include "base/simd3.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 // The shoulder of the Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral):
 // colours up to 0.8 are shown as they are, brighter ones keep their hue while their peak approaches
@@ -116,4 +116,4 @@ inline void store_pixels(uint8_t* to, LaneMask codes) {
   std::memcpy(to, &b, 3 * lane_count);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

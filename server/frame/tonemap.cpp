@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "frame/tone_curve.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 namespace {
 
 // Eight colours, a channel after the other in memory.
@@ -52,4 +52,4 @@ void tonemap(const Frame& frame, const Tonemap& settings, Image8& out) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -4,7 +4,7 @@
 #pragma once
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 struct Tonemap {
   float exposure = 1;  // multiplies radiance before the curve
@@ -13,4 +13,4 @@ struct Tonemap {
 // Overwrites `out` (resized to the frame). Deterministic; dithering is not applied.
 void tonemap(const Frame& frame, const Tonemap& settings, Image8& out);
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -6,7 +6,7 @@
 #include "base/simd.h"
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::frame {
 
 // Four pixels' channels one after the other.
 inline void interleave(const HalfLanes& r, const HalfLanes& g, const HalfLanes& b, float* to) {
@@ -22,4 +22,4 @@ HalfLanes part(const Lanes& v) {
   return __builtin_shufflevector(v, v, First, First + 1, First + 2, First + 3);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::frame

@@ -5,7 +5,7 @@
 
 #include "base/unicode.h"
 
-namespace wellspring {
+namespace wellspring::gltf {
 
 namespace fs = std::filesystem;
 
@@ -66,4 +66,4 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
          folder.end();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::gltf

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::gltf {
 
 // Finds what a relative path means below a folder: the names as they are, else those of which
 // Unicode says that they are the same (base/unicode.h). Returns nothing where there is no such file
@@ -21,4 +21,4 @@ std::vector<std::string> list_files(const std::filesystem::path& folder, size_t 
 // Whether a canonical path is the canonical folder or lies below it.
 bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder);
 
-}  // namespace wellspring
+}  // namespace wellspring::gltf

@@ -10,7 +10,7 @@
 #include "base/log.h"
 #include "ledger/sums_file.h"
 
-namespace wellspring {
+namespace wellspring::ledger {
 
 static constexpr int64_t first_day = 18262;  // 2020-01-01
 
@@ -67,7 +67,7 @@ struct Ledger::Impl {
       wrong = error.what();
     }
     std::lock_guard lock(mutex);
-    if (!wrong.empty()) wellspring::add(waiting, sums);  // later
+    if (!wrong.empty()) wellspring::ledger::add(waiting, sums);  // later
     if (!wrong.empty() && problem.empty()) log::warn("sums cannot be written: {}", wrong);
     if (wrong.empty() && !problem.empty()) log::info("sums are written again");
     problem = wrong;
@@ -111,4 +111,4 @@ std::string Ledger::problem() const {
   return impl_->problem;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::ledger

@@ -8,7 +8,7 @@
 
 #include "ledger/sums.h"
 
-namespace wellspring {
+namespace wellspring::ledger {
 
 struct LedgerSettings {
   std::string file;     // its folder is made where there is none
@@ -37,4 +37,4 @@ class Ledger {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::ledger

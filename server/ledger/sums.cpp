@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fmt/core.h>
 
-namespace wellspring {
+namespace wellspring::ledger {
 
 using namespace std::chrono;
 
@@ -59,4 +59,4 @@ std::string write_csv(const Sums& sums) {
   return out;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::ledger

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::ledger {
 
 struct SumKey {
   int64_t day = 0;   // since 1970-01-01, of the local calendar
@@ -30,4 +30,4 @@ std::optional<int64_t> parse_day(std::string_view text);
 // that a spreadsheet would take for a formula begins with '.
 std::string write_csv(const Sums& sums);
 
-}  // namespace wellspring
+}  // namespace wellspring::ledger

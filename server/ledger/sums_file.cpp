@@ -10,7 +10,7 @@
 
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::ledger {
 
 namespace {
 
@@ -157,4 +157,4 @@ Sums read_from_file(const std::string& file, int64_t from, int64_t to, int patie
   return sums;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::ledger

@@ -6,7 +6,7 @@
 
 #include "ledger/sums.h"
 
-namespace wellspring {
+namespace wellspring::ledger {
 
 // Adds to what stands there, in one transaction; makes file and folder. A damaged file is renamed
 // to FILE.damaged-YYYYMMDD-HHMMSS, logged, and begun anew. Throws std::runtime_error where it
@@ -16,4 +16,4 @@ void add_to_file(const std::string& file, const Sums& sums, int patience);
 // Nothing, where there is no file. Throws std::runtime_error where it cannot be read.
 Sums read_from_file(const std::string& file, int64_t from, int64_t to, int patience);
 
-}  // namespace wellspring
+}  // namespace wellspring::ledger

@@ -7,7 +7,7 @@
 
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 inline constexpr uint32_t no_cache_id = 0xffffffffu;
 inline constexpr uint32_t no_pixel = 0xffffffffu;  // of a request for what is not in view yet
@@ -54,4 +54,4 @@ struct Sample {
   vec3 radiance() const { return albedo * max(smooth * known - vec3(raised), vec3(0)) + rest; }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

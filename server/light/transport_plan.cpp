@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr const char* names[] = {
@@ -286,4 +286,4 @@ std::string explain(const TransportPlan& plan) {
   return text;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -15,7 +15,7 @@
 #include "light/material/material_use.h"
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 enum class TransportPart : uint8_t {
   area_lights,       // emitting triangles are sampled
@@ -54,4 +54,4 @@ TransportPlan make_transport_plan(const Scene& scene, std::span<const Mesh* cons
 // and below a part what techniques make of it where they differ.
 std::string explain(const TransportPlan& plan);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

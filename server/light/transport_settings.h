@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Of instant_radiosity: numbers of each of the columns x rows sets of point lights and photons.
 struct InstantRadiositySettings {
@@ -61,4 +61,4 @@ struct TransportSettings {
   SplatSettings splat;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::museum {
 
 // How far the clock is from where it would be, had it gone on.
 double Calendar::apart(const Seen& seen, std::time_t wall, double steady) {
@@ -26,4 +26,4 @@ std::time_t Calendar::see(std::time_t wall, double steady) {
   return std::time_t(believed_->wall + steady - believed_->steady);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

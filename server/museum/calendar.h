@@ -10,7 +10,7 @@
 #include <ctime>
 #include <optional>
 
-namespace wellspring {
+namespace wellspring::museum {
 
 class Calendar {
  public:
@@ -29,4 +29,4 @@ class Calendar {
   std::optional<Seen> believed_, doubted_;  // the latter since it was first seen so
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

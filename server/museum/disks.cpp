@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace wellspring {
+namespace wellspring::museum {
 
 std::vector<std::string> Disks::full() const {
   std::vector<std::string> found;
@@ -18,4 +18,4 @@ std::vector<std::string> Disks::full() const {
   return found;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::museum {
 
 class Disks {
  public:
@@ -19,4 +19,4 @@ class Disks {
   std::vector<std::string> places_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::museum {
 
 void Front::open(Museum& museum) {
   std::lock_guard lock(mutex_);
@@ -21,13 +21,13 @@ void Front::join(std::shared_ptr<Link> link) {
 
 HttpReply Front::answer(const HttpQuestion& question) {
   Museum* open = museum();
-  return open ? wellspring::answer(open->sources(), question)
+  return open ? wellspring::show::answer(open->sources(), question)
               : answer_while_loading(pages_, question);
 }
 
 bool Front::answer_later(const HttpQuestion& question, const std::shared_ptr<HttpAsker>& asker) {
   Museum* open = museum();
-  return open && wellspring::answer_later(open->sources(), question, asker);
+  return open && wellspring::show::answer_later(open->sources(), question, asker);
 }
 
 Museum* Front::museum() {
@@ -35,4 +35,4 @@ Museum* Front::museum() {
   return museum_;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

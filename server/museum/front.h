@@ -10,7 +10,7 @@
 
 #include "museum/museum.h"
 
-namespace wellspring {
+namespace wellspring::museum {
 
 class Front {
  public:
@@ -28,4 +28,4 @@ class Front {
   std::vector<std::shared_ptr<Link>> waiting_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

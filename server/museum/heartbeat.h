@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace wellspring {
+namespace wellspring::museum {
 
 class Heartbeat {
  public:
@@ -27,4 +27,4 @@ class Heartbeat {
   double began_ = 0;  // that drawing
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

@@ -32,7 +32,7 @@
 #include "show/watch/rehearsal.h"
 #include "wire/prometheus.h"
 
-namespace wellspring {
+namespace wellspring::museum {
 
 namespace {
 
@@ -432,4 +432,4 @@ void Museum::take_over() {
   impl_->put_up_signs();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

@@ -11,7 +11,7 @@
 #include "show/state/show.h"
 #include "show/storyteller/recordings.h"
 
-namespace wellspring {
+namespace wellspring::museum {
 
 struct MuseumSettings {
   std::string content = "content";  // folder of exhibit packages
@@ -63,4 +63,4 @@ class Museum {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

@@ -9,7 +9,7 @@
 #include "show/answer/trust.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::museum {
 
 namespace {
 
@@ -190,4 +190,4 @@ Reception::Standing Reception::standing() const {
   return {queue_.size(), resting_.size(), turned_away_};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

@@ -15,7 +15,7 @@
 #include "wire/link.h"
 #include "wire/tokens.h"
 
-namespace wellspring {
+namespace wellspring::museum {
 
 // What the reception knows of an exhibit.
 struct ExhibitDoor {
@@ -82,4 +82,4 @@ class Reception {
   uint64_t turned_away_ = 0;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

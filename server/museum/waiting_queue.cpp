@@ -7,7 +7,7 @@
 
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::museum {
 namespace {
 
 constexpr double heartbeat = 4;       // seconds, after which the same is told again
@@ -107,4 +107,4 @@ void WaitingQueue::tell_places(double now) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

@@ -18,7 +18,7 @@
 #include "wire/link.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::museum {
 
 // Who is welcomed as soon as there is a seat.
 struct Newcomer {
@@ -65,4 +65,4 @@ class WaitingQueue {
   std::deque<double> turns_;  // when the last ones were let in
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::museum

@@ -7,7 +7,7 @@
 #include "picture/pixel_light.h"
 #include "world/raster/raster.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // Pixels are lit in groups that lie between two columns of cell centres: four pixels, which are
 // packed together, and four cells around. Groups begin half a cell before a tile, and two lie side
@@ -72,4 +72,4 @@ inline void CellRows::read(const PixelRays& rays, const Cells& cells, uint64_t o
     for (int k = 0; k < lane_count; k++) flat[g][k] = one_plane[g + k / cell_size];
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

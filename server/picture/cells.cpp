@@ -6,7 +6,7 @@
 
 #include "cache/packing_simd.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 // Samples that a point counts for whose light was forgotten: something where nothing newer is
@@ -235,4 +235,4 @@ void build_cells(const WindowView& view, const SurfaceRows& rows, int cy, Cells&
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -10,7 +10,7 @@
 
 #include "picture/surface_image.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 inline constexpr int cell_size = 4;  // pixels a side
 inline constexpr int cell_pad = 8;   // empty cells around, so that filters need no bounds
@@ -60,4 +60,4 @@ bool fill_cells(const WindowView& view, Cells& cells);
 // and do not give (normalised convolution: Knutsson and Westin 1993).
 void filter_cells(const WindowView& view, Cells& cells);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

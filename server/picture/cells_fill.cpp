@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "picture/cells.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 constexpr float flat = 0.97f;  // of Coarse::flatness: normals some ten degrees apart
@@ -175,4 +175,4 @@ bool fill_cells(const WindowView& view, Cells& cells) {
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

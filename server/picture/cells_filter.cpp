@@ -9,7 +9,7 @@
 #include "cache/packing_simd.h"
 #include "picture/cells.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 constexpr int steps = 4;  // taps 1, 2, 4 and 8 cells apart
@@ -367,4 +367,4 @@ void filter_cells(const WindowView& view, Cells& cells) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -13,7 +13,7 @@
 #include "picture/own_light.h"
 #include "picture/soften_edges.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
@@ -370,4 +370,4 @@ std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
                     taker(composer, NearerPlanes{frame}));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -6,11 +6,13 @@
 #include "light/visible/visibility.h"
 #include "picture/moving_picture.h"
 
-namespace wellspring {
-
+namespace wellspring::light {
 struct DynamicImage;     // light/dynamic/dynamic_image.h
 struct IlluminationMap;  // light/sample/illumination_map.h
 struct SkinLight;        // light/known/skin_light.h
+}  // namespace wellspring::light
+
+namespace wellspring::picture {
 
 // Light that need not be found, borrowed; null: all is lit by points.
 struct KeptLight {
@@ -56,4 +58,4 @@ void compose_moving(const View& view, const VisibilityPass& visibility, const Pi
                     const Tonemap& tonemap, std::span<const float> disparity,
                     std::span<uint8_t> covered, const KeptLight& kept, MovingLight& light);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -7,7 +7,7 @@
 #include "picture/drawn_run.h"
 #include "picture/soften_edges.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 Shown light_part(const VisibleRun& run, const RunPixels& p, const RunMoving& moving,
@@ -49,4 +49,4 @@ void compose_moving(const View& view, const VisibilityPass& visibility, const Pi
                light.peaks);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -14,7 +14,7 @@
 #include "picture/relight.h"
 #include "picture/soften_edges.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // Of a pixel: until then aimed ones count, too.
 static constexpr int few_samples = 4;
@@ -101,7 +101,7 @@ void Compositor::draw_still(RenderCache& cache, const View& view, const Visibili
     if (shows == StillShows::all && visibility.anything_moves())
       edges = compose_moving(view, visibility, cells_, known_, work_->light, kept_, guessed, frame);
     const bool corrects = !reconstructed_ && sampled_ == view && !samples_.count.empty();
-    if (corrects) wellspring::invalidate_samples(still_, samples_);
+    if (corrects) wellspring::picture::invalidate_samples(still_, samples_);
     accumulate_drawn([&](uint32_t object) { return visibility.moves(object); }, changes, pictures_,
                      still_, frame);
     if (corrects) mix_in_means(samples_, {view.width, view.height}, work_->shares, frame.color);
@@ -163,7 +163,7 @@ void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
 size_t Compositor::memory_bytes() const {
   size_t sum = bytes_of(still_.count) + samples_bytes(samples_);
   for (const auto& plane : still_.mean) sum += bytes_of(plane);
-  return sum + (shares_ ? 0 : wellspring::memory_bytes(*work_));
+  return sum + (shares_ ? 0 : wellspring::picture::memory_bytes(*work_));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -15,13 +15,12 @@
 #include "picture/still/still_image.h"
 #include "picture/still/still_samples.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 struct BackdropLight;  // picture/relight.h
 struct Keyframe;       // picture/keyframe.h
 struct MovingPicture;  // picture/moving_picture.h: what moves in a picture at rest
 struct MovingLight;
-struct SkinLight;                                   // light/known/skin_light.h
 enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
 
 // What a picture needs and nobody afterwards. Those that are never under way at the same time may
@@ -107,4 +106,4 @@ class Compositor {
   float drawing_ms_ = 0;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

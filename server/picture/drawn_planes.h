@@ -5,7 +5,7 @@
 #include "frame/write_pixels.h"
 #include "picture/pixel_light.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // What has been found out about eight pixels of a row.
 struct Shown {
@@ -40,9 +40,10 @@ struct FramePlanes {
   void put(size_t at, LanePart part, const Shown& s) const {
     float cut[3 * lane_count], *color = part.all() ? &frame.color[at].x : cut;
     const Color& c = s.color;
-    interleave(wellspring::part<0>(c.r), wellspring::part<0>(c.g), wellspring::part<0>(c.b), color);
-    interleave(wellspring::part<4>(c.r), wellspring::part<4>(c.g), wellspring::part<4>(c.b),
-               color + 12);
+    interleave(wellspring::frame::part<0>(c.r), wellspring::frame::part<0>(c.g),
+               wellspring::frame::part<0>(c.b), color);
+    interleave(wellspring::frame::part<4>(c.r), wellspring::frame::part<4>(c.g),
+               wellspring::frame::part<4>(c.b), color + 12);
     if (!part.all())
       std::memcpy(&frame.color[at].x, cut + 3 * part.begin,
                   size_t(part.end - part.begin) * sizeof(vec3));
@@ -129,4 +130,4 @@ struct EyePlanes {
   }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

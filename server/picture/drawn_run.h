@@ -11,7 +11,7 @@
 #include "picture/drawn_planes.h"
 #include "world/raster/raster.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // Eight lanes of a run's array from lane `i` on, which may begin before it and end behind it.
 inline Lanes lanes_at(const float* from, int i) {
@@ -131,4 +131,4 @@ inline void add_glow(const RunPixels& p, const RunGlow& emitting, int i, unsigne
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "frame/disparity_code.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 // On each side, of width and height: turning goes sideways.
@@ -166,4 +166,4 @@ size_t memory_bytes(const Keyframe& keyframe) {
   return bytes_of(keyframe.color, keyframe.disparity, keyframe.farthest, keyframe.nearest);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -10,7 +10,7 @@
 #include "frame/frame.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 struct Keyframe {
   static constexpr int block = 8;            // pixels a side
@@ -54,4 +54,4 @@ float uncovered_a_metre(const Keyframe& keyframe);
 void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth,
                    Keyframe& keyframe);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -12,7 +12,7 @@
 #include "frame/tone_curve.h"
 #include "world/texture.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 constexpr int run_pixels = RasterRun::most;
@@ -160,4 +160,4 @@ View window_view(const View& view, const PictureWindow& window) {
   return part;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

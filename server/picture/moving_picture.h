@@ -8,7 +8,7 @@
 #include "picture/cells.h"
 #include "picture/keyframe.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // A layer has what moves alone, with the depth of its pixels, for who lays it over other views.
 struct MovingLayer {
@@ -53,4 +53,4 @@ void take_window(const Image8& image, const PictureWindow& window, std::vector<u
 // The part of the view that the window shows, as a view of its own.
 View window_view(const View& view, const PictureWindow& window);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -7,7 +7,7 @@
 #include "cache/packing.h"
 #include "picture/pixel_light.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 constexpr int rings = 5;
@@ -176,4 +176,4 @@ NearbyLight find_light_far(const Cells& cells, const SeenPlace& place) {
   return found;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

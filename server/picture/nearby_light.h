@@ -6,7 +6,7 @@
 #include "picture/cells.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // What is seen at one place of a picture.
 struct SeenPlace {
@@ -33,4 +33,4 @@ NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Fra
 // `samples`: theirs.
 NearbyLight find_light_far(const Cells& cells, const SeenPlace& place);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -6,7 +6,7 @@
 
 #include "picture/drawn_planes.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 struct OwnLight {
   LaneBits plane[surface_planes];
@@ -46,4 +46,4 @@ inline OwnLight read_own(const Frame& light, int lx, int ly) {
   return own;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

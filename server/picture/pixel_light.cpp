@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/pixel_light.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 LaneMask find_flat(const PixelRays& rays, const Cells& cells, int bx, int by) {
   constexpr float same_direction = 0.998f, same_depth = 0.1f * plane_tolerance;
@@ -26,4 +26,4 @@ LaneMask find_flat(const PixelRays& rays, const Cells& cells, int bx, int by) {
   return flat;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

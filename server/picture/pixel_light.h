@@ -9,7 +9,7 @@
 #include "cache/packing_simd.h"
 #include "picture/cells.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 inline constexpr float plane_tolerance = 0.02f;  // of the depth: farther off is another surface
 
@@ -204,4 +204,4 @@ inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& prior_var
   p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 ShownPoints read_surface(const WindowView& view, const PointCache& points, const PointImage& image,
                          Cells& cells, Frame& frame) {
@@ -32,4 +32,4 @@ ShownPoints read_surface(const WindowView& view, const PointCache& points, const
   return {shown, converged};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -5,11 +5,11 @@
 #include "picture/cells.h"
 #include "picture/surface_image.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // Reads every visible point once: builds the cells, fills holes from their neighbours and leaves
 // the surface packed in the frame's planes. Pixels far from any point stay unknown.
 ShownPoints read_surface(const WindowView& view, const PointCache& points, const PointImage& image,
                          Cells& cells, Frame& frame);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

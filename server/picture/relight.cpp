@@ -9,7 +9,7 @@
 #include "picture/moving_picture.h"
 #include "world/texture.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 constexpr float unseen = 1 / 4096.0f;  // light that changes no code
@@ -74,4 +74,4 @@ void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tone
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -7,7 +7,7 @@
 #include "light/dynamic/backdrop_surfaces.h"
 #include "picture/keyframe.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // What stands still of a picture, and what falls there.
 struct BackdropLight {
@@ -20,4 +20,4 @@ struct BackdropLight {
 void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tonemap& tonemap,
              Image8& picture, std::vector<uint8_t>& peaks);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

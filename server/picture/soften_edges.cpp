@@ -9,7 +9,7 @@
 #include "frame/tone_curve.h"
 #include "world/texture.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 // Replaces a share of a pixel's `own` light in what it has `become`, by no more than there is.
@@ -107,4 +107,4 @@ void soften_edges(std::span<const std::vector<EdgeShare>> edges, Image8& image,
   soften(edges, ShownPicture{image, peaks});
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -8,7 +8,7 @@
 #include "frame/frame.h"
 #include "world/raster/raster.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // `edges`: Raster::edges() of the picture. Where several cut a pixel, such as both of a bar,
 // their shares add up, to all of it at most.
@@ -19,4 +19,4 @@ void soften_edges(std::span<const std::vector<EdgeShare>> edges, std::vector<vec
 void soften_edges(std::span<const std::vector<EdgeShare>> edges, Image8& image,
                   std::span<uint8_t> peaks);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -7,7 +7,7 @@
 #include "cache/cache_stats.h"
 #include "cache/packing.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 int read_points(const PointCache& points, const PointImage& image, int y, SurfaceRows& rows) {
   constexpr int ahead = 32;  // pixels by which point data is fetched early
   if (y < 0 || y >= image.height || points.capacity() == 0) {
@@ -213,4 +213,4 @@ int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame) {
   return sum;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

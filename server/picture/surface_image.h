@@ -14,7 +14,7 @@
 #include "cache/window_view.h"
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 inline constexpr uint32_t no_object = 0xffffffffu;  // nothing known here
 
@@ -108,4 +108,4 @@ inline void read_packed(const Frame& frame, int x, int y, uint32_t* words) {
   std::memcpy(&words[plane_depth], &frame.depth[at], sizeof(uint32_t));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

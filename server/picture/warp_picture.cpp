@@ -12,7 +12,7 @@
 #include "base/priority.h"
 #include "picture/warp_source.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 using namespace warping;
@@ -345,4 +345,4 @@ size_t memory_bytes(const WarpScratch& scratch) {
   return sum;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

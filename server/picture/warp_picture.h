@@ -15,7 +15,7 @@
 
 #include "picture/keyframe.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // The farthest and the nearest disparity of the new picture's blocks that a keyframe shows.
 struct WarpBounds {
@@ -42,4 +42,4 @@ float warp_picture(const Keyframe& keyframe, const View& view, float most_unknow
 float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View& view,
                    float most_unknown, WarpScratch& scratch, Image8& out);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -8,7 +8,7 @@
 #include "base/simd.h"
 #include "picture/keyframe.h"
 
-namespace wellspring::warping {
+namespace wellspring::picture::warping {
 
 // Over that of the other view: nothing is nearer to a camera.
 inline constexpr float least_depth = 1e-6f;
@@ -204,4 +204,4 @@ inline LaneBits sample_color(const Source& source, const Lanes& x, const Lanes& 
   return ((red_blue >> 8) & two) | (g & 0xff00u);
 }
 
-}  // namespace wellspring::warping
+}  // namespace wellspring::picture::warping

@@ -30,7 +30,7 @@
 #include "show/storyteller/story_marks.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -411,4 +411,4 @@ void wait_for_tick(const Show& show, double now) {
   else renderer.worker.wait_for(seconds);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

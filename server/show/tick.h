@@ -4,7 +4,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // One step at time `now` (seconds, any clock that does not run backwards; steps longer than a
 // second are taken as one second). Never throws, never waits for a peer.
@@ -18,4 +18,4 @@ double seconds_to_next_tick(const Show& show, double now);
 // Sleeps until the next tick is due, or what is drawn meanwhile is finished.
 void wait_for_tick(const Show& show, double now);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

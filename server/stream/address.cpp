@@ -7,7 +7,7 @@
 #include <charconv>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 static constexpr std::array<uint8_t, 12> v4_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
 
@@ -106,4 +106,4 @@ std::optional<Address> find_client(const Address& peer, std::string_view forward
   return client;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

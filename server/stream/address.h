@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // An IPv6 address, or an IPv4 address as ::ffff:a.b.c.d.
 struct Address {
@@ -47,4 +47,4 @@ std::string shortened(const Address& address);
 std::optional<Address> find_client(const Address& peer, std::string_view forwarded,
                                    std::span<const Network> proxies);
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // Addresses without a connection are remembered for their rates: until these have recovered, or
 // until there are too many.
@@ -152,4 +152,4 @@ size_t Admission::addresses() const {
   return guests_.size();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

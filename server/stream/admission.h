@@ -22,7 +22,7 @@
 #include "base/rate.h"
 #include "stream/address.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // The defaults let forty visitors in who come at once from one address, as a school class does:
 // each browser opens up to six connections, asks for about thirty files, and sends up to 120
@@ -106,4 +106,4 @@ class Admission {
   uint64_t next_number_ = 1;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 static constexpr auto pause_after_error = std::chrono::milliseconds(100);
 
@@ -55,4 +55,4 @@ net::awaitable<void> tell_callers(tcp::acceptor& acceptor, std::function<std::st
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

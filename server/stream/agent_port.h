@@ -7,7 +7,7 @@
 
 #include "stream/asio.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // Binds and listens, at the first of the host's addresses where that works. Throws
 // std::runtime_error naming host, port and cause.
@@ -18,4 +18,4 @@ void listen_on(net::io_context& io, const std::string& host, uint16_t port,
 // yet. It runs on an I/O thread and must not block.
 net::awaitable<void> tell_callers(tcp::acceptor& acceptor, std::function<std::string()> say);
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -18,7 +18,7 @@
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 namespace net = boost::asio;
 namespace beast = boost::beast;
@@ -31,4 +31,4 @@ inline net::steady_timer::duration seconds(double s) {
   return std::chrono::duration_cast<net::steady_timer::duration>(std::chrono::duration<double>(s));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

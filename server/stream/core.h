@@ -15,7 +15,7 @@
 #include "stream/tls.h"
 #include "stream/workers.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 class Session;
 
@@ -49,4 +49,4 @@ struct Core {
 // Logs what went wrong; quietly where it is only the other side going away.
 void fail(const error_code& ec, const char* where);
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -8,7 +8,7 @@
 #include "stream/header_text.h"
 #include "wire/gzip.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // Thousandths of a qvalue: "0" or "1", then up to three digits after a point. Nothing: it is none.
 static std::optional<int> read_weight(std::string_view text) {
@@ -61,4 +61,4 @@ void encode_reply(const HttpQuestion& question, HttpReply& reply) {
     etag->second.insert(etag->second.size() - 1, "-gzip");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

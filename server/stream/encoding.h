@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replies as gzip, for those who take them so: RFC 9110, sections 8.4 and 12.5.3.
 #pragma once
+#include "base/layers.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // Shorter texts of the moment are sent as they are; kept ones (HttpReply::gzip) have no least size.
 inline constexpr size_t least_packed_bytes = 1000;
@@ -17,4 +18,4 @@ bool wants_gzip(const std::string& accept_encoding);
 // 25 ms a MB: not for threads that others wait for.
 void encode_reply(const HttpQuestion& question, HttpReply& reply);
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 class FrameCounter {
  public:
@@ -52,4 +52,4 @@ class FrameCounter {
   uint64_t payload_left_ = 0;  // bytes of the frame's payload that are still to come
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // Small letters of ASCII.
 inline std::string lower(std::string_view text) {
@@ -28,4 +28,4 @@ inline std::string_view take_item(std::string_view& list) {
   return trimmed(item);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

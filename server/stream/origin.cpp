@@ -9,7 +9,7 @@
 #include "stream/address.h"
 #include "stream/header_text.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 struct Authority {
   std::string host, port;
@@ -125,4 +125,4 @@ bool offers_protocol(std::string_view header, std::string_view wanted) {
   return false;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

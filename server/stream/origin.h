@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // `origins`: every Origin header of the request; `host`: its Host header; `allowed`: more origins
 // that are welcome, "*" for any. True without an origin, or with exactly one that names the same
@@ -47,4 +47,4 @@ bool is_proxy_header(std::string_view name);
 // The offers of a Sec-WebSocket-Protocol header hold `wanted`.
 bool offers_protocol(std::string_view header, std::string_view wanted);
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

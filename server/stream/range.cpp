@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // Digits and nothing else.
 static std::optional<uint64_t> read_number(std::string_view text) {
@@ -55,4 +55,4 @@ void narrow_to_range(const HttpQuestion& question, HttpReply& reply) {
   reply.file->size = range->size;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

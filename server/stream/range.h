@@ -3,9 +3,10 @@
 #pragma once
 #include <optional>
 
+#include "base/layers.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 struct ByteRange {
   uint64_t begin = 0, size = 0;  // size 0: outside of the file
@@ -19,4 +20,4 @@ std::optional<ByteRange> read_range(const std::string& value, uint64_t size);
 // Stays as it is where the asker wants no range, or has a part of another version (If-Range).
 void narrow_to_range(const HttpQuestion& question, HttpReply& reply);
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

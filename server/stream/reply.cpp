@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "stream/range.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 std::span<const std::pair<const char*, const char*>> security_headers(bool secure) {
   static constexpr std::pair<const char*, const char*> headers[] = {
@@ -82,4 +82,4 @@ void finish_reply(const HttpQuestion& question, HttpReply& reply) {
   if (!fits_a_line(reply.content_type)) reply.content_type = "application/octet-stream";
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

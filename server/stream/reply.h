@@ -5,9 +5,10 @@
 #include <string>
 #include <utility>
 
+#include "base/layers.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // Headers of every reply, WebSocket handshakes included: what the page may load (all from here),
 // that types are not guessed, that no page of others frames ours, shares its window
@@ -26,4 +27,4 @@ void finish_reply(const HttpQuestion& question, HttpReply& reply);
 // If-None-Match as RFC 9110 section 13.1.2: "*", or a list with an equal tag (weak comparison).
 bool etag_matches(const std::string& if_none_match, const std::string& etag);
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

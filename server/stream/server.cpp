@@ -11,7 +11,7 @@
 #include "stream/session.h"
 #include "wire/prometheus.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // Connections being told 503 at a time; more are just closed.
 static constexpr int max_refusals = 64;
@@ -276,4 +276,4 @@ std::string to_metrics(const StreamCounters& counters) {
   return text;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -7,7 +7,7 @@
 #include "base/log.h"
 #include "stream/reply.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 void fail(const error_code& ec, const char* where) {
   const bool usual = ec == net::error::operation_aborted || ec == net::error::eof ||
@@ -176,4 +176,4 @@ void Session::cut(const char* why) {
   stream().cut();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -16,7 +16,7 @@
 #include "wire/http.h"
 #include "wire/link.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 inline constexpr size_t max_header_bytes = 16 * 1024;
 inline constexpr size_t max_body_bytes = 64 * 1024;
@@ -161,4 +161,4 @@ class Session : public std::enable_shared_from_this<Session> {
   RateBound modest_bytes_{modest_bytes_a_second, modest_bytes_a_second* burst_seconds};
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -15,7 +15,7 @@
 #include "stream/session.h"
 #include "stream/target.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 static constexpr auto look_at_peer = std::chrono::milliseconds(200);  // whose answer takes long
 static constexpr std::string_view subprotocol = "wellspring.v1";
@@ -438,4 +438,4 @@ net::awaitable<void> Session::linger() {
   else stream().close();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -12,7 +12,7 @@
 #include "stream/session.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 static void set_socket_options(tcp::socket& socket) {
   error_code ec;
@@ -276,4 +276,4 @@ net::awaitable<void> Session::write_messages() {
   stream().close();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -38,7 +38,7 @@
 #include "wire/http.h"
 #include "wire/link.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 struct Doors {
   // Runs on a worker thread of its own pool, may take seconds; must not throw.
@@ -110,4 +110,4 @@ class Server {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

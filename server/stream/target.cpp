@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 static int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -107,4 +107,4 @@ int read_target(std::string_view target, HttpQuestion& question) {
   return read_query(target.substr(std::min(mark + 1, target.size())), question) ? 200 : 400;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

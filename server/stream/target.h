@@ -7,9 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "base/layers.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 inline constexpr size_t max_target_bytes = 2048;  // longer: 414
 inline constexpr size_t max_query_fields = 32;    // more: 400
@@ -17,4 +18,4 @@ inline constexpr size_t max_query_fields = 32;    // more: 400
 // Fills path and query. Returns 200, or the status to refuse with (400, 414).
 int read_target(std::string_view target, HttpQuestion& question);
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -9,7 +9,7 @@
 
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // For TLS 1.2; those of 1.3 are all sound.
 static constexpr const char* ciphers = "ECDHE+AESGCM:ECDHE+CHACHA20";
@@ -93,4 +93,4 @@ bool Certificate::read_again() {
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

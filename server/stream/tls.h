@@ -10,7 +10,7 @@ namespace boost::asio::ssl {
 class context;
 }
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // TLS 1.2 and 1.3 with forward secrecy and authenticated encryption only; HTTP/1.1 by ALPN.
 class Certificate {
@@ -45,4 +45,4 @@ class Certificate {
   std::shared_ptr<Context> context_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

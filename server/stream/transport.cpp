@@ -4,7 +4,7 @@
 #include <boost/asio/ssl/stream.hpp>
 #include <optional>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 static constexpr size_t record_bytes = 16 * 1024;  // of TLS, at most
 
@@ -131,4 +131,4 @@ void Transport::tear_down(Completion done) {
       [state = state_, done = std::move(done)](std::exception_ptr) mutable { done({}, 0); });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -13,7 +13,7 @@
 #include "stream/asio.h"
 #include "stream/tls.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 // A handler of an operation, of whatever type. Called at most once, on the strand.
 class Completion {
@@ -119,4 +119,4 @@ void async_teardown(beast::role_type, Transport& transport, Handler&& handler) {
 }
 inline void beast_close_socket(Transport& transport) { transport.close(); }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

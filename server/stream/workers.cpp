@@ -5,7 +5,7 @@
 
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 Workers::Workers(int threads, size_t max_waiting) : max_waiting_(max_waiting) {
   for (int i = 0; i < threads; i++) threads_.emplace_back([this] { work(); });
@@ -52,4 +52,4 @@ void Workers::stop() {
   for (auto& job : left) job(false);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

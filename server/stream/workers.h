@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 class Workers {
  public:
@@ -31,4 +31,4 @@ class Workers {
   std::vector<std::thread> threads_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -6,7 +6,7 @@
 
 #include "stream/asio.h"
 
-namespace wellspring {
+namespace wellspring::stream {
 
 static constexpr size_t max_answer_bytes = 64 << 20;  // one message from the server
 
@@ -152,4 +152,4 @@ std::string WsClient::close_reason() const {
   return {reason.data(), reason.size()};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

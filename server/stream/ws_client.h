@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::stream {
 
 struct WsTarget {
   std::string host = "127.0.0.1";
@@ -60,4 +60,4 @@ class WsClient {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::stream

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstddef>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 struct Delivery {
   size_t bytes = 0;
@@ -12,4 +12,4 @@ struct Delivery {
   bool picture = false;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

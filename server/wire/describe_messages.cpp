@@ -5,7 +5,7 @@
 
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 using nlohmann::json;
 
@@ -82,4 +82,4 @@ json describe_browser_messages() {
   return all;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

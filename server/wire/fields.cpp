@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 using nlohmann::json;
 
@@ -215,4 +215,4 @@ std::variant<Envelope, WireError> open_envelope(std::string_view text, const Env
   return envelope;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

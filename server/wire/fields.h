@@ -13,7 +13,7 @@
 #include "wire/json.h"
 #include "wire/limits.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 class Fields {
  public:
@@ -77,4 +77,4 @@ WireError too_large(size_t most_bytes);
 // A piece of a stranger's text made fit for a message of ours: short, no control characters.
 std::string short_quote(std::string_view text);
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

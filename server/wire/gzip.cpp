@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 bool is_text(std::string_view content_type) {
   const std::string_view type = content_type.substr(0, content_type.find(';'));
@@ -35,4 +35,4 @@ std::string gzip(std::string_view text) {
   return packed;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

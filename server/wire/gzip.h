@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 // Whether gzip makes a body of this Content-Type smaller: pictures, sound and films are packed.
 bool is_text(std::string_view content_type);
@@ -12,4 +12,4 @@ bool is_text(std::string_view content_type);
 // The same text gives the same bytes. Empty where they would not be fewer than the text's.
 std::string gzip(std::string_view text);
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

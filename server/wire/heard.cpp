@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::wire {
 namespace {
 
 template <class Read>
@@ -20,4 +20,4 @@ Heard hear(std::string text, const Read& read) {
 Heard hear_visitor(std::string text) { return hear(std::move(text), read_browser_message); }
 Heard hear_camera(std::string text) { return hear(std::move(text), read_observation); }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

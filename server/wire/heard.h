@@ -8,7 +8,7 @@
 
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 struct Heard {
   std::string text;  // as it came
@@ -26,4 +26,4 @@ const Message* said_as(const Heard& heard) {
   return message ? std::get_if<Message>(message) : nullptr;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 struct HttpQuestion {
   std::string method;  // "GET", "HEAD", ...
@@ -59,4 +59,4 @@ class HttpAsker {
   std::atomic<bool> answered_{false}, gone_{false};
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -19,7 +19,7 @@
 #include "wire/limits.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 // Why a message was refused: `code` is a fixed word for programs (bad_json, too_deep, too_large,
 // unknown_type, bad_field), `message` a sentence naming the field.
@@ -62,4 +62,4 @@ std::variant<nlohmann::json, WireError> parse_json(std::string_view text,
                                                    const JsonLimits& limits = {},
                                                    size_t* values = nullptr);
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 using nlohmann::json;
 
@@ -113,4 +113,4 @@ int find_json_line(std::string_view text, const std::string& place) {
   return finder.found;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 // The line, from 1, of the value at `place` ("/cameras/0/name", names as they are written), where
 // its name stands; of the last of equal names. 0: there is none.
 int find_json_line(std::string_view text, const std::string& place);
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

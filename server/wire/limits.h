@@ -3,7 +3,7 @@
 #pragma once
 #include <cstddef>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 inline constexpr size_t max_message_bytes = 64 * 1024;
 inline constexpr int max_message_depth = 32;
@@ -29,4 +29,4 @@ inline constexpr int min_jpeg_quality = 1,
 inline constexpr int min_bandwidth = 0, max_bandwidth = 10'000'000;  // settings.bandwidth, kbit/s
 inline constexpr size_t max_people = 32;                             // in one observation
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

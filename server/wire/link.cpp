@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 std::vector<Heard> Link::take_heard() {
   std::lock_guard lock(mutex_);
@@ -178,4 +178,4 @@ void Link::wake() {
   if (wake) wake();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -20,7 +20,7 @@
 #include "wire/heard.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 enum class LinkKind : uint8_t { visit, eye };  // /api/v1/visit, /api/v1/eye
 
@@ -99,4 +99,4 @@ class Link {
   std::atomic<uint64_t> texts_dropped_{0}, sounds_dropped_{0};
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 template <class T>
 void put(std::span<uint8_t> bytes, size_t at, T value) {
@@ -43,4 +43,4 @@ inline std::optional<std::span<const uint8_t>> get_payload(std::span<const uint8
   return bytes.subspan(header_bytes);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

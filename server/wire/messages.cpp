@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 const char* to_string(Presence presence) {
   switch (presence) {
@@ -11,4 +11,4 @@ const char* to_string(Presence presence) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

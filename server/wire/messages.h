@@ -11,7 +11,7 @@
 #include "base/vec.h"
 #include "wire/limits.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 // ---- kiosk to server ----
 
@@ -384,4 +384,4 @@ using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, T
                                     StorytellerOrder, LampOrder, HourOrder, PlayOrder, KioskTouch,
                                     GroupOrder, Ask, Settings, Ack, PresenceNews, Bye>;
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

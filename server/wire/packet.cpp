@@ -8,7 +8,7 @@
 
 #include "wire/little_endian.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 static constexpr Magic picture_magic{'W', 'S', 'F', '1'};
 
@@ -132,4 +132,4 @@ std::optional<PacketView> read_packet(std::span<const uint8_t> bytes) {
   return view;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

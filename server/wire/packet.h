@@ -26,7 +26,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 inline constexpr uint8_t packet_still =
     1;  // the visitor stands still and this is the refined picture
@@ -88,4 +88,4 @@ struct PacketView {
 };
 std::optional<PacketView> read_packet(std::span<const uint8_t> bytes);
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

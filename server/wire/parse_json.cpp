@@ -5,7 +5,7 @@
 
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 using nlohmann::json;
 
@@ -107,4 +107,4 @@ std::variant<json, WireError> parse_json(std::string_view text, const JsonLimits
   return std::move(builder.root);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 void begin_metric(std::string& out, std::string_view name, std::string_view help) {
   out += fmt::format("# HELP wellspring_{0} {1}\n# TYPE wellspring_{0} {2}\n", name, help,
@@ -32,4 +32,4 @@ void add_metric(std::string& out, std::string_view name, std::string_view help,
   add_sample(out, name, {}, value);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

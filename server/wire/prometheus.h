@@ -11,7 +11,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 // A number in as few digits as it needs in its own type; whole ones without an exponent.
 struct MetricValue {
@@ -52,4 +52,4 @@ void add_sample(std::string& out, std::string_view name, std::initializer_list<M
 void add_metric(std::string& out, std::string_view name, std::string_view help,
                 const MetricValue& value);
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

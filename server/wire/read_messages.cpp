@@ -4,7 +4,7 @@
 
 #include "wire/fields.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 using nlohmann::json;
 
@@ -241,4 +241,4 @@ std::variant<EyeOrder, WireError> read_eye_order(std::string_view text) {
   return order;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -15,7 +15,7 @@
 
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 namespace {
 
@@ -103,4 +103,4 @@ std::optional<std::string> Seal::open(const std::string& sealed) const {
   return std::string(bytes->begin(), bytes->end());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

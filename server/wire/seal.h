@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 class Seal {
  public:
@@ -24,4 +24,4 @@ class Seal {
   std::array<uint8_t, 32> key_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -6,7 +6,7 @@
 
 #include "wire/little_endian.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 static constexpr Magic sound_magic{'W', 'S', 'A', '1'};
 
@@ -27,4 +27,4 @@ Packet make_sound_packet(const SoundHeader& header, std::span<const int16_t> sam
   return packet;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

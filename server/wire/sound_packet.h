@@ -9,7 +9,7 @@
 #include "base/vec.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 struct SoundHeader {
   uint32_t utterance = 0, start = 0;
@@ -22,4 +22,4 @@ inline constexpr size_t sound_header_bytes = 56;
 
 Packet make_sound_packet(const SoundHeader& header, std::span<const int16_t> samples);
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

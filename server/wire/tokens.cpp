@@ -13,7 +13,7 @@
 #include "base/load_error.h"
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 namespace {
 
@@ -115,4 +115,4 @@ std::string_view bearer_of(std::string_view authorization) {
   return authorization.substr(scheme.size());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

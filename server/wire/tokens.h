@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::wire {
 
 inline constexpr size_t least_token_bytes = 16;
 
@@ -32,4 +32,4 @@ const Token* find_token(const std::vector<Token>& tokens, std::string_view shown
 // What an Authorization header carries by "Bearer"; empty: nothing.
 std::string_view bearer_of(std::string_view authorization);
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

@@ -5,7 +5,7 @@
 
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::wire {
 
 using json = nlohmann::ordered_json;
 
@@ -165,4 +165,4 @@ std::string write_message(const BrowserMessage& message) {
       message);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::wire

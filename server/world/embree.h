@@ -8,7 +8,7 @@
 #include <embree3/rtcore.h>
 #endif
 
-namespace wellspring::embree {
+namespace wellspring::world::embree {
 
 #if RTC_VERSION_MAJOR >= 4
 
@@ -90,4 +90,4 @@ inline void occluded(RTCScene scene, Context& context, const int* valid, RTCRay1
 
 #endif
 
-}  // namespace wellspring::embree
+}  // namespace wellspring::world::embree

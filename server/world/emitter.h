@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 enum class PunctualType : uint8_t { point, spot, directional };
 
@@ -47,4 +47,4 @@ struct Environment {
   SunDisc sun{};  // on top of the rest
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 // Nearer to the origin a float's step is below a thirtieth of a millimetre.
@@ -57,4 +57,4 @@ void mark_far(const Scene& scene, std::vector<PlacedMesh>& placed) {
   for (PlacedMesh& one : placed) one.steps = one.apart ? apart_steps : usual_steps;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -7,9 +7,9 @@
 
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Sets PlacedMesh::apart and steps. The first of `placed` are the scene's instances.
 void mark_far(const Scene& scene, std::vector<PlacedMesh>& placed);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

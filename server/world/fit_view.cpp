@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/fit_view.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 float distance_to_fit(vec3 half, vec3 back, float tan_x, float tan_y) {
   vec3 aside = cross(vec3(0, 1, 0), back);
@@ -17,4 +17,4 @@ float distance_to_fit(vec3 half, vec3 back, float tan_x, float tan_y) {
   return distance;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

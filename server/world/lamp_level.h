@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::world {
 
 using LampLevel = uint8_t;
 using LampLevels = std::vector<LampLevel>;  // of each of the scene's lamps
@@ -23,4 +23,4 @@ inline LampLevel level_of(float brightness) {
   return LampLevel(std::lround(float(lamp_full) * std::sqrt(brightness)));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/material.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 Material repainted(const Material& m, const Repaint& change) {
   constexpr float most = 1e9f;  // as of a file's
@@ -24,4 +24,4 @@ Material dimmed(const Material& m, float brightness) {
   return made;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

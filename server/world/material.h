@@ -9,7 +9,7 @@
 
 #include "world/texture.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 enum class AlphaMode : uint8_t { opaque, mask, blend };
 
@@ -84,4 +84,4 @@ Material repainted(const Material& m, const Repaint& change);
 // The same with its own light times `brightness`.
 Material dimmed(const Material& m, float brightness);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

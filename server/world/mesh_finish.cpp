@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 template <class T>
@@ -166,4 +166,4 @@ int tangent_uv(const Material& m) {
   return m.anisotropy > 0 ? m.anisotropy_texture.uv_set : -1;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -4,7 +4,7 @@
 #pragma once
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Splits the vertices so that no two triangles share one, and gives each its face's normal. Vertex
 // i of the result is vertex answer[i] of the mesh before.
@@ -25,4 +25,4 @@ void turn_winding(Mesh& mesh);
 // The set of texture coordinates that what needs tangents uses; -1: nothing does.
 int tangent_uv(const Material& material);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -4,7 +4,7 @@
 #include "base/simd3.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 inline void set_ray(const Ray& ray, int lane, RayPacket& rays) {
   rays.origin_x[lane] = ray.origin.x, rays.origin_y[lane] = ray.origin.y;
@@ -28,4 +28,4 @@ inline void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max,
   rays.from_eye &= ~(((1u << lane_count) - 1) << first);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 namespace {
 
@@ -48,4 +48,4 @@ bool has_light(const Scene& scene) {
   return false;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -11,7 +11,7 @@
 #include "world/emitter.h"
 #include "world/material.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Indexed triangles of one material. `normals` is never empty (made from the faces if the file had
 // none); uv, colors and tangents are empty or as long as positions.
@@ -91,4 +91,4 @@ size_t triangle_count(const Scene& scene);  // instances counted
 // A light that can emit light: an emissive material in use, a punctual light or a lit environment.
 bool has_light(const Scene& scene);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

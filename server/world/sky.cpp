@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 // Metres and inverse metres.
@@ -268,4 +268,4 @@ bool add_missing_light(Scene& scene) {
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -15,7 +15,7 @@
 
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 struct SkySettings {
   double elevation = 40;   // of the sun's centre over the horizon, degrees, -18 to 90
@@ -42,4 +42,4 @@ struct Daylight {
 std::vector<Daylight> eval_daylight(const SkySettings& settings,
                                     std::span<const double> elevations);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

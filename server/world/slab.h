@@ -3,7 +3,7 @@
 // std::fmax are calls.
 #pragma once
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Cuts [near, far] of a ray down to the slab [low, high] of one axis; `inverse`: 1 / direction. A
 // ray in the slab's very plane (0 times infinity) is not cut: boxes are asked whether something may
@@ -19,4 +19,4 @@ inline void cut_by_slab(float low, float high, float origin, float inverse, floa
   far = out < far ? out : far;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

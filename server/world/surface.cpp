@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 // The triangle of a hit with its weights; interpolates any per-vertex list.
@@ -354,4 +354,4 @@ vec3 offset_origin(const SurfacePlace& place, vec3 direction) {
   return have < least ? moved + normal * (least - have) : moved;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -3,7 +3,7 @@
 #pragma once
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Where a ray ended, as far as the next ray that leaves there must know it.
 struct SurfacePlace {
@@ -69,4 +69,4 @@ Face make_face(const PlacedMesh& placed, uint32_t triangle);
 // its places less exact than their own coordinates.
 vec3 offset_origin(const SurfacePlace& place, vec3 direction);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -3,7 +3,7 @@
 
 #include <bit>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 static_assert(sizeof(Face) == 2 * sizeof(Lanes), "a face is two rows of eight numbers");
@@ -90,4 +90,4 @@ Lanes3 offset_origins(const LambertSurfaceLanes& s, const Lanes3& direction) {
   return moved + n * (short_of > zero ? short_of : zero);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -5,7 +5,7 @@
 #include "base/simd3.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 struct LambertSurfaceLanes {
   Lanes3 position, geometric_normal, normal, base_color;
@@ -24,4 +24,4 @@ LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& dire
                                           const Hit* hits, unsigned active);
 Lanes3 offset_origins(const LambertSurfaceLanes& surface, const Lanes3& direction);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 // IEC 61966-2-1: 8-bit code to linear.
@@ -69,4 +69,4 @@ vec4 eval_texture(const Image& image, const Texture& texture, vec2 uv) {
 
 float decode_srgb(uint8_t code) { return srgb_table[code]; }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

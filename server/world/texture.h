@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "world/texture_taps.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // A decoded image. Exactly one of `texels8` (RGBA, 4 bytes a texel) and `texels` (float RGBA,
 // linear) is filled; top row first.
@@ -40,4 +40,4 @@ vec4 eval_texture(const Image& image, const Texture& texture, vec2 uv);
 // The linear value of an 8-bit sRGB code (IEC 61966-2-1).
 float decode_srgb(uint8_t code);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

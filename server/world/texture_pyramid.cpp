@@ -7,7 +7,7 @@
 
 #include "world/texture_taps.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 uint32_t pack_roots(vec3 c) {
@@ -188,4 +188,4 @@ vec3 eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Textu
   return above * (1 - y.weight) + below * y.weight;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

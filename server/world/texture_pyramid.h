@@ -9,7 +9,7 @@
 #include "base/simd.h"
 #include "world/texture.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Half the size, a quarter, and so on down to one texel; the picture itself is not repeated. Texels
 // are the roots of linear RGB in [0, 1], 8 bits each.
@@ -44,4 +44,4 @@ vec3 eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Textu
 bool eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Texture& texture,
                   Lanes u, Lanes v, float texels, Lanes (&rgb)[3]);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

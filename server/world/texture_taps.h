@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 enum class Wrap : uint8_t { repeat, mirror, clamp };
 
@@ -42,4 +42,4 @@ inline Taps linear_taps(float coordinate, int size, Wrap wrap) {
   return {glm::clamp(first, 0, size - 1), glm::clamp(second, 0, size - 1), x - low};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

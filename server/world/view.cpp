@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 View make_view_from_axes(const Scene& scene, dvec3 position, vec3 forward, vec3 right, float fov,
@@ -65,4 +65,4 @@ Ray view_ray(const View& view, float x, float y) {
   return ray;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

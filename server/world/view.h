@@ -3,7 +3,7 @@
 #pragma once
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Orthonormal axes; pixel (0,0) is the top left, pixel centres at +0.5. Position is relative to
 // Scene::origin.
@@ -52,4 +52,4 @@ inline Projected project_point(const View& view, vec3 p) {
   return {dot(d, view.right) * scale + axis.x, axis.y - dot(d, view.up) * scale, depth};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -11,7 +11,7 @@
 #include "world/lamp_level.h"
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 struct Ray {
   vec3 origin{0};
@@ -156,4 +156,4 @@ class World {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -5,7 +5,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 float uniform_of(const Ray& ray, uint32_t instance, uint32_t triangle) {
@@ -61,4 +61,4 @@ bool passes(const Scene& scene, const PlacedMesh& placed, uint32_t instance, uin
   return uniform_of(ray, instance, triangle) >= alpha;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -3,7 +3,7 @@
 #pragma once
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Can any place of this mesh be passed through? Only such meshes get a filter function.
 bool may_pass(const Mesh& mesh, const Material& material);
@@ -15,4 +15,4 @@ bool may_be_pane(const Material& material);
 bool passes(const Scene& scene, const PlacedMesh& placed, uint32_t instance, uint32_t triangle,
             vec2 barycentric, const Ray& ray);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -14,7 +14,7 @@
 #include "world/world_alpha.h"
 #include "world/world_impl.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 // Repeated meshes are copied into world space while all copies together stay below this many
@@ -353,4 +353,4 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
   w.build_moving();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

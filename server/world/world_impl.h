@@ -8,7 +8,7 @@
 #include "world/embree.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // One device for the whole process, never released: its threads outlive every World.
 RTCDevice shared_device();
@@ -110,4 +110,4 @@ struct World::Impl {
   uint32_t occluded_lanes(const RayPacket& rays, uint32_t active, int first) const;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -5,7 +5,7 @@
 #include "world/world.h"
 #include "world/world_impl.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 struct Search {
@@ -105,4 +105,4 @@ int World::find_near(vec3 place, vec3 way, float before, float after, Hit* hits,
   return search.count;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

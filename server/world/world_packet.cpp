@@ -8,7 +8,7 @@
 #include "world/slab.h"
 #include "world/world_impl.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 // Widest packets that the machine traces natively.
@@ -181,4 +181,4 @@ uint32_t World::occluded_each(const RayPacket& p, uint32_t active) const {
   return blocked;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -11,7 +11,7 @@
 #include "world/surface.h"
 #include "world/world_impl.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 thread_local uint64_t traced = 0;
@@ -255,4 +255,4 @@ void World::intersect_many(const Ray* rays, Hit* hits, int count) const {
   for (; i < count; i++) hits[i] = intersect(rays[i]);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -11,7 +11,7 @@
 #include "base/rng.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Tilted, coloured ellipses of all sizes over a slope, with a little noise. They are the objects,
@@ -96,4 +96,4 @@ void bench_attention(BenchReport& report, const BenchOptions& options) {
   bench_attention_steer(report, options);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -17,7 +17,7 @@
 #include "report.h"
 #include "show/exhibit/exhibit_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double rate = 60, samples_a_second = 2e6, full_pixels = 1280.0 * 720.0;
@@ -223,4 +223,4 @@ void bench_attention_steer(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Bone {
@@ -177,4 +177,4 @@ Character make_avatar(const MadeAvatar& what, const std::string& normals) {
   return character;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct MadeAvatar {
   bool springs = true, normal_map = true, constraints = true, paint = true;
@@ -16,4 +16,4 @@ struct MadeAvatar {
 // About 20,000 triangles whatever is left out. `normals`: a picture file for the map.
 Character make_avatar(const MadeAvatar& what, const std::string& normals);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,7 +13,7 @@
 #include "show/exhibit/exhibit_load.h"
 #include "show/moving/figure.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // One figure in a world, ticking.
@@ -130,4 +130,4 @@ void bench_avatar(BenchReport& report, const BenchOptions& options) {
   storyteller_place.report(report, "avatar", {{"scene", "castle"}});
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

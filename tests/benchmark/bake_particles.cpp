@@ -9,7 +9,7 @@
 #include "light/sample/emission.h"
 #include "light/walk/light_walk.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int most_depth = 16;
@@ -95,4 +95,4 @@ void finish_particles(const World& world, const Bake& bake, uint64_t count, Bake
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

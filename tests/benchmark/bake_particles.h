@@ -4,7 +4,7 @@
 #pragma once
 #include "light/bake/bake.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // `count` particles leave the sources and are counted at the nodes of `field` that they hit: flux
 // over area, whose part outside the surface is left out, so that borders are not too dark. All
@@ -14,4 +14,4 @@ void trace_particles(const BakeScene& scene, const Bake& bake, uint64_t first, u
 // Light of the nodes after so many particles, as means of `field`: to be finished like any other.
 void finish_particles(const World& world, const Bake& bake, uint64_t count, BakeField& field);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -16,7 +16,7 @@
 #include "show/exhibit/eye_places.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 128, height = 72;
@@ -205,4 +205,4 @@ void bench_bake(BenchReport& report, const BenchOptions& options) {
   bake_by_samples(report, bakery, true, marks);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

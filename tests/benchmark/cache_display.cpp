@@ -13,7 +13,7 @@
 #include "cache/cache.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr std::array<const char*, 6> stage_names{"move", "project",  "attend",
@@ -209,4 +209,4 @@ std::vector<NamedValue> report_cache_display(int width, int height, bool quick) 
   return values;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct NamedValue {
   std::string name, unit;
@@ -19,4 +19,4 @@ struct NamedValue {
 // cache is full; on one core of processor time, on all cores of the clock's.
 std::vector<NamedValue> report_cache_display(int width, int height, bool quick);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 #include "cache_display.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void bench_cache_display(BenchReport& report, const BenchOptions& options) {
   constexpr int width = 1280, height = 720;
@@ -23,4 +23,4 @@ void bench_cache_display(BenchReport& report, const BenchOptions& options) {
     }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -21,7 +21,7 @@
 #include "show/exhibit/exhibit_load.h"
 #include "show/draw/sample_budget.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double rate = 60;  // the simulated clock's pictures
@@ -189,4 +189,4 @@ void bench_cache_rest(BenchReport& report, const BenchOptions& options) {
       bench_place(report, options, place, truths);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

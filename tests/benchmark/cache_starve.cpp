@@ -15,7 +15,7 @@
 #include "report.h"
 #include "show/exhibit/exhibit_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int pixels_a_sample = 400;
@@ -111,4 +111,4 @@ void bench_cache_starve(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -19,7 +19,7 @@
 #include "picture/compositor.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int before = 120;  // pictures in the old light
@@ -281,4 +281,4 @@ void bench_cache_switch(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

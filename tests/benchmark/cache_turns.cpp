@@ -16,7 +16,7 @@
 #include "report.h"
 #include "show/visit/heading.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double rate = 60, turn_speed = 1.5, ease = 0.07;  // as the page's keys (web/controls.js)
@@ -193,4 +193,4 @@ void bench_cache_turns(BenchReport& report, const BenchOptions& options) {
   bench_hall(report, options);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

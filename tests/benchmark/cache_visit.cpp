@@ -20,7 +20,7 @@
 #include "frame/picture_file.h"
 #include "frame/tonemap.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // A misspelt name would measure nothing and take minutes to say so.
@@ -258,4 +258,4 @@ double mean_flip(const VisitResult& result, const std::string& method, int misma
   return count > 0 ? sum / count : NAN;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

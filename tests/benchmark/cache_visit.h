@@ -10,7 +10,7 @@
 #include "cache_visit_method.h"
 #include "cache_visit_trace.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct VisitSettings {
   int width = 192, height = 108;
@@ -70,4 +70,4 @@ VisitFrame mean_frame(const VisitRun& run, double from);
 // Mean of the traces' means; the runs of one method at one mismatch ratio.
 double mean_flip(const VisitResult& result, const std::string& method, int mismatch);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

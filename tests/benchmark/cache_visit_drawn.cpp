@@ -16,7 +16,7 @@
 #include "show/state/lamps.h"
 #include "show/state/picture_job.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // As the show has them.
@@ -198,4 +198,4 @@ std::unique_ptr<VisitMethod> make_drawn(const DrawnWay& way) {
   return std::make_unique<Drawn>(way);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

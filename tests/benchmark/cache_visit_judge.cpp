@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 void check_sizes(const Image8& a, const Image8& b) {
@@ -99,4 +99,4 @@ double motion_compensated_error(const Image8& now, const Image8& before,
   return count > 0 ? std::sqrt(sum / double(count)) : NAN;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

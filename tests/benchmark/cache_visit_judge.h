@@ -8,7 +8,7 @@
 #include "world/view.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Root of the mean squared difference of display values (sRGB-encoded, 0 to 1).
 double display_rmse(const Image8& test, const Image8& reference);
@@ -58,4 +58,4 @@ std::vector<vec2> motion_vectors(const TrueView& now, const TrueView& before,
   return motion;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

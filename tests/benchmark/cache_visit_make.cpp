@@ -7,7 +7,7 @@
 #include "show/visit/place.h"
 #include "show/visit/walk.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int rate = 60, keep_every = 2;  // steps a second; 30 samples a second are kept
@@ -191,4 +191,4 @@ void make_visit_traces(const Exhibit& castle, const World& world, const std::str
     save_visit_trace(trace, folder);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

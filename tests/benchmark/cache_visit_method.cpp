@@ -10,7 +10,7 @@
 #include "denoise/denoise.h"
 #include "light/visible/guides.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 uint32_t object_of(const Sample& sample) { return (sample.flags & sample_hit) ? sample.object : 0; }
@@ -43,8 +43,8 @@ struct Batch {
   std::vector<Sample> samples;
   void trace(const VisitMoment& moment) {
     samples.resize(requests.size());
-    wellspring::trace(*moment.technique, *moment.world, *moment.lights, moment.transport, requests,
-                      samples);
+    wellspring::light::trace(*moment.technique, *moment.world, *moment.lights, moment.transport,
+                             requests, samples);
   }
 };
 
@@ -318,4 +318,4 @@ void upsample(const Frame& small, Frame& large) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "light/known/lamps.h"
 #include "light/technique/technique.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // One displayed frame's circumstances.
 struct VisitMoment {
@@ -87,4 +87,4 @@ ivec2 affordable_size(int width, int height, int budget);
 // Bilinear colour, nearest object; overwrites the planes of `large` (whose size is set).
 void upsample(const Frame& small, Frame& large);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Told apart by colour-blind readers too (Okabe and Ito's palette), and by the marks.
@@ -208,4 +208,4 @@ void save_time_plot(const std::string& file, const VisitResult& result, int mism
   save(file, svg);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

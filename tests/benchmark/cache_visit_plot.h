@@ -6,7 +6,7 @@
 
 #include "cache_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Mean FLIP over all traces against the renderer's budget, one curve a method.
 void save_budget_plot(const std::string& file, const VisitResult& result,
@@ -14,4 +14,4 @@ void save_budget_plot(const std::string& file, const VisitResult& result,
 // FLIP over time at one mismatch ratio, a small diagram a trace.
 void save_time_plot(const std::string& file, const VisitResult& result, int mismatch);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "cache_visit_plot.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double first_second = 1;
@@ -94,4 +94,4 @@ void bench_cache_visit(BenchReport& report, const BenchOptions& options) {
   save_time_plot(options.plots + "visit_time.svg", result, 16);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::unique_ptr<Show> open_show(const std::string& folder, const std::string& technique) {
@@ -134,4 +134,4 @@ vec3 VisitStage::moved_back(const Hit& hit) const {
   return (1 - b.x - b.y) * vertices[corner.x] + b.x * vertices[corner.y] + b.y * vertices[corner.z];
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "cache_visit_trace.h"
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 class VisitStage {
  public:
@@ -48,4 +48,4 @@ class VisitStage {
   std::vector<std::vector<vec3>> before_;  // vertices of the moving meshes, a frame ago
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 using nlohmann::json;
 
@@ -125,4 +125,4 @@ bool lamps_on(const VisitTrace& trace, double time) {
   return on;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "show/exhibit/exhibit.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct TraceSample {
   double time = 0;  // seconds from the visit's beginning; strictly growing from sample to sample
@@ -45,4 +45,4 @@ bool lamps_on(const VisitTrace& trace, double time);
 // walls make of a few intentions.
 void make_visit_traces(const Exhibit& castle, const World& world, const std::string& folder);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "base/rng.h"
 #include "frame/picture_file.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int probe_width = 48, probe_height = 27, probe_spp = 4;
@@ -101,4 +101,4 @@ uint64_t hash_files(const std::string& folder) {
   return hash.value;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "light/technique/technique.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct TruthSettings {
   int spp = 64;          // of each half
@@ -30,4 +30,4 @@ Truth find_truth(const World& world, const Lights& lights, const View& view,
 // Of the bytes and names of all files below a folder.
 uint64_t hash_files(const std::string& folder);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

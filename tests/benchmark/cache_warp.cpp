@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fmt/core.h>
 
-#include "base/process_clock.h"
+#include "base/clock.h"
 #include "cache_visit_stage.h"
 #include "drawn_picture.h"
 #include "frame/flip.h"
@@ -14,7 +14,7 @@
 #include "picture/warp_picture.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 1280, height = 720, levels = 16;
@@ -98,4 +98,4 @@ void bench_cache_warp(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

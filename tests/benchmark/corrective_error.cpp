@@ -13,7 +13,7 @@
 #include "report.h"
 #include "show/exhibit/exhibit_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double rate = 60, walked = 1;  // pictures a second; seconds
@@ -105,4 +105,4 @@ void bench_corrective_error(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "corrective/warp_and_splat.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int size = 512, balls_a_row = 6, ages = 10, levels_sampled = 3;
@@ -130,4 +130,4 @@ void bench_corrective(BenchReport& report, const BenchOptions& options) {
   bench_corrective_error(report, options);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

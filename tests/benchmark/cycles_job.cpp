@@ -18,7 +18,7 @@
 #include "base/load_error.h"
 #include "frame/picture_file.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -166,4 +166,4 @@ void write_shared_copy(const fs::path& glb, bool metals, const fs::path& out) {
   if (!file) throw LoadError(out.string(), "", "cannot be written");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "frame/frame.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct CyclesRender {
   int samples = 1;
@@ -37,4 +37,4 @@ inline constexpr double roughest_shared_metal = 0.35;
 void write_shared_copy(const std::filesystem::path& glb, bool metals,
                        const std::filesystem::path& out);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

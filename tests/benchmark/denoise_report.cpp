@@ -17,7 +17,7 @@
 #include "light_scenes.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using Vector = float __attribute__((vector_size(32)));
@@ -136,4 +136,4 @@ void bench_denoise_flip(BenchReport& report, const BenchOptions& options) {
   judge_nets(report, options);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include "frame/tonemap.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void draw_picture(const VisibilityPass& visibility, const View& view, DrawnPicture& drawn) {
   Frame frame;
@@ -27,4 +27,4 @@ void draw_picture(const VisibilityPass& visibility, const View& view, DrawnPictu
   tonemap(frame, Tonemap{}, drawn.image);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "frame/frame.h"
 #include "light/visible/visibility.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct DrawnPicture {
   Image8 image;
@@ -16,4 +16,4 @@ struct DrawnPicture {
 
 void draw_picture(const VisibilityPass& visibility, const View& view, DrawnPicture& drawn);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "avatar/face/emotion.h"
 #include "kiosk_visitors.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -117,4 +117,4 @@ ReportPage kiosk_expression_page() {
             .most_rows = 5}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

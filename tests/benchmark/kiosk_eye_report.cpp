@@ -4,7 +4,7 @@
 #include "kiosk_program.h"
 #include "reports.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void bench_kiosk_eye(BenchReport& report, const BenchOptions& options) {
   run_kiosk_program(report, options, "wellspring_kiosk_compare",
@@ -47,4 +47,4 @@ ReportPage kiosk_eye_page() {
         .most_rows = 1}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

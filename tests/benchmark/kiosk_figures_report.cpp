@@ -6,7 +6,7 @@
 
 #include "kiosk_visitors.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -155,4 +155,4 @@ ReportPage kiosk_figures_page() {
            table("", "light", "light, at 1 m", 5)}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

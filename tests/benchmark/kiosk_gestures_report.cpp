@@ -14,7 +14,7 @@
 #include "report.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -247,4 +247,4 @@ void bench_kiosk_gestures(BenchReport& report, const BenchOptions& options) {
   report_sign_language(report, options);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

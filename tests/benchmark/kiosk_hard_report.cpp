@@ -7,7 +7,7 @@
 #include "kiosk_visitors.h"
 #include "visitors/visitor_paste.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -250,4 +250,4 @@ ReportPage kiosk_hard_page() {
             .most_rows = 18}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

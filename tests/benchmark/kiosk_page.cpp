@@ -2,7 +2,7 @@
 // What the pages of the kiosk's reports show.
 #include "reports.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 ReportPage kiosk_gestures_page() {
   const std::vector<PageKey> vocabulary = {{"vocabulary", "vocabulary"}};
@@ -44,4 +44,4 @@ ReportPage kiosk_gestures_page() {
         .most_rows = 2}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::test {
 
 void run_kiosk_program(BenchReport& report, const BenchOptions& options, const std::string& name,
                        const std::string& more) {
@@ -42,4 +42,4 @@ void read_results(BenchReport& report, const std::string& command) {
   if (pclose(out.release()) != 0) throw std::runtime_error(command + ": did not finish");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

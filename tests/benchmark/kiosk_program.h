@@ -6,7 +6,7 @@
 
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // `name` is told where weights and recordings are, as far as there are any, and `more`. Throws
 // std::runtime_error where it cannot be started or fails.
@@ -16,4 +16,4 @@ void run_kiosk_program(BenchReport& report, const BenchOptions& options, const s
 // A command that prints one JSON object a result: {"name","value","unit",...}. Throws likewise.
 void read_results(BenchReport& report, const std::string& command);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 #include "kiosk_program.h"
 #include "reports.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void bench_kiosk_face(BenchReport& report, const BenchOptions& options) {
   run_kiosk_program(report, options, "wellspring_kiosk_measure");
@@ -53,4 +53,4 @@ ReportPage kiosk_face_page() {
         .most_rows = 1}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

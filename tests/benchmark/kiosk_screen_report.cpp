@@ -6,7 +6,7 @@
 #include "kiosk_program.h"
 #include "reports.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void bench_kiosk_screen(BenchReport& report, const BenchOptions& options) {
   namespace fs = std::filesystem;
@@ -38,4 +38,4 @@ ReportPage kiosk_screen_page() {
         .most_rows = 1}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace fs = std::filesystem;
 
@@ -41,4 +41,4 @@ VisitorSequence begin_visit(int figure, float metres, VisitorLight light, double
   return sequence;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include "reports.h"
 #include "visitors/visitor_folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 inline constexpr const char* kiosk_figure_names[] = {"storyteller", "chronicler"};
 
@@ -25,4 +25,4 @@ struct VisitorMean {
   double value() const { return count ? sum / count : NAN; }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "frame/flip.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Quick pictures are timed thrice and the median counts; the picture is the same each time.
@@ -60,4 +60,4 @@ Reached time_to_flip(const std::vector<CurvePoint>& curve, double level) {
   return {seconds < farthest * curve.back().seconds ? seconds : 0, false};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

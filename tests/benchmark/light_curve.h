@@ -6,7 +6,7 @@
 
 #include "light/technique/technique.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct CurvePoint {
   int spp = 0;
@@ -29,4 +29,4 @@ struct Reached {
 };
 Reached time_to_flip(const std::vector<CurvePoint>& curve, double level);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

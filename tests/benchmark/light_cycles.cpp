@@ -11,14 +11,13 @@
 
 #include "base/clock.h"
 #include "base/load_error.h"
-#include "base/process_clock.h"
 #include "cycles_job.h"
 #include "light/technique/technique.h"
 #include "light_scenes.h"
 #include "picture_pair.h"
 #include "world/load/scene_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -160,4 +159,4 @@ void bench_light_cycles(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 #pragma once
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Adds, one of each a case (cornell_box, metal_box, castle, castle_metals):
 //   light.path.cycles_time_ratio          seconds of `path` over seconds of Cycles to the same RMSE
@@ -17,4 +17,4 @@ namespace wellspring {
 //   light.path.cycles_block_correlation   of neighbouring blocks' differences: 0 without structure
 void bench_light_cycles(BenchReport& report, const BenchOptions& options);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,6 @@
 #include <functional>
 
 #include "base/clock.h"
-#include "base/process_clock.h"
 #include "frame/flip.h"
 #include "light/dynamic/settled_bounce.h"
 #include "light/technique/technique.h"
@@ -13,7 +12,7 @@
 #include "picture/relight.h"
 #include "tests/scenes/dynamic_picture.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 1280, height = 720;
@@ -212,4 +211,4 @@ void bench_light_dynamic(BenchReport& report, const BenchOptions& options) {
                 find_truth(dark, judged, sun, spp));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

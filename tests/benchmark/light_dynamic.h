@@ -3,7 +3,7 @@
 #pragma once
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // `light.dynamic`: pictures of 1280x720 of the hall by night with a torch at eight places. Of each
 // number of virtual lights the processor time of a picture in its stages, and FLIP against `path`
@@ -11,4 +11,4 @@ namespace wellspring {
 // picture beyond how it should.
 void bench_light_dynamic(BenchReport& report, const BenchOptions& options);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -2,7 +2,7 @@
 // Pages of the reports on light.
 #include "reports.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 ReportPage light_frame_page() {
   return {"light.frame",
@@ -126,4 +126,4 @@ ReportPage light_photons_page() {
                         {"photons_ms", "pixels lit", 1, "", "pixels_lit"}}}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

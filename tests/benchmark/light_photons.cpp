@@ -13,7 +13,7 @@
 #include "light/walk/first_surface.h"
 #include "light_scenes.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Of this thread alone: the machine may have other work.
@@ -109,4 +109,4 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
               {"shoot_ms", 1000 * shot}});
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,7 +3,7 @@
 #pragma once
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // `light.caustics.photons_ms` (`--only light.photons`): 100,000 photons stored in the grids of 3 x
 // 3 interleaved sets and asked once for every pixel of 640x480 that sees a surface, tile by tile as
@@ -11,4 +11,4 @@ namespace wellspring {
 // it), and beside it `shoot_ms` of tracing them.
 void bench_light_photons(BenchReport& report, const BenchOptions& options);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -17,7 +17,7 @@
 #include "world/scene.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 1280, height = 720;
@@ -253,4 +253,4 @@ void bench_light_rays(BenchReport& report, const BenchOptions& options) {
   add_ratio("light.path.rays_processor_ratio", processor_ratios);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

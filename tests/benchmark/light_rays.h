@@ -11,10 +11,10 @@
 #pragma once
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Adds light.path.rays_ratio and light.path.rays_processor_ratio (by the clock and in processor
 // time; medians over turns), and each side's rays a second.
 void bench_light_rays(BenchReport& report, const BenchOptions& options);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include "frame/compare.h"
 #include "frame/flip.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 Reference make_reference(const World& world, const Lights& lights, const View& view,
                          const TransportSettings& transport, double seconds) {
@@ -50,4 +50,4 @@ Reference make_reference(const World& world, const Lights& lights, const View& v
   return reference;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

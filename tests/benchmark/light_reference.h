@@ -4,7 +4,7 @@
 #pragma once
 #include "light/technique/technique.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct Reference {
   Frame frame;
@@ -19,4 +19,4 @@ struct Reference {
 Reference make_reference(const World& world, const Lights& lights, const View& view,
                          const TransportSettings& transport, double seconds);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

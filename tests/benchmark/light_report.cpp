@@ -12,7 +12,7 @@
 #include "plot.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Seconds, on whatever machine: the run's length is bounded, its figures are as good as it allows.
@@ -175,4 +175,4 @@ void bench_light_frame(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,7 +13,7 @@
 #include "tessellate.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Rays from what the eye sees in directions scattered by the cosine: as incoherent as paths are.
@@ -114,4 +114,4 @@ void bench_light_scaling(BenchReport& report, const BenchOptions& options) {
   save_svg(options.plots + "light_scaling.svg", plot);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

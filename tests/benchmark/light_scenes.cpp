@@ -7,7 +7,7 @@
 #include "show/exhibit/exhibit_load.h"
 #include "world/load/scene_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Entry {
@@ -57,4 +57,4 @@ View bench_view(const BenchScene& bench, int width, int height) {
   return make_view(bench.scene, c.position, c.yaw, c.pitch, c.fov, width, height);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include "report.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct BenchScene {
   std::string name, about;
@@ -19,4 +19,4 @@ std::vector<BenchScene> load_bench_scenes(const BenchOptions& options);
 BenchScene load_bench_scene(const BenchOptions& options, const std::string& name);
 View bench_view(const BenchScene& scene, int width, int height);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

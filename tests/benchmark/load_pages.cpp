@@ -2,7 +2,7 @@
 // Pages of the reports on how many visitors a machine serves.
 #include "reports.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 ReportPage load_visitors_page() {
   return {"load.visitors",
@@ -46,4 +46,4 @@ ReportPage load_seats_page() {
                     {"server_memory", "memory of the server"}}}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "stream_server.h"
 #include "stroll.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Crowd {
@@ -69,4 +69,4 @@ void bench_load_seats(BenchReport& report, const BenchOptions& options) {
   for (const Crowd& crowd : crowds) measure(report, options, crowd);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "stream_server.h"
 #include "stroll.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 640, height = 360;
@@ -44,4 +44,4 @@ void bench_load_visitors(BenchReport& report, const BenchOptions& options) {
   for (int visitors : {1, 2, 4, 8, 16, 32}) measure(report, all, visitors);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

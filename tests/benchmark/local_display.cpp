@@ -13,7 +13,7 @@
 #include "screen.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr size_t most_bytes = size_t(64) << 20;  // of a file
@@ -123,4 +123,4 @@ nlohmann::json draw_steps(const std::string& folder) {
   return flips;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 
 #include "picture/warp_picture.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 class LocalDisplay {
  public:
@@ -46,4 +46,4 @@ class LocalDisplay {
 // between both. Throws LoadError, nlohmann::json::exception.
 nlohmann::json draw_steps(const std::string& folder);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -46,7 +46,7 @@ void say_part(const char* name, size_t part, size_t parts, double seconds) {
   std::fprintf(stderr, "%s\n", wellspring::progress_line("bench", done, seconds, more).c_str());
 }
 
-bool has_curves(const wellspring::BenchReport& report) {
+bool has_curves(const wellspring::test::BenchReport& report) {
   const nlohmann::json all = report.to_json();
   return std::ranges::any_of(all["results"], [](const nlohmann::json& result) {
     return result.value("report", "") == "light.error";
@@ -57,6 +57,7 @@ bool has_curves(const wellspring::BenchReport& report) {
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  using namespace wellspring::test;
   if (answer_version(argc, argv, {"Boost", "CLI11", "GLM", "nlohmann-json", "stb"})) return 0;
   log::start("bench");
   CLI::App app{"Speed against error, measured on this machine."};

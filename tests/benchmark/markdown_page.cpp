@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <map>
 
-namespace wellspring {
+namespace wellspring::test {
 
 using nlohmann::json;
 
@@ -318,4 +318,4 @@ std::string make_page(const ReportPage& page, const json& report) {
   return text;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

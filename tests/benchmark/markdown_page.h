@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 
 constexpr int most_page_lines = 60;
 
@@ -72,4 +72,4 @@ std::string format_figure(double value);
 // What stands in a cell of a table: without line ends, | as \|.
 std::string escape_cell(std::string_view text);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string>
 
-namespace wellspring {
+namespace wellspring::test {
 
 class OwnFolder {
  public:
@@ -27,4 +27,4 @@ class OwnFolder {
   std::string path_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

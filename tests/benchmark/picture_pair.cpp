@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int block = 8;
@@ -60,4 +60,4 @@ Agreement compare_pairs(const PicturePair& ours, const PicturePair& theirs) {
   return result;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

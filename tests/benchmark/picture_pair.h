@@ -4,7 +4,7 @@
 #pragma once
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Two renders of different seeds and the same cost.
 struct PicturePair {
@@ -25,4 +25,4 @@ struct Agreement {
 };
 Agreement compare_pairs(const PicturePair& ours, const PicturePair& theirs);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

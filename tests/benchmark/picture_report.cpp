@@ -15,7 +15,7 @@
 #include "report.h"
 #include "show/exhibit/exhibit_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 1280, height = 720, pictures = 15;
@@ -107,4 +107,4 @@ void bench_picture(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double width = 920, height = 540;
@@ -207,4 +207,4 @@ void save_svg(const std::string& file, const Plot& plot) {
   if (!out.flush()) throw std::runtime_error(file + ": cannot be written");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

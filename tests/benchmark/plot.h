@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct Curve {
   std::string name;
@@ -25,4 +25,4 @@ std::string make_svg(const Plot& plot);
 // Throws std::runtime_error when the file cannot be written.
 void save_svg(const std::string& file, const Plot& plot);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace wellspring {
+namespace wellspring::test {
 
 using nlohmann::json;
 
@@ -96,4 +96,4 @@ double quantile(std::vector<double> values, double p) {
   return values[std::clamp(rank, size_t(1), values.size()) - 1];
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct BenchOptions {
   bool quick = false;
@@ -92,4 +92,4 @@ void bench_kiosk_hard(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_screen(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_gestures(BenchReport& report, const BenchOptions& options);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

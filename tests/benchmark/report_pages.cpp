@@ -3,7 +3,7 @@
 #include "reports.h"
 #include "splat_bench.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 ReportPage stream_page() {
@@ -385,4 +385,4 @@ ReportPage find_page(const std::string& name) {
   return plain_page(name);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,7 +12,7 @@
 #include "light_rays.h"
 #include "splat_bench.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ void write_pages_from(const std::vector<std::string>& files, const std::string& 
   save(pages, where);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "markdown_page.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct ReportEntry {
   const char* name;
@@ -49,4 +49,4 @@ void write_pages(const nlohmann::json& report, const std::string& where);
 // The same of JSON files, which may tell the same report again: the last one counts.
 void write_pages_from(const std::vector<std::string>& files, const std::string& where);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

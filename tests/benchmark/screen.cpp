@@ -6,7 +6,7 @@
 
 #include "frame/jpeg.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Image8 make_black(int width, int height) {
@@ -78,4 +78,4 @@ Image8 scale_picture(const Image8& picture, int width, int height) {
   return scaled;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

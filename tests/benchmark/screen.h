@@ -7,7 +7,7 @@
 #include "frame/frame.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 class Screen {
  public:
@@ -27,4 +27,4 @@ void paste_parts(const PacketView& packet, Image8& canvas);
 // Bilinear between the middles of pixels; bytes are mixed as they are, as browsers do.
 Image8 scale_picture(const Image8& picture, int width, int height);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

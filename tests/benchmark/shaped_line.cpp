@@ -13,7 +13,7 @@
 
 extern char** environ;
 
-namespace wellspring {
+namespace wellspring::test {
 
 ShapedLine::ShapedLine(const BenchOptions& options, uint16_t server, double mbit, double trip_ms,
                        size_t queue) {
@@ -57,4 +57,4 @@ void ShapedLine::set_rate(double mbit) {
   if (write(orders_, text.data(), text.size()) < 0) throw std::runtime_error("the line is gone");
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 class ShapedLine {
  public:
@@ -26,4 +26,4 @@ class ShapedLine {
   int orders_ = -1;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

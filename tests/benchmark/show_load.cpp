@@ -11,7 +11,7 @@
 
 #include "show_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using Cores = std::vector<int>;
@@ -83,4 +83,4 @@ void bench_show_load(BenchReport& report, const BenchOptions& options) {
   for (const Run& run : runs) judge.add(report, "show.load", run.walk, run.where);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -2,7 +2,7 @@
 // Pages of the reports on what a running show's visitors have before them.
 #include "reports.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const std::string truth_note =
@@ -98,4 +98,4 @@ ReportPage show_load_page() {
                         {"show.load.picture_bytes", "a picture, median", 1e-3, "kB"}}}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

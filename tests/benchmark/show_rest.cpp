@@ -10,7 +10,7 @@
 #include "show_visit.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void bench_show_rest(BenchReport& report, const BenchOptions& options) {
   const int spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 16 : 64;
@@ -70,4 +70,4 @@ void bench_show_rest(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

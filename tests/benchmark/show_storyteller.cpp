@@ -23,7 +23,7 @@
 #include "picture/moving_picture.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 1280, height = 720;
@@ -216,4 +216,4 @@ void bench_show_storyteller(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "show/exhibit/exhibit_lamps.h"
 #include "show/exhibit/exhibit_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int flip_margin = 12;  // pixels that FLIP looks beyond one, at its 67 a degree, and more
@@ -109,4 +109,4 @@ Converged ShowTruth::converge(const View& whole, const Window& window) const {
   return converged;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -14,7 +14,7 @@
 #include "report.h"
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Part of a picture, in its pixels.
 struct Window {
@@ -56,4 +56,4 @@ class ShowTruth {
   std::unique_ptr<Denoiser> denoiser_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

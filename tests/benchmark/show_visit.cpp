@@ -12,7 +12,7 @@
 #include "wire/json.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double pose_interval = 1.0 / 60, rest = 2, first_within = 60;  // seconds
@@ -222,4 +222,4 @@ double WalkJudge::add_had(BenchReport& report, const std::string& name, const Sh
   return flip.mean();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

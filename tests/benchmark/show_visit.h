@@ -16,7 +16,7 @@
 #include "show_truth.h"
 #include "stream_server.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 inline constexpr int shown_width = 1280, shown_height = 720;
 
@@ -83,4 +83,4 @@ void look_until(WsClient& client, double moment, const std::function<void(const 
 // Opens a visit of that size and sends the storytellers away.
 void join_alone(WsClient& client, const ServerProcess& server, const WalkWay& way = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::test

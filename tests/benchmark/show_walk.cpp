@@ -18,7 +18,7 @@
 #include "shaped_line.h"
 #include "show_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Moment {
@@ -151,4 +151,4 @@ void bench_show_walk(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include "markdown_page.h"
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void bench_splat(BenchReport& report, const BenchOptions& options);
 ReportPage splat_page();
@@ -25,4 +25,4 @@ struct SeenPixels {
 SplatSource carried_torch(const View& view, int step);
 double processor_seconds();  // of all threads
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "light/sample/light_tables.h"
 #include "splat_bench.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int one_bounce = 3;  // edges of a path
@@ -186,4 +186,4 @@ void bench_splat_error(BenchReport& report, const BenchOptions& options) {
   bench_flicker(report, options);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "splat_bench.h"
 #include "tessellate.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -208,4 +208,4 @@ ReportPage splat_error_page() {
         .most_rows = 3}}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,7 +13,7 @@
 #include "wire/json.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Arrived {
@@ -98,4 +98,4 @@ void bench_line(BenchReport& report, const BenchOptions& options) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,8 +3,8 @@
 #pragma once
 #include "report.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 void bench_line(BenchReport& report, const BenchOptions& options);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -21,7 +21,7 @@
 
 extern char** environ;
 
-namespace wellspring {
+namespace wellspring::test {
 
 ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exhibit) {
   const std::vector<std::string>& more = options.server_words;
@@ -124,4 +124,4 @@ double read_metric(uint16_t port, const std::string& name) {
   return at == std::string::npos ? std::nan("") : std::atof(&text[at + name.size() + 13]);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

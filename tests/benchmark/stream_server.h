@@ -6,11 +6,12 @@
 #include <string>
 #include <sys/types.h>
 
+#include "base/layers.h"
 #include "own_folder.h"
 #include "report.h"
 #include "stream/ws_client.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // A server of its own on a free port, as `./wellspring run` starts one, ended with this value. What
 // it finds out is kept in a folder of its own, empty at first and removed in the end, unless
@@ -41,4 +42,4 @@ std::string fetch(uint16_t port, const std::string& path);
 // Of the server's /metrics; NaN where it has none of that name.
 double read_metric(uint16_t port, const std::string& name);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

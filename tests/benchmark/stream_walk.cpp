@@ -10,7 +10,7 @@
 #include "stream_server.h"
 #include "stroll.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -50,4 +50,4 @@ void bench_stream(BenchReport& report, const BenchOptions& options) {
   bench_line(report, options);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -17,7 +17,7 @@
 #include "wire/json.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 Input stroll(double t, uint32_t seq, double interval) {
   constexpr double ahead = 2.5, turn_speed = 1.5, turning = std::numbers::pi / turn_speed;
@@ -121,4 +121,4 @@ std::vector<Stroll> stroll_together(const StrollPlan& plan, int visitors) {
   return seen;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

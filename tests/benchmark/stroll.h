@@ -7,7 +7,7 @@
 
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // A stroll up and down: ahead, swaying, and round again every few seconds with the turn of a key
 // (web/controls.js), so that walls come and go and none is walked into, where there would be
@@ -38,4 +38,4 @@ Stroll stroll_through(const StrollPlan& plan, const std::function<void()>& count
 // So many at once, each at a phase of their own.
 std::vector<Stroll> stroll_together(const StrollPlan& plan, int visitors);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Each triangle in n * n alike.
@@ -45,4 +45,4 @@ Scene tessellate(const Scene& scene, size_t triangles) {
   return fine;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

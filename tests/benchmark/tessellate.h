@@ -3,11 +3,11 @@
 #pragma once
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Every triangle of what does not emit light is cut into n * n alike, n such that about `triangles`
 // come out. Lamps stay as they are: their triangles are a matter of choosing lights, not of tracing
 // rays.
 Scene tessellate(const Scene& scene, size_t triangles);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

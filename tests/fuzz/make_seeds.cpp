@@ -15,7 +15,7 @@
 #include "unit/folder.h"
 #include "unit/show/exhibit/room_package.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,11 +179,12 @@ void write_sums(const Corpus& corpus) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   using namespace wellspring;
+  using namespace wellspring::test;
   const Corpus corpus{argv[1], {}};
   write_recordings(corpus);
   write_pictures(corpus);

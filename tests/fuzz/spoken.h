@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "avatar/speech/speech_folder.h"
+#include "base/layers.h"
 
 namespace wellspring::fuzz {
 

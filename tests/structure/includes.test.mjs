@@ -4,31 +4,10 @@ import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { join, relative } from 'node:path';
 import { test } from 'node:test';
+import { folder_of, may_include } from './layers.mjs';
 
 const root = process.env.WELLSPRING_SOURCE;
 
-// layer -> layers it may include, besides itself.
-const may_include = {
-  base: [],
-  config: ['base'],
-  about: ['base'],
-  wire: ['base'],
-  ledger: ['base'],
-  frame: ['base'],
-  attention: ['frame', 'base'],
-  denoise: ['base'],
-  gltf: ['base'],
-  world: ['gltf', 'base'],
-  light: ['world', 'frame', 'base'],
-  cache: ['light', 'world', 'frame', 'base'],
-  picture: ['cache', 'denoise', 'light', 'world', 'frame', 'base'],
-  avatar: ['gltf', 'base'],
-  show: ['picture', 'cache', 'denoise', 'light', 'world', 'gltf', 'attention', 'frame', 'avatar',
-    'wire', 'ledger', 'base'],
-  museum: ['show', 'wire', 'ledger', 'base'],
-  stream: ['wire', 'base'],
-  kiosk: ['wire', 'base'],
-};
 // Rooms: layer -> room -> rooms of the same layer it may include, besides itself. '' is the layer's
 // own folder. Every room has a README.md that says who lives there.
 const may_enter = {
@@ -174,8 +153,7 @@ function circles(graph) {
   return found;
 }
 
-// A layer's folder and the rest of a file's path.
-const folder_of = (layer) => ['avatar', 'kiosk'].includes(layer) ? `${layer}/` : `server/${layer}/`;
+// The rest of a file's path below its layer's folder.
 const room_of = (layer, name) => {
   const rest = name.slice(folder_of(layer).length);
   return rest.includes('/') ? rest.slice(0, rest.lastIndexOf('/')) : '';

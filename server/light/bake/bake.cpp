@@ -11,7 +11,7 @@
 #include "light/bake/lit_place.h"
 #include "light/walk/known_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Pilot samples of a tile, by which its nodes become finer or not, and of each node.
@@ -79,7 +79,7 @@ void for_each_place(const BakeScene& scene, const Bake& bake, uint32_t tile, Bak
                                   choice, sampler.next2());
     if (!place.valid) continue;
     const size_t node = size_t(grid.first) + i;
-    const LitPlace lit = light_node_place(scene, place.ray, place.hit, field.normal_of(node));
+    const BakePlace lit = light_node_place(scene, place.ray, place.hit, field.normal_of(node));
     if (is_covered(scene.world, lit.surface, covering)) field.hidden[node] += 1;
     else visit(node, lit, sampler);
   }
@@ -97,7 +97,7 @@ void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, Ba
 
 void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.direct;
-  auto sample = [&](size_t node, const LitPlace& lit, Sampler& sampler) {
+  auto sample = [&](size_t node, const BakePlace& lit, Sampler& sampler) {
     std::fill(found.light.begin(), found.light.end(), vec3(0));
     std::fill(found.slope.begin(), found.slope.end(), vec3(0));
     Walk walk;
@@ -130,7 +130,7 @@ void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
 
 void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.gather;
-  auto sample = [&](size_t node, const LitPlace& lit, Sampler& sampler) {
+  auto sample = [&](size_t node, const BakePlace& lit, Sampler& sampler) {
     Walk walk;
     std::fill(found.light.begin(), found.light.end(), vec3(0));
     std::fill(found.slope.begin(), found.slope.end(), vec3(0));
@@ -178,7 +178,7 @@ PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
   for (uint32_t number = 0; number < samples; number++)
     for_each_place(
         scene, bake, tile, field, number, [&](uint32_t) { return seed; },
-        [&](size_t node, const LitPlace& lit, Sampler& sampler) {
+        [&](size_t node, const BakePlace& lit, Sampler& sampler) {
           std::fill(met.begin(), met.end(), vec3(0));
           Walk walk;
           bool inside = false;
@@ -397,4 +397,4 @@ float bake_error(const Bake& bake) {
   return mean > 0 ? float(std::sqrt(variances[0] + variances[1]) / mean) : 0.0f;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

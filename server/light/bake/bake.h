@@ -21,7 +21,7 @@
 #include "light/bake/bake_scene.h"
 #include "light/bake/held_out.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct BakeSettings {
   size_t gather_nodes = 250000, direct_nodes = 1000000;  // at most, about
@@ -76,4 +76,4 @@ float bake_error(const Bake& bake);
 
 // Of storage at vertices of a mesh that is divided as finely: place, normal, two triangles, light.
 size_t vertex_bytes(const Bake& bake);
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float occupied_margin = 1e-3f;  // of a tile: rounding puts places that far beside it
@@ -399,4 +399,4 @@ NodePlace sample_node(const World& world, const BakeCharts& charts, const BakeFi
   return place;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

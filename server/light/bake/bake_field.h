@@ -7,7 +7,7 @@
 
 #include "light/bake/charts.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // A triangle's part of what a node stands for.
 struct NodeSupport {
@@ -89,4 +89,4 @@ NodePlace sample_node(const World& world, const BakeCharts& charts, const BakeFi
                       const TilePlace& at, uint32_t tile, uint32_t node_of_tile, float choice,
                       vec2 u);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr uint64_t format = 0x334b414257535701;  // changes with what is written, and with charts
@@ -134,4 +134,4 @@ bool merge_bake(const Bake& part, Bake& bake) {
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "base/keyed_file.h"
 #include "light/bake/bake.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Changes with everything that light depends on: what stands still, its materials and pictures,
 // lights, lamps and environment. Tens of milliseconds.
@@ -26,4 +26,4 @@ std::string read_bake_source(const std::string& file);
 // none, or one that is there already; nothing has changed.
 bool merge_bake(const Bake& part, Bake& bake);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/sample/light_tables.h"
 #include "light/walk/known_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int most_depth = 12, certain_depth = 4;  // edges; those that roulette never cuts
@@ -160,4 +160,4 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/sample/lights.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct BakeScene {
   const World& world;
@@ -40,4 +40,4 @@ void add_met_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::spa
 void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span<vec3> light,
                   bool& inside);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -5,7 +5,7 @@
 
 #include "light/sample/illumination_map.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Calls visit(node beside) for the up to eight nodes around node `i` of the tile.
 template <class Visit>
@@ -17,4 +17,4 @@ void for_each_beside(const IlluminationTile& tile, uint32_t i, const Visit& visi
       if (row != y || column != x) visit(uint32_t(row * columns + column));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

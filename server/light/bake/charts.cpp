@@ -9,7 +9,7 @@
 #include "light/material/material_use.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float least_facing = 0.766f;  // cosine of 40 degrees, to the chart's normal
@@ -256,4 +256,4 @@ BakeCharts make_charts(const World& world, float tile) {
   return charts;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

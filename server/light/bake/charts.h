@@ -10,7 +10,7 @@
 #include "light/sample/illumination_map.h"
 #include "light/transport_plan.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Of a chart: what bakes it.
 struct ChartSurface {
@@ -48,4 +48,4 @@ BakeCharts make_charts(const World& world, float tile);
 // The sum of the areas of all triangles that have a chart, square metres.
 double charted_area(const World& world);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

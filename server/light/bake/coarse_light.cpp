@@ -7,7 +7,7 @@
 #include "light/bake/bake.h"
 #include "light/bake/finish_bake.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 static constexpr float least_bounce = 0.002f;  // of the mean light: a bounce that adds less ends it
 
@@ -34,4 +34,4 @@ BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
   return scene;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 
 #include "light/bake/bake_scene.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct CoarseLightSettings {
   size_t nodes = 40000;                        // at most, about
@@ -22,4 +22,4 @@ struct CoarseLightSettings {
 BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
                           const CoarseLightSettings& settings = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::light

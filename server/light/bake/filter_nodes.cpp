@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "light/bake/beside.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float most_passed = 1.0f / 9;  // to each neighbour: all nine nodes become equal
@@ -136,4 +136,4 @@ void filter_nodes(const BakeField& field, const NodeFilter& filter, std::span<co
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

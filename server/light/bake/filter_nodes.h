@@ -11,7 +11,7 @@
 
 #include "light/bake/bake_field.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // How much light passes between nodes side by side, the same for all layers.
 struct NodeFilter {
@@ -26,4 +26,4 @@ NodeFilter make_node_filter(const BakeField& field, std::span<const uint8_t> lea
 void filter_nodes(const BakeField& field, const NodeFilter& filter, std::span<const uint8_t> known,
                   std::vector<vec3>& light);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/bake/beside.h"
 #include "light/bake/unseen.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int seam_sweeps = 3, border_rounds = 2;
@@ -311,4 +311,4 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
   return finish(bake, direct, gather, true);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/bake/bake.h"
 #include "light/bake/filter_nodes.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // What is known so far: holes are filled from their neighbours, and neighbouring tiles and charts
 // made to agree where they meet. Null before the first pass after the refinement is done. Tenths of
@@ -52,4 +52,4 @@ std::vector<vec3> unpack_normals(const BakeCharts& charts, std::span<const Illum
 // IlluminationMap::normals of those.
 std::shared_ptr<const std::vector<uint32_t>> pack_normals(std::span<const vec3> normals);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

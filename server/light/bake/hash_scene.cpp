@@ -4,7 +4,7 @@
 #include "base/rng.h"
 #include "light/bake/bake_file.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 struct Hash {
@@ -75,4 +75,4 @@ uint64_t hash_scene(const Scene& scene) {
   return hash.value;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

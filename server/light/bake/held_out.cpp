@@ -9,7 +9,7 @@
 #include "light/bake/lit_place.h"
 #include "light/walk/known_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float most_rise = 0.577f;  // tangent of 30 degrees: pictures of eyes that look level
@@ -67,7 +67,7 @@ void look_at(const World& world, const BakeCharts& charts, size_t triangle, vec2
 
 float sample_place(const BakeScene& scene, const HeldOutPlace& place, Sampler& sampler,
                    std::vector<vec3>& gathered) {
-  const LitPlace lit = light_seen_place(scene, place.ray, place.hit);
+  const BakePlace lit = light_seen_place(scene, place.ray, place.hit);
   const Transport all{scene.world, *scene.lights.tables};
   sampler.seek(Dimensions::first_surface);
   const DirectLight direct = sample_direct_light(all, Walk{}, lit.surface, lit.bsdf, true, sampler);
@@ -156,4 +156,4 @@ float held_out_error(const HeldOut& held, const IlluminationMap& map) {
   return float(std::sqrt(std::max(mean, 0.0) + deviation) / (light / count));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

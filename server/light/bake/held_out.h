@@ -11,7 +11,7 @@
 #include "light/bake/bake_scene.h"
 #include "light/bake/charts.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct HeldOutPlace {
   Ray ray;  // towards it, from its lit side
@@ -40,4 +40,4 @@ void sample_held_out(const BakeScene& scene, int samples, HeldOut& held);
 // added, so that few samples do not flatter. 1 where there are no samples; 0 without light.
 float held_out_error(const HeldOut& held, const IlluminationMap& map);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

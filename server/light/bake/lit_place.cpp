@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/bake/lit_place.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float least_facing = 0.05f;  // cosine between a node's normal and a face of it
 constexpr float least_passing = 0.05f;
 constexpr float most_brightness = 25;  // of a gathered sample, times the mean light
 
-LitPlace light_surface(const BakeScene& scene, const Ray& ray, const Hit& hit,
+BakePlace light_surface(const BakeScene& scene, const Ray& ray, const Hit& hit,
                        const Surface& surface) {
-  LitPlace lit;
+  BakePlace lit;
   lit.surface = surface;
   const Material& material = scene.world.material_of(hit.instance);
   lit.bsdf = make_bsdf_in(scene.parts.front(), Media{}, lit.surface, material, ray.direction);
@@ -22,18 +22,18 @@ LitPlace light_surface(const BakeScene& scene, const Ray& ray, const Hit& hit,
 
 }  // namespace
 
-LitPlace light_seen_place(const BakeScene& scene, const Ray& ray, const Hit& hit) {
+BakePlace light_seen_place(const BakeScene& scene, const Ray& ray, const Hit& hit) {
   return light_surface(scene, ray, hit, eval_surface(scene.world, ray, hit));
 }
 
-LitPlace light_node_place(const BakeScene& scene, const Ray& ray, const Hit& hit, vec3 normal) {
+BakePlace light_node_place(const BakeScene& scene, const Ray& ray, const Hit& hit, vec3 normal) {
   Surface surface = eval_surface(scene.world, ray, hit);
   const bool faces = dot(normal, surface.geometric_normal) > least_facing;
   surface.normal = faces ? normal : eval_mesh_normal(scene.world, ray, hit);
   return light_surface(scene, ray, hit, surface);
 }
 
-bool leave(const LitPlace& lit, Sampler& sampler, Walk& walk) {
+bool leave(const BakePlace& lit, Sampler& sampler, Walk& walk) {
   sampler.seek(Dimensions::first_surface + Dimensions::scatter);
   BsdfSample scattered = sample_bsdf(lit.bsdf, Lobes::diffuse, sampler);
   if (!advance(walk, lit.surface, scattered)) return false;
@@ -50,4 +50,4 @@ void cut_off(const BakeScene& scene, std::span<vec3> light) {
   for (vec3& l : light) l *= most / luminance(sum);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -13,7 +13,7 @@
 #include "light/bake/bake_field.h"
 #include "light/bake/finish_bake.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr uint64_t format = 0x33504d4c57535701;  // changes with what is written, and with charts
@@ -330,4 +330,4 @@ LoadedMap load_map(const World& world, const std::string& file, uint64_t key) {
   return loaded;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -14,7 +14,7 @@
 #include "light/sample/illumination_map.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // `key`: hash_scene() (light/bake/bake_file.h) of the scene that `world` is of. False: the file
 // cannot be written.
@@ -39,4 +39,4 @@ struct LoadedMap {
 inline constexpr size_t most_map_nodes = size_t(1) << 23;
 LoadedMap load_map(const World& world, const std::string& file, uint64_t key);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

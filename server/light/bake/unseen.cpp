@@ -9,7 +9,7 @@
 #include "light/random/sampler.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float another_light = 1.6f;  // times as bright, beyond a floor
@@ -104,4 +104,4 @@ std::vector<uint8_t> find_leaks(const World& world, const BakeCharts& charts,
   return leaks;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 
 #include "light/bake/bake_field.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // What is known of each node; 0: nobody asked yet.
 enum NodeSight : uint8_t { sight_unknown, sight_seen, sight_unseen };
@@ -21,4 +21,4 @@ std::vector<uint8_t> find_leaks(const World& world, const BakeCharts& charts,
                                 std::span<const TilePlace> places, std::span<const vec3> eyes,
                                 const BakeField& field, std::vector<uint8_t>& sight);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/dynamic/light_taps.h"
 #include "light/visible/describe_run.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 uint8_t code_of(float reflectance) {
@@ -123,4 +123,4 @@ void reflect_light(const BackdropSurfaces& backdrop, const LightPlanes& light, i
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/dynamic/direct_light.h"
 #include "light/visible/surface_buffer.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct BackdropSurfaces {
   View view;                         // of the picture
@@ -28,4 +28,4 @@ void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
 void reflect_light(const BackdropSurfaces& backdrop, const LightPlanes& light, int x, int y,
                    int count, RunKnown& to);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -13,7 +13,7 @@
 #include "light/visible/gloss.h"
 #include "light/visible/pixel_grid.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int wide = lane_count, high = RayPacket::lanes / lane_count;  // pixels of a packet
@@ -269,4 +269,4 @@ void add_direct_light(const World& world, const Lights& lights, std::span<const 
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/sample/lights.h"
 #include "light/visible/surface_buffer.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Of each pixel of a SurfaceBuffer the radiance of a white diffuse surface: irradiance over pi; and
 // that of its highlights, which are empty where nothing has any.
@@ -29,4 +29,4 @@ inline constexpr float least_distance = 0.05f, least_alpha = 0.04f;
 void add_direct_light(const World& world, const Lights& lights, std::span<const DynamicLight> from,
                       const SurfaceBuffer& surfaces, LightPlanes& to);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

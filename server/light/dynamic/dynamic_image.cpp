@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int probe_count = 64;
@@ -136,4 +136,4 @@ void read_dynamic_light(const DynamicImage& image, const View& view, const Visib
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -11,7 +11,7 @@
 #include "light/transport_settings.h"
 #include "light/visible/surface_buffer.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // What is scattered once: virtual lights, and what they do to a picture.
 struct DynamicBounce {
@@ -62,4 +62,4 @@ struct RunDynamic {
 void read_dynamic_light(const DynamicImage& image, const View& view, const VisibleRun& run,
                         const RunSurface& surface, RunDynamic& to);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 
 #include "world/emitter.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct DynamicLight {
   PunctualLight light;  // as it is at the moment, relative to Scene::origin
@@ -19,4 +19,4 @@ struct DynamicLight {
 // Those that a visitor sees by, black ones left out.
 using DynamicLights = std::vector<DynamicLight>;
 
-}  // namespace wellspring
+}  // namespace wellspring::light

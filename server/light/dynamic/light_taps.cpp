@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/dynamic/light_taps.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float plane_share = 0.02f;   // of the depth: farther off the plane is another surface
@@ -44,4 +44,4 @@ TapWeights weigh_taps(const SurfaceBuffer& light, const PixelGrid& grid, const T
   return weights;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/visible/pixel_grid.h"
 #include "light/visible/surface_buffer.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Pictures of more pixels get light of half their resolution: those that stay, and those that are
 // soon followed by the next.
@@ -60,4 +60,4 @@ struct TapWeights {
 TapWeights weigh_taps(const SurfaceBuffer& light, const PixelGrid& grid, const TapPair& x,
                       const TapPair& y, const SeenPoint& seen);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

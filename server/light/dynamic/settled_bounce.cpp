@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int settles_after = 12;  // pictures
@@ -100,4 +100,4 @@ void add_settled(const SettledBounce& settled, LightPlanes& light) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 
 #include "light/dynamic/dynamic_image.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct SettledBounce {
   struct Unchanged {
@@ -38,4 +38,4 @@ void add_pass(const World& world, const Lights& lights, const SurfaceBuffer& sur
 // Adds the mean.
 void add_settled(const SettledBounce& settled, LightPlanes& light);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -10,7 +10,7 @@
 #include "light/sample/emission.h"
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // A ray from a source towards the casters, its flux divided by the chance of choosing it.
@@ -246,4 +246,4 @@ float shrunk_radius(float first, uint32_t index) {
                                        std::lgamma(i + 2))));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

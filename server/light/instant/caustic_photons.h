@@ -8,7 +8,7 @@
 #include "light/instant/point_light_shading.h"
 #include "light/sample/light_tables.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // The photons `[first, first + count)` of the sequence of `seed`; each stands for `share` of the
 // light.
@@ -25,4 +25,4 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
 // Zwicker 2011, equation 15 with alpha 2/3).
 float shrunk_radius(float first, uint32_t index);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

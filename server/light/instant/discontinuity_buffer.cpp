@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "base/raw_vector.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float color_step = 0.1f;  // of albedo, between pixels
@@ -286,4 +286,4 @@ void filter_windows(const View& view, std::span<const DiscontinuitySettings> win
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -11,7 +11,7 @@
 #include "light/sample.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct DiscontinuitySettings {
   int columns = 3, rows = 3;  // of the window; odd
@@ -37,4 +37,4 @@ bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& sett
 void filter_windows(const View& view, std::span<const DiscontinuitySettings> windows,
                     std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

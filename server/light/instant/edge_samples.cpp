@@ -11,7 +11,7 @@
 #include "light/walk/first_surface.h"
 #include "light/walk/lambert_hits.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // The mean over a pixel's samples, in parts as Sample has them.
@@ -162,4 +162,4 @@ void refine_edges(const World& world, const Lights& lights, const TransportSetti
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

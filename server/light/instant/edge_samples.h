@@ -13,7 +13,7 @@
 #include "light/transport_settings.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // samples[y * width + x], filtered, become means over `rays` more samples a pixel at `edges`,
 // filter_windows()'s. `lights.pass` is the pass they were traced in.
@@ -22,4 +22,4 @@ void refine_edges(const World& world, const Lights& lights, const TransportSetti
                   uint64_t seed, uint32_t index, std::span<const uint8_t> edges,
                   std::span<Sample> samples);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

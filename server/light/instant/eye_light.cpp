@@ -9,7 +9,7 @@
 #include "light/sample/medium.h"
 #include "light/walk/part_colors.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 void part_seen_colors(const Transport& transport, const Walk& walk, const Surface& surface,
                       Sampler& sampler, Bsdf& bsdf, std::optional<WavelengthSpread>& spread) {
@@ -198,4 +198,4 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
   return radiance;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

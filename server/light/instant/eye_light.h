@@ -5,7 +5,7 @@
 #include "light/instant/point_light_shading.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct EyeLight {
   const Transport& transport;
@@ -30,4 +30,4 @@ vec3 gather_along(const EyeLight& eye, Walk walk, Sampler& sampler);
 // Adds what point lights leave out: what clipping took, and rough light seen in sharp things.
 void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, PlaceLight& light);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -11,7 +11,7 @@
 #include "light/random/sampler_simd.h"
 #include "world/packet_simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int item_bits = 22, list_bits = 10;
@@ -135,4 +135,4 @@ std::vector<uint32_t> trace_lambert_hits(const Transport& transport, const Insta
   return std::move(seen.others);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

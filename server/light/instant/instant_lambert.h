@@ -8,7 +8,7 @@
 #include "light/instant/instant_pass.h"
 #include "light/sample.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Answers the requests that see something Lambertian, or nothing; returns the numbers of the
 // others. Not for passes with caustics, where more may be seen from a Lambertian place than point
@@ -35,4 +35,4 @@ class GroupOrder {
   std::vector<uint64_t> keys_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/transport_settings.h"
 #include "light/walk/light_walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 enum class PointLightKind : uint8_t {
   lambertian,  // as seen by Lambert: area light, or light scattered by a Lambertian surface
@@ -87,4 +87,4 @@ inline int region_of_pixel(const InstantPass& pass, uint32_t pixel) {
   return (region + 1) * size_t(pass.lists()) < regions.first.size() ? int(region) : -1;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

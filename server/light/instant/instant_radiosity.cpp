@@ -9,7 +9,7 @@
 #include "light/sample/light_tables.h"
 #include "light/sample/transport.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int pixels_a_candidate = 2048;
@@ -55,4 +55,4 @@ void finish_instant(const World& world, const Lights& lights, const View& view,
                mix64(pass.seed ^ 0x6564676573ull), pass.index, edges, samples);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -31,7 +31,7 @@
 #include "light/sample/lights.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // For any view: every walk's lights are kept.
 InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
@@ -46,4 +46,4 @@ void begin_instant(const World& world, const TransportSettings& settings, const 
 void finish_instant(const World& world, const Lights& lights, const View& view,
                     std::span<Sample> samples);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

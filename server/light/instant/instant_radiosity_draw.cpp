@@ -15,7 +15,7 @@
 #include "light/instant/view_probes.h"
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr uint64_t place_stream = 0x706c616365ull, walk_stream = 0x77616c6bull,
@@ -361,4 +361,4 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
   return pass;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/sample/finish_samples.h"
 #include "light/walk/first_surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // One request on its way.
@@ -162,4 +162,4 @@ Sample trace_instant(const World& world, const Lights& lights, const TransportSe
   return sample;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,11 +8,11 @@
 #include "light/sample/lights.h"
 #include "light/transport_settings.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 Sample trace_instant(const World& world, const Lights& lights, const TransportSettings& settings,
                      const Request& request);
 void trace_many_instant(const World& world, const Lights& lights, const TransportSettings& settings,
                         std::span<const Request> requests, std::span<Sample> samples);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

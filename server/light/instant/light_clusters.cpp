@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "light/instant/light_order.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float near_radii = 2;  // a place so many radii away asks each light
@@ -158,4 +158,4 @@ bool share_lights(const LightClusters& clusters, float clip, std::span<const Lit
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

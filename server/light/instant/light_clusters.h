@@ -9,7 +9,7 @@
 
 #include "light/instant/point_lights_simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Of eight clusters what takes the place of their lights, as LightLanes has it.
 struct ClusterRow {
@@ -48,4 +48,4 @@ inline Lanes shares_in(const LightClusters& clusters, const ClusterShares& share
   return clusters.lights.power[c] * (shares.of_cluster[c] * clusters.inverse_power[c]);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

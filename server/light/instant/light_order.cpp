@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Six ways to face, and what has no such way.
@@ -82,4 +82,4 @@ std::vector<uint32_t> order_lights(const InstantPass& pass) {
   return order;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,11 +8,11 @@
 
 #include "light/instant/instant_pass.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Numbers of all lights of `pass` that are not exact: those from infinity, those without a side and
 // those that face each of six ways apart from each other, and each of these along the curve of
 // Morton (1966) through the box around them.
 std::vector<uint32_t> order_lights(const InstantPass& pass);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

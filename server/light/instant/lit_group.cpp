@@ -8,7 +8,7 @@
 #include "light/sample/light_tables.h"
 #include "world/packet_simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int halves = GroupLane::halves;
@@ -134,4 +134,4 @@ void see_light(const LightTables& tables, const LitGroup& group, const PointLigh
   radiance *= tables.punctual[light.index].intensity;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

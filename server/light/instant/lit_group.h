@@ -5,7 +5,7 @@
 #include "base/simd3.h"
 #include "light/instant/instant_pass.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // One number of each lane.
 struct alignas(64) GroupLane {
@@ -54,4 +54,4 @@ struct SeenLight {
 void see_light(const LightTables& tables, const LitGroup& group, const PointLight& light,
                float clip2, SeenLight& seen, vec3& radiance);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

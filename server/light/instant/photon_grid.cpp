@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr uint32_t nowhere = 0xffffffffu;
@@ -69,4 +69,4 @@ void find_photon_cells(const PhotonGrid& grid, vec3 place, PhotonCells& cells) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -11,7 +11,7 @@
 #include "base/simd.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct Photon {
   vec3 position{0};
@@ -98,4 +98,4 @@ void for_each_photon(const PhotonGrid& grid, vec3 place, PhotonCells& cells, con
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

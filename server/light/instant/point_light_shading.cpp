@@ -8,7 +8,7 @@
 #include "light/sample/emission.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int lanes = RayPacket::lanes;
@@ -184,4 +184,4 @@ void shade_lambert_by_point_lights(const Transport& transport, const InstantPass
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/instant/lit_group.h"
 #include "light/sample/medium.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // A place to be lit, towards the viewer its bsdf was made for.
 struct LitPlace {
@@ -52,4 +52,4 @@ void shade_lambert_by_point_lights(const Transport& transport, const InstantPass
                                    const SetShare& choice, int max_depth, const LitGroup& group,
                                    LambertLight& sum);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "light/sample/light_tables.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Share of the choice that asks for no effect: gloss, and what the estimate leaves out.
@@ -130,4 +130,4 @@ int choose_place_lights(const InstantPass& pass, int set, vec3 place, const Bsdf
   return count;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

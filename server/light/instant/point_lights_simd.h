@@ -8,7 +8,7 @@
 #include "base/simd.h"
 #include "light/instant/instant_pass.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Eight lights a group, each set's groups for themselves; the last ones of a set are filled up with
 // dark lights of number none.
@@ -72,4 +72,4 @@ inline float most_of_clip(float clip) { return 1 / std::max(clip * clip, 1e-12f)
 int choose_place_lights(const InstantPass& pass, int set, vec3 place, const Bsdf& bsdf, int asked,
                         float u, std::span<RegionLight> chosen);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

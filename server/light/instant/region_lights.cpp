@@ -9,7 +9,7 @@
 #include "light/walk/first_surface.h"
 #include "light/instant/light_clusters.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr uint32_t region_probes = 16;
@@ -149,4 +149,4 @@ void choose_region_lights(const Transport& transport, const View& view, int max_
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

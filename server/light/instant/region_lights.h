@@ -12,11 +12,11 @@
 #include "light/instant/instant_pass.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Fills pass.regions from its lights: about `asked` for each list of a region besides the exact
 // ones.
 void choose_region_lights(const Transport& transport, const View& view, int max_depth, int asked,
                           uint64_t seed, uint32_t index, InstantPass& pass);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/walk/first_surface.h"
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int most_mirrors = 4;
@@ -146,4 +146,4 @@ std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewPro
   return chosen;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

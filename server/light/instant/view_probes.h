@@ -9,7 +9,7 @@
 #include "light/sample/medium.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct ViewProbes {
   std::vector<Surface> surfaces;
@@ -39,4 +39,4 @@ std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewPro
                                        int max_depth, int wanted, int sets, float choose_u,
                                        float deal_u);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

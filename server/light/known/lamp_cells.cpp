@@ -9,7 +9,7 @@
 #include "light/random/warp.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float wanted_cells = 4000;
@@ -89,4 +89,4 @@ uint32_t find_lamp_cell(const LampCells& cells, vec3 place, vec3 normal) {
   return cells.keys[slot] != 0 ? cells.number_of[slot] : no_lamp_cell;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 
 #include "light/sample/illumination_map.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct LampCells {
   float cell = 1;  // metres a side
@@ -27,4 +27,4 @@ LampCells make_lamp_cells(const World& world, const IlluminationMap& map);
 // The number of the cell of a surface there, or no_lamp_cell.
 uint32_t find_lamp_cell(const LampCells& cells, vec3 place, vec3 normal);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/sample/light_tables.h"
 #include "light/sample/shining.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float noticed = 0.1f;  // change of light, of the brighter
@@ -164,4 +164,4 @@ bool LightChange::changes(vec3 place, vec3 normal, vec3& kept, vec3& added) cons
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

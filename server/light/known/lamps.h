@@ -9,7 +9,7 @@
 #include "light/known/lamp_cells.h"
 #include "light/sample/lights.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // The lights of `world` as its lamps are now. `all`: of the same world, made and prepared for all
 // techniques in use while all lamps were full. A technique of passes has to begin one before the
@@ -52,4 +52,4 @@ class LightChange {
   std::vector<Known> cells_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

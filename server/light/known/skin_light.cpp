@@ -11,7 +11,7 @@
 #include "light/walk/first_surface.h"
 #include "light/sample/lamps_seen.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float window = 8;              // samples, before they count as older
@@ -377,4 +377,4 @@ int update_skin(const World& world, const Lights& lights, const SkinUpdate& upda
   return int(asked.size());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

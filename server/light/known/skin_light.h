@@ -32,7 +32,7 @@
 #include "light/transport_settings.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Where light is kept: a vertex of a moving mesh, and which side of it.
 struct SkinPlace {
@@ -145,4 +145,4 @@ std::vector<uint8_t> find_visible(const World& world, const SkinLight& skin);
 
 SkinTriangle find_skin(const SkinLight& skin, uint32_t instance, uvec3 vertices, bool back);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -11,7 +11,7 @@
 #include "light/known/skin_light.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float same_normal = 0.8f;    // cosine from which vertices at one position share light
@@ -290,4 +290,4 @@ size_t memory_bytes(const SkinLight& skin) {
   return bytes;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/known/skin_light.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float nearest_seen = 1e-3f;  // metres: what is nearer may be anywhere
@@ -89,4 +89,4 @@ SkinSight see_skin(const World& world, const SkinLight& skin, const View& view, 
   return sight;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

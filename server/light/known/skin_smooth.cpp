@@ -8,7 +8,7 @@
 #include "light/known/skin_light.h"
 #include "light/material/light_slope.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float least_noise = 0.02f, most_noise = 4;  // relative variance of a sample
@@ -283,4 +283,4 @@ void relight_skin(const World& world, const SkinChange& change, SkinLight& skin)
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 
 #include "light/material/microfacet.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int index_steps = 512;  // over (n - 1) / (n + 1) in [0, 1]; the last is a mirror
@@ -153,4 +153,4 @@ const DielectricAlbedo& dielectric_albedo(float ior, bool glass) {
   return *entry;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

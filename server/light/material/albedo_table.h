@@ -14,7 +14,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Lobes smoother than any pixel could tell count as perfect.
 inline constexpr float smooth_alpha = 1e-3f;
@@ -86,4 +86,4 @@ struct FacetAlbedo {
 };
 FacetAlbedo sum_albedo(vec3 view, vec2 alpha, float eta, bool glass, int points);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

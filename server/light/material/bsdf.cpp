@@ -10,7 +10,7 @@
 #include "light/material/microfacet.h"
 #include "light/material/wavelengths.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // KHR_materials_anisotropy: rougher along the tangent by the square of its strength.
@@ -207,4 +207,4 @@ vec3 pane_transmittance(const Surface& surface, const Material& material, vec3 d
   return facet_color(b, glm::clamp(dot(v, normal), 1e-4f, 1.0f)).transmit;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

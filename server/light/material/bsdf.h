@@ -19,7 +19,7 @@
 #include "light/random/sampler.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // `direction`: of the ray that found the surface. `albedo`: dielectric_albedo(material.ior), with
 // glass where the material transmits. `index`: of refraction, instead of the material's; 0: none.
@@ -47,4 +47,4 @@ BsdfSample eval_mirror(const Bsdf& bsdf);
 bool is_pane(const Surface& surface, const Material& material);
 vec3 pane_transmittance(const Surface& surface, const Material& material, vec3 direction);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

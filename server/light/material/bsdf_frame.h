@@ -6,7 +6,7 @@
 #include "light/material/bsdf_types.h"
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 inline vec3 to_local(const Bsdf& b, vec3 w) {
   return {dot(w, b.tangent), dot(w, b.bitangent), dot(w, b.normal)};
@@ -51,4 +51,4 @@ inline bool make_frame_along(vec3 n, vec3 along, vec3& tangent, vec3& bitangent)
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

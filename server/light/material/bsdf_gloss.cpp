@@ -7,7 +7,7 @@
 #include "light/material/bsdf_frame.h"
 #include "light/material/microfacet.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int brushed_points = 377;  // facets summed for each hit of a brushed surface
@@ -274,4 +274,4 @@ BsdfSample sample_smooth_gloss(const Bsdf& b, float u) {
   return s;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

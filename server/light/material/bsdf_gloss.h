@@ -6,7 +6,7 @@
 #include "light/material/bsdf_types.h"
 #include "light/random/sampler.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Reflected and transmitted colour at a facet seen under this cosine.
 struct FacetColor {
@@ -45,4 +45,4 @@ vec3 sample_gloss(const Bsdf& bsdf, Sampler& sampler);
 // One of the perfect lobes, world space; `u` in [0, 1) chooses.
 BsdfSample sample_smooth_gloss(const Bsdf& bsdf, float u);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

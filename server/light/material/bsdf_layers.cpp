@@ -8,7 +8,7 @@
 #include "light/material/bsdf_gloss.h"
 #include "light/material/microfacet.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float clearcoat_index = 1.5f;
@@ -183,4 +183,4 @@ vec3 sample_sheen(const Bsdf& b, Sampler& sampler) {
   return b.tangent * l.x + b.bitangent * l.y + b.normal * l.z;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

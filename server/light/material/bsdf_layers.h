@@ -13,7 +13,7 @@
 #include "light/material/bsdf_types.h"
 #include "light/random/sampler.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Sets clearcoat, sheen and `beneath`; the base must be done.
 void set_layers(Bsdf& bsdf, const Surface& surface, vec3 view);
@@ -37,4 +37,4 @@ vec3 sample_sheen(const Bsdf& bsdf, Sampler& sampler);
 // Directional albedo of white sheen; alpha is perceptual roughness squared.
 float sheen_albedo(float cosine, float alpha);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -4,7 +4,7 @@
 #include "light/material/bsdf_gloss.h"
 #include "light/material/microfacet.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float no_row[AlbedoTable::angles] = {};
@@ -121,4 +121,4 @@ BsdfLanesValue eval_bsdf_lanes(const BsdfLanes& b, const Lanes3& direction) {
   return value;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -5,7 +5,7 @@
 #include "base/simd3.h"
 #include "light/material/bsdf.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct BsdfLanes {
   Lanes3 tangent, bitangent, normal, face, view;
@@ -32,4 +32,4 @@ struct BsdfLanesValue {
 };
 BsdfLanesValue eval_bsdf_lanes(const BsdfLanes& lanes, const Lanes3& direction);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "light/material/albedo_table.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Layers on top; the base gets what they leave.
 struct Clearcoat {
@@ -85,4 +85,4 @@ struct BsdfSample {
   bool glass = false;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

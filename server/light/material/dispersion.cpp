@@ -7,7 +7,7 @@
 #include "light/material/bsdf_gloss.h"
 #include "light/material/bsdf_layers.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // The cluster after an event with these values and densities (the hero's not 0). Returns the
@@ -118,4 +118,4 @@ void carry_hero(const WavelengthSpread& spread, BsdfSample& sample, Wavelengths&
   carried.carried = 1;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -10,7 +10,7 @@
 #include "light/material/bsdf.h"
 #include "light/material/wavelengths.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Cauchy's formula by index and Abbe number, as the extension has it; at least 1.
 float index_at(const Material& material, float wavelength);
@@ -32,4 +32,4 @@ void carry_hero(const WavelengthSpread& spread, BsdfSample& sample, Wavelengths&
 // Colour of what comes if the hero alone had brought it, over its colour now.
 vec3 hero_tint(const WavelengthSpread& spread);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

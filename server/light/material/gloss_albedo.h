@@ -5,7 +5,7 @@
 #include "base/simd.h"
 #include "light/material/bsdf_frame.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // What of a dielectric decides it.
 struct GlossFactors {
@@ -29,4 +29,4 @@ inline Lanes gloss_albedo(Lanes f0, Lanes r, Lanes share, Lanes cosine) {
   return lanes_min(lanes_max(albedo, all_lanes(0)), all_lanes(1));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -4,7 +4,7 @@
 #pragma once
 #include "light/material/bsdf_frame.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct LambertLobe {
   vec3 normal, geometric_normal;  // the viewer's side; the shading normal as bsdf_frame.h turns it
@@ -34,4 +34,4 @@ inline BsdfSample sample_lambert(const LambertLobe& lobe, vec2 u) {
   return s;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 #include "light/material/lambert.h"
 #include "world/surface_simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct LambertLobeLanes {
   Lanes3 normal, geometric_normal, reflectance;
@@ -59,4 +59,4 @@ inline Lanes3 sample_cosine_directions(const Lanes3& n, Lanes u, Lanes v) {
          n * lanes_sqrt(lanes_max(1 - u, Lanes{}));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

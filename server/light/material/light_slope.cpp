@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int steps = 64;                         // of the cosine, from 0 to 1
@@ -57,4 +57,4 @@ vec3 slope_of(vec3 direction, vec3 normal) {
   return slope / std::max(cosine, least_cosine);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

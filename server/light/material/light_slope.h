@@ -15,7 +15,7 @@
 #include "base/simd.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Light from `direction` (unit, on the side of `normal`) adds this to the slope, for each unit of
 // the light that it brings there.
@@ -55,4 +55,4 @@ inline float eval_slope(vec3 slope, vec3 normal, vec3 seen) {
   return std::max(1 + dot(slope, seen - normal), 0.0f);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 
 #include "light/material/bsdf.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 TexelRange scan(const Image& image) {
@@ -147,4 +147,4 @@ MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges
   return use;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -10,7 +10,7 @@
 
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Lobes smoother than this perceptual roughness cast light sharply enough to be called a caustic.
 inline constexpr float caustic_roughness = 0.3f;
@@ -61,4 +61,4 @@ class TextureRanges {
 // `mesh`: one that is made of it (its vertex colours multiply the base colour).
 MaterialUse find_material_use(const Material& material, const Mesh& mesh, TextureRanges& ranges);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

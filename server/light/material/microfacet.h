@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Heitz 2014, equation 85, written without the tangent so that it is safe near the pole.
 inline float ggx_distribution(vec3 h, vec2 alpha) {
@@ -61,4 +61,4 @@ inline vec3 fresnel_schlick(vec3 f0, float cosine) {
 }
 inline vec3 fresnel_schlick_average(vec3 f0) { return f0 + (vec3(1) - f0) / 21.0f; }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

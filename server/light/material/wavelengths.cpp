@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float shortest = 390, longest = 730;  // nanometres
@@ -109,4 +109,4 @@ void blend_wavelengths(const WavelengthSpread& spread, const BsdfValue* others, 
   value.specular_pdf = chance / sum;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

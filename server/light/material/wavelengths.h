@@ -9,7 +9,7 @@
 #pragma once
 #include "light/material/bsdf_types.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 inline constexpr int wavelength_count = 4;
 
@@ -63,4 +63,4 @@ vec3 meet_hues(float eye, float light);
 // The hero's value made the cluster's; called by eval_bsdf. `others`: those of spread.others.
 void blend_wavelengths(const WavelengthSpread& spread, const BsdfValue* others, BsdfValue& value);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::light {
 
 AliasTable make_alias_table(std::span<const float> weights) {
   AliasTable table;
@@ -40,4 +40,4 @@ AliasTable make_alias_table(std::span<const float> weights) {
   return table;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

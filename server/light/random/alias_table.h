@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct AliasTable {
   struct Cell {
@@ -35,4 +35,4 @@ inline AliasPick sample_alias(const AliasTable& table, float u) {
   return {cell.other, (rest - cell.keep) / (1 - cell.keep)};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "base/rng.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // `cell` metres a side; the key is never 0.
 inline uint64_t place_key(vec3 position, vec3 normal, float cell) {
@@ -38,4 +38,4 @@ inline uint32_t find_place_slot(std::span<const uint64_t> keys, uint64_t key) {
   return slot;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 inline uint32_t reverse_bits(uint32_t x) {
   x = __builtin_bswap32(x);
@@ -78,4 +78,4 @@ struct Sampler {
   }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -4,7 +4,7 @@
 #include "base/simd.h"
 #include "light/random/sampler.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 inline LaneBits reverse_bits(LaneBits x) {
   x = (x >> 16) | (x << 16);
@@ -75,4 +75,4 @@ struct SamplerLanes {
   }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

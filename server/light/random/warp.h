@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Two unit vectors that complete `n` to a right-handed frame (Duff et al. 2017, JCGT 6(1)).
 inline void make_frame_axes(vec3 n, vec3& tangent, vec3& bitangent) {
@@ -54,4 +54,4 @@ inline float mis_weight(float own, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

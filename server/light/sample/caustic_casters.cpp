@@ -6,7 +6,7 @@
 
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int most_parts = 16;         // of one instance
@@ -127,4 +127,4 @@ vec3 sample_caster(std::span<const CasterSphere> casters, vec3 from, vec2 u) {
                    axis * z);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

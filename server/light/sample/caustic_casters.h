@@ -7,7 +7,7 @@
 
 #include "light/sample/light_tables.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Spheres around the instances whose material the plan calls sharp, large ones in parts. `moving`:
 // those that move, else those that do not.
@@ -18,4 +18,4 @@ std::vector<CasterSphere> find_casters(const World& world, const TransportPlan& 
 float sample_caster_pdf(std::span<const CasterSphere> casters, vec3 from, vec3 direction);
 vec3 sample_caster(std::span<const CasterSphere> casters, vec3 from, vec2 u);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/sample/light_tables.h"
 #include "light/sample/transport.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 vec3 from_frame(vec3 axis, vec3 local) {
@@ -178,4 +178,4 @@ vec3 eval_intensity(const LightTables& tables, size_t punctual, vec3 direction) 
   return light.intensity * (t * t);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

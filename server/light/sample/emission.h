@@ -9,7 +9,7 @@
 #include "light/sample/environment_light.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct LightTables;
 struct Transport;
@@ -46,4 +46,4 @@ float range_window(float distance, float range);
 // Radiant intensity of a punctual light towards a direction (point and spot), without its range.
 vec3 eval_intensity(const LightTables& tables, size_t punctual, vec3 direction);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

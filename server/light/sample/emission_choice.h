@@ -4,7 +4,7 @@
 #include "base/vec.h"
 #include "light/random/alias_table.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Sources are numbered: emitting triangles, then punctual lights, then the environment.
 struct EmissionChoice {
@@ -18,4 +18,4 @@ struct EmissionChoice {
 };
 inline constexpr size_t most_exact_punctual = 4;
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float least_variation = 0.3f;  // standard deviation over mean below which it does not pay
@@ -85,4 +85,4 @@ float sample_emission_picture_pdf(const EmissionPicture& picture, vec2 barycentr
   return picture.cells.cells[size_t(index)].probability * float(picture.n) * float(picture.n);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

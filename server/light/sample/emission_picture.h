@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "light/random/alias_table.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct EmissionPicture {
   int n = 0;
@@ -29,4 +29,4 @@ struct PicturePlace {
 PicturePlace sample_emission_picture(const EmissionPicture& picture, vec2 u);
 float sample_emission_picture_pdf(const EmissionPicture& picture, vec2 barycentric);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

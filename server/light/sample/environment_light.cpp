@@ -6,7 +6,7 @@
 
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int most_columns = 1024, most_rows = 512;
@@ -135,4 +135,4 @@ float sample_environment_pdf(const EnvironmentLight& light, vec3 direction) {
   return sun + (1 - light.sun_share) * light.cells.cells[cell].probability / solid;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

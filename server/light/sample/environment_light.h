@@ -7,7 +7,7 @@
 #include "light/random/sampler.h"
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Borrows the scene's image.
 struct EnvironmentLight {
@@ -38,4 +38,4 @@ EnvironmentSample sample_environment(const EnvironmentLight& light, vec2 u);
 EnvironmentSample sample_environment(const EnvironmentLight& light, Sampler& sampler);
 float sample_environment_pdf(const EnvironmentLight& light, vec3 direction);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace wellspring {
+namespace wellspring::light {
 
 SpotCone make_spot_cone(const PunctualLight& light) {
   float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
@@ -73,4 +73,4 @@ void eval_effects(const FewLights& f, vec3 place, vec3 normal, bool through, con
   effects.distant_sum = lanes_sum(distant_sum);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

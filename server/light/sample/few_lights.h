@@ -7,7 +7,7 @@
 #include "base/simd.h"
 #include "world/emitter.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // A spot light's fall-off: clamp((cosine - outer) * scale), squared.
 struct SpotCone {
@@ -45,4 +45,4 @@ struct LobeHint {
 void eval_effects(const FewLights& lights, vec3 place, vec3 normal, bool through,
                   const LobeHint& lobe, LightEffects& effects);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

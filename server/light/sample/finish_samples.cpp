@@ -6,7 +6,7 @@
 
 #include "base/simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Light of a sample is finite and not negative. Bit by bit: one branch for all.
@@ -44,4 +44,4 @@ void finish_samples(const Lights& lights, const TransportSettings& settings,
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "light/sample/lights.h"
 #include "light/transport_settings.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Makes samples fit for a Frame: light that is NaN, infinite or negative is dropped (black) and
 // counted; settings.clamp is applied.
@@ -19,4 +19,4 @@ inline Sample finish_sample(const Lights& lights, const TransportSettings& setti
   return sample;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 size_t memory_bytes(const IlluminationMap& map) {
   auto bytes = [](const IlluminationNodes& nodes) {
@@ -155,4 +155,4 @@ vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& char
   return eval_illumination(map.nodes, taps_at(map, chart, at));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

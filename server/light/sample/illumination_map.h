@@ -19,7 +19,7 @@
 #include "light/material/light_slope.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 inline constexpr uint32_t no_chart = 0xffffffffu, no_tile = 0xffffffffu;
 
@@ -137,4 +137,4 @@ inline vec3 known_light(const IlluminationMap& map, vec3 light) {
   return light + vec3(map.least_known());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

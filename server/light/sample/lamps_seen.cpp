@@ -9,7 +9,7 @@
 #include "light/sample/sample_light.h"
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int steps = 6;  // surfaces that a walk visits
@@ -150,4 +150,4 @@ const LampsSeen::Shares* find_lamps_seen(const LampsSeen& seen, vec3 position, v
   return seen.keys[slot] != 0 ? &seen.shares[slot] : nullptr;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

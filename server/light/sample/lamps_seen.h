@@ -14,7 +14,7 @@
 
 #include "light/sample/few_lights.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct Transport;
 
@@ -41,4 +41,4 @@ std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
 // Null: nobody has been there. `normal`: the geometric one, on the side that is looked at.
 const LampsSeen::Shares* find_lamps_seen(const LampsSeen& seen, vec3 position, vec3 normal);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

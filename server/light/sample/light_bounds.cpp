@@ -5,7 +5,7 @@
 
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr size_t most_picture_cells = size_t(1) << 20;  // of all emitters together
@@ -83,4 +83,4 @@ void add_emission_picture(const World& world, float texels, EmitterTriangle& emi
   tables.pictures.push_back(std::move(picture));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -3,7 +3,7 @@
 #pragma once
 #include "light/sample/light_tables.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // `power[i]` of emitters[i], both sides counted; those without are never picked.
 LightTree make_emitter_tree(std::span<const EmitterTriangle> emitters, std::span<const float> power,
@@ -17,4 +17,4 @@ void add_punctual_choice(LightTables& tables);
 void add_emission_picture(const World& world, float texels, EmitterTriangle& emitter,
                           LightTables& tables);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -16,7 +16,11 @@
 #include "light/transport_plan.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
+struct Surface;
+}
+
+namespace wellspring::light {
 
 inline constexpr uint32_t no_emitter = 0xffffffffu;
 
@@ -69,6 +73,6 @@ struct LightTables {
 };
 
 // Radiance a hit surface shows towards the ray: its emission, or its base colour where it is unlit.
-vec3 surface_emission(const struct Surface& surface, const Material& material);
+vec3 surface_emission(const Surface& surface, const Material& material);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 using Node = LightTree::Node;
@@ -102,4 +102,4 @@ float pick_light_probability(const LightTree& tree, vec3 place, vec3 normal, uin
   return probability;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -16,7 +16,7 @@
 #include "light/random/alias_table.h"
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // What is known of a light from far away.
 struct LightBounds {
@@ -67,4 +67,4 @@ LightPick pick_light(const LightTree& tree, vec3 place, vec3 normal, float u);
 // The probability with which that place picks light `index`.
 float pick_light_probability(const LightTree& tree, vec3 place, vec3 normal, uint32_t index);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 
 #include "light/sample/light_tree.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int buckets = 12;
@@ -222,4 +222,4 @@ LightTree make_light_tree(std::span<const LightBounds> lights, LightChoice choic
   return tree;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -14,7 +14,7 @@
 #include "light/sample/shining.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Mean emission over a triangle by a fixed pattern of look-ups, more where its texture is finer.
@@ -255,4 +255,4 @@ std::vector<uint8_t> find_lamp_parts(const Scene& scene) {
   return parts;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct IlluminationMap;  // light/sample/illumination_map.h
 struct InstantPass;      // light/instant/instant_pass.h
@@ -52,4 +52,4 @@ std::vector<std::shared_ptr<const LightTables>> make_lamp_tables(const LightTabl
 // Of each of the scene's materials, which of those its own light belongs to.
 std::vector<uint8_t> find_lamp_parts(const Scene& scene);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -4,7 +4,7 @@
 #include "light/material/albedo_table.h"
 #include "light/material/material_use.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct MaterialTraits {
   const DielectricAlbedo* albedo = nullptr;  // null: nothing in use is made of it
@@ -13,4 +13,4 @@ struct MaterialTraits {
   MetalDemodulation metal = MetalDemodulation::none;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

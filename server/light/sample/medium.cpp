@@ -10,7 +10,7 @@
 #include "light/sample/solid_bounds.h"
 #include "light/sample/transport.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 bool is_solid(const Surface& surface, const Material& material) {
@@ -230,4 +230,4 @@ Bsdf make_bsdf_in(const Transport& transport, const Media& media, const Surface&
   return make_bsdf(surface, material, direction, dielectric_albedo(ratio, solid), index, outside);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -13,7 +13,7 @@
 #include "light/material/bsdf_types.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct Transport;
 
@@ -54,4 +54,4 @@ float index_outside(const Transport& transport, const Media& media, const Surfac
 // The boundary is the solid's own: no other displaces it where it lies.
 bool owns_boundary(const Media& media, const Surface& surface);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr size_t most_boxes = 32;
@@ -74,4 +74,4 @@ bool may_cross_pane(const PaneBoxes& boxes, const Ray& ray) {
   return false;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

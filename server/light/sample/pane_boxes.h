@@ -8,7 +8,7 @@
 #include "light/sample/material_traits.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Eight a group, the last filled up with its last one.
 struct PaneBoxes {
@@ -25,4 +25,4 @@ PaneBoxes make_pane_boxes(const World& world, const std::vector<MaterialTraits>&
 // Does the ray meet one of the boxes before its t_max?
 bool may_cross_pane(const PaneBoxes& boxes, const Ray& ray);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -189,4 +189,4 @@ vec3 eval_visibility(const Transport& transport, Ray ray) {
   return panes.more ? step_through_panes(world, ray) : pass_panes(transport, ray, panes);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

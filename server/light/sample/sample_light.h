@@ -7,7 +7,7 @@
 #include "light/sample/light_tables.h"
 #include "light/sample/transport.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct LightSample {
   vec3 direction{0};
@@ -62,4 +62,4 @@ inline constexpr int most_panes = 64;  // straight through so many in a row, the
 inline constexpr int sure_glass = 48, most_glass = 256;
 inline constexpr float glass_survival = 0.95f;
 
-}  // namespace wellspring
+}  // namespace wellspring::light

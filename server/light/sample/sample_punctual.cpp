@@ -6,7 +6,7 @@
 #include "light/sample/lamps_seen.h"
 #include "light/sample/sample_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
                           const SurfacePlace& from) {
@@ -140,4 +140,4 @@ LightSample sample_punctual_light(const Transport& transport, const SurfacePlace
   return draw_of_many(tables, from, normal, through, sampler.next2());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 EmittingSources emitting(const Scene& scene, float others,
@@ -30,4 +30,4 @@ EmittingSources find_emitting_of(const Scene& scene, int lamp) {
                   [&](size_t other) { return int(other) == lamp ? 1.0f : 0.0f; });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -5,7 +5,7 @@
 
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // How brightly it does, times the scene's own light: 0 to 1.
 struct EmittingSources {
@@ -16,4 +16,4 @@ EmittingSources find_emitting(const World& world);  // as its lamps are
 // That lamp alone; -1: all that belongs to no lamp.
 EmittingSources find_emitting_of(const Scene& scene, int lamp);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

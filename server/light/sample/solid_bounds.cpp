@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-namespace wellspring {
+namespace wellspring::light {
 
 Bounds bounds_of(const PlacedMesh& placed) {
   Bounds box;
@@ -30,4 +30,4 @@ SolidBounds find_solid_bounds(const World& world, const TransportPlan& plan) {
   return solids;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "light/transport_plan.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Boxes of the solids that stand still, for places that ask whether they are in one.
 struct SolidBounds {
@@ -18,4 +18,4 @@ struct SolidBounds {
 Bounds bounds_of(const PlacedMesh& placed);  // scene coordinates
 SolidBounds find_solid_bounds(const World& world, const TransportPlan& plan);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What light is carried through: a world, its lights and what is known of both.
 #pragma once
+#include "base/layers.h"
 
-namespace wellspring {
-
+namespace wellspring::world {
 class World;
+}
+
+namespace wellspring::light {
+
 struct IlluminationMap;  // light/sample/illumination_map.h
 struct LampsSeen;        // light/sample/lamps_seen.h
 struct LightTables;      // light/sample/light_tables.h
@@ -18,4 +22,4 @@ struct Transport {
   const IlluminationMap* maps = nullptr;   // by which samples tell the diffuse light they find
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

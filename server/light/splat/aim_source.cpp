@@ -8,7 +8,7 @@
 #include "light/sample/emission.h"
 #include "light/sample/light_tables.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Changes smoothly with the direction but near straight up and down, so that rays of a source that
@@ -195,4 +195,4 @@ void aim_at_cell(const SourceAim& aim, const MapCell& cell, Sampler& sampler, So
   to.flux = sky.sun_radiance * (pi * sky.sun_chord2) * to.spread;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "light/splat/splat_sources.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // A source with what its rays have in common.
 struct SourceAim {
@@ -38,4 +38,4 @@ float window_aspect(const Transport& transport, const SplatSource& source);
 // were this cell alone.
 void aim_at_cell(const SourceAim& aim, const MapCell& cell, Sampler& sampler, SourceRay& to);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

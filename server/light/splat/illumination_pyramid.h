@@ -6,7 +6,7 @@
 #include "base/raw_vector.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Irradiance, W/m^2; `held` is 1, and 0 of a texel without any.
 struct IlluminationTexel {
@@ -27,4 +27,4 @@ struct IlluminationPyramid {
   std::vector<IlluminationLevel> levels;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

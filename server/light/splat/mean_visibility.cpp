@@ -8,7 +8,7 @@
 #include "light/splat/shadow_packet.h"
 #include "light/splat/splat_lights.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Of light `i`; 1 where no probe would have any.
@@ -68,4 +68,4 @@ void dim_hidden_lights(const Transport& transport, std::span<const LitProbe> pro
   fill_up(lights);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

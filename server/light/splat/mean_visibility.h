@@ -9,11 +9,11 @@
 #include "light/sample/transport.h"
 #include "light/splat/virtual_lights.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Dims each light by the share of its light that arrives at `probes`, by at most `rays` rays a
 // light, to probes that would have most of it. Lights that reach none are left out. All cores.
 void dim_hidden_lights(const Transport& transport, std::span<const LitProbe> probes, int rays,
                        VirtualLights& lights);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -66,4 +66,4 @@ void make_min_max_pyramid(const SplatPixels& pixels, int coarsest, MinMaxPyramid
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -11,7 +11,7 @@
 #include "light/splat/splat_pixels.h"
 #include "light/transport_settings.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Least depth, nx, ny, nz of a square of pixels, then greatest, negated; so of its planes. Pixels
 // where nothing is lit have infinite depth and nothing else: `low_high[0]` is infinite where there
@@ -67,4 +67,4 @@ inline bool is_discontinuous(const MinMaxCell& cell, const SplatSettings& settin
          !(-v[4] < std::numeric_limits<float>::infinity());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -13,7 +13,7 @@
 #include "light/sample/medium.h"
 #include "light/sample/sample_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int most_texels = 1 << 20;
@@ -180,4 +180,4 @@ void make_reflective_shadow_map(const Transport& transport, std::span<const Spla
   map.mean_distance = number > 0 ? float(sum / number) : 0;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

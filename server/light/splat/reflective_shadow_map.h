@@ -12,7 +12,7 @@
 #include "light/transport_settings.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct ReflectiveTexel {
   vec3 position{0};
@@ -55,4 +55,4 @@ void make_reflective_shadow_map(const Transport& transport, std::span<const Spla
                                 const SplatSettings& settings, SplatSeed seed,
                                 ReflectiveShadowMap& map);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 #include "light/sample/light_tables.h"
 #include "light/sample/sample_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 namespace {
 constexpr float lift = 3e-4f;                 // off the surface, as a share of its depth
@@ -55,4 +55,4 @@ vec3 ShadowPacket::through_panes(int i) const {
   return eval_visibility(transport_, place, sample);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 #include "light/splat/virtual_lights.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Where rays leave a pixel's surface. Its normal may be a shading normal, and its depth be rounded.
 struct ShadowOrigin {
@@ -45,4 +45,4 @@ class ShadowPacket {
   int count_ = 0;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

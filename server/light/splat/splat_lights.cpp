@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Squared distances that are computed with: below, a light lies on the place, and lights none of
@@ -137,4 +137,4 @@ uint64_t refine_by_convergence(const SplatPixels& pixels, const MinMaxPyramid& p
   return lit;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

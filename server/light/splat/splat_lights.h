@@ -8,7 +8,7 @@
 #include "light/splat/subsplats.h"
 #include "light/splat/virtual_lights.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Irradiance at a place with nothing in between. `each`: null, or room for `lights.padded` numbers,
 // the luminance of what each light adds.
@@ -40,4 +40,4 @@ uint64_t refine_by_convergence(const SplatPixels& pixels, const MinMaxPyramid& p
                                const VirtualLights& lights, const SplatSettings& settings,
                                Subsplats& subsplats, IlluminationPyramid& to);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -5,7 +5,7 @@
 #include "light/visible/pixel_grid.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct SplatPixels {
   View view;
@@ -28,4 +28,4 @@ inline vec3 place_from_eye(const SplatPixels& pixels, const PixelGrid& grid, int
   return (grid.corner + grid.right * float(x) + grid.down * float(y)) * pixels.depth[i];
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

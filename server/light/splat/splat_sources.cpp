@@ -6,7 +6,7 @@
 
 #include "light/sample/light_tables.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 float power_or_none(float power) { return std::isfinite(power) && power > 0 ? power : 0; }
@@ -84,4 +84,4 @@ float eval_source_power(const Transport& transport, const SplatSource& source) {
   return 0;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/sample/transport.h"
 #include "world/emitter.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 enum class SplatSourceKind : uint8_t {
   punctual,  // `light`
@@ -36,4 +36,4 @@ std::vector<SplatSource> make_all_splat_sources(const Transport& transport);
 // is black, not finite or without extent.
 float eval_source_power(const Transport& transport, const SplatSource& source);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/sample/light_tables.h"
 #include "light/visible/see_through.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int probe_count = 64;
@@ -80,4 +80,4 @@ void finish_splat(const World& world, const Lights& lights, const View& view,
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

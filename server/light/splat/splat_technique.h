@@ -12,7 +12,7 @@
 #include "light/splat/splatter.h"
 #include "light/sample/lights.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // What one pass has drawn.
 struct SplatPass {
@@ -27,4 +27,4 @@ void begin_splat(const World& world, const TransportSettings& settings, const Vi
 void finish_splat(const World& world, const Lights& lights, const View& view,
                   std::span<Sample> samples);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "base/rng.h"
 #include "light/splat/shadow_packet.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr uint32_t none = 0xffffffffu;
@@ -310,4 +310,4 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
   return all_rays;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/sample/transport.h"
 #include "light/splat/splat_lights.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Workspace, kept from picture to picture.
 struct SplatShadowRoom {
@@ -39,4 +39,4 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
                                const Subsplats& subsplats, SplatShadowRoom& room,
                                IlluminationPyramid& to);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

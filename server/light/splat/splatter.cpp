@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "light/splat/mean_visibility.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 size_t memory_bytes(const SplatLights& drawn) {
   const ReflectiveShadowMap& map = drawn.map;
@@ -95,4 +95,4 @@ void find_splat_probes(const SplatPixels& pixels, int count, std::vector<LitProb
     }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

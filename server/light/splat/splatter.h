@@ -22,7 +22,7 @@
 #include "light/splat/splat_visibility.h"
 #include "light/splat/upsample.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Of what was drawn for an instant.
 struct SplatLights {
@@ -72,4 +72,4 @@ void splat_picture(const Transport& transport, const SplatLights& drawn, const S
 // About `count` lit places spread over the picture, into `probes`.
 void find_splat_probes(const SplatPixels& pixels, int count, std::vector<LitProbe>& probes);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

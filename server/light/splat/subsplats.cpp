@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Calls visit(subsplat) for those within a square.
@@ -92,4 +92,4 @@ bool find_lit_pixel(const SplatPixels& pixels, const Subsplat& subsplat, int& x,
   return false;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 
 #include "light/splat/min_max_pyramid.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Column and row among the squares of its level.
 struct Subsplat {
@@ -41,4 +41,4 @@ void part_subsplats(const SplatPixels& pixels, Subsplats& subsplats);
 // lit in the middle. False: none is.
 bool find_lit_pixel(const SplatPixels& pixels, const Subsplat& subsplat, int& x, int& y);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

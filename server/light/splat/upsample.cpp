@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int steps[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
@@ -100,4 +100,4 @@ void upsample(const SplatPixels& pixels, const MinMaxPyramid& pyramid,
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

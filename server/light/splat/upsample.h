@@ -9,7 +9,7 @@
 #include "light/splat/illumination_pyramid.h"
 #include "light/splat/min_max_pyramid.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Neighbours of each texel that it may be mixed with: workspace.
 struct UpsampleRoom {
@@ -23,4 +23,4 @@ void upsample(const SplatPixels& pixels, const MinMaxPyramid& pyramid,
               const SplatSettings& settings, IlluminationPyramid& illumination, UpsampleRoom& room,
               std::span<vec3> irradiance);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

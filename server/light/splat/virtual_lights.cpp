@@ -9,7 +9,7 @@
 #include "light/random/sampler.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Share of the choice that does not ask for the effect: what the probes happen not to see.
@@ -160,4 +160,4 @@ void choose_virtual_lights(const ReflectiveShadowMap& map, const SplatSettings& 
   fill_up(lights);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -12,7 +12,7 @@
 #include "base/raw_vector.h"
 #include "light/splat/reflective_shadow_map.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Side by side as vector units want them, filled up with lights of no intensity to a multiple of
 // eight.
@@ -43,4 +43,4 @@ struct LitProbe {
 void choose_virtual_lights(const ReflectiveShadowMap& map, const SplatSettings& settings,
                            SplatSeed seed, std::span<const LitProbe> probes, VirtualLights& lights);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -5,7 +5,7 @@
 #include "light/technique/technique_list.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 void trace_many_direct(const World& world, const Lights& lights, const TransportSettings& settings,
                        std::span<const Request> requests, std::span<Sample> samples) {
@@ -23,4 +23,4 @@ Sample trace_direct(const World& world, const Lights& lights, const TransportSet
   return sample;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

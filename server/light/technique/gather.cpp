@@ -10,7 +10,7 @@
 #include "light/technique/technique_list.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // So that what a Lambertian surface's rays meet has an alpha of 1/4, a roughness of 1/2.
@@ -47,4 +47,4 @@ void prepare_gather(const World& world, std::span<const vec3> places, Lights& li
   lights.known = make_bake_scene(still ? *still : world, places).known;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

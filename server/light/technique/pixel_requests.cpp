@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "light/random/sampler_simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // view_ray's directions, a place inside each pixel.
@@ -53,4 +53,4 @@ void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelS
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 #include "light/sample.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Sample `index` of the picture's pixel (x, y).
 struct PixelSample {
@@ -16,4 +16,4 @@ struct PixelSample {
 void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelSample> which,
                          std::span<Request> requests);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

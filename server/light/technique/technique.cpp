@@ -15,7 +15,7 @@
 #include "light/technique/pixel_requests.h"
 #include "light/technique/technique_list.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr Technique list[] = {
@@ -205,4 +205,4 @@ Frame render_still(const Technique& technique, const World& world, const Lights&
   return frame;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

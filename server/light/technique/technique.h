@@ -13,7 +13,7 @@
 #include "light/transport_settings.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct Technique {
   const char* name;
@@ -68,4 +68,4 @@ Sample replay_sample(const Technique& technique, const World& world, Lights ligh
 Frame render_still(const Technique& technique, const World& world, const Lights& lights,
                    const View& view, const StillSettings& settings);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "light/sample/lights.h"
 #include "light/transport_settings.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 Sample trace_path(const World& world, const Lights& lights, const TransportSettings& settings,
                   const Request& request);
@@ -23,4 +23,4 @@ Sample trace_gather(const World& world, const Lights& lights, const TransportSet
 void trace_many_gather(const World& world, const Lights& lights, const TransportSettings& settings,
                        std::span<const Request> requests, std::span<Sample> samples);
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights);
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "light/visible/visibility.h"
 #include "world/raster/raster.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct RunPixels {
   RunSurface surface;
@@ -40,4 +40,4 @@ inline RunGlow describe_run(const VisibleRun& run, RunPixels& p) {
   return emitting;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

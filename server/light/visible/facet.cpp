@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::light {
 
 FacetPicture place_picture(const World& world, const Facet& facet, const TextureRef& reference) {
   const Scene& scene = world.scene();
@@ -73,4 +73,4 @@ Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 
   return f;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

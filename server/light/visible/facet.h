@@ -3,7 +3,7 @@
 #pragma once
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Where one of the material's pictures lies on a triangle.
 struct FacetPicture {
@@ -61,4 +61,4 @@ class FacetCache {
   Facet facets_[1 << bits];
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -8,7 +8,7 @@
 #include "base/simd.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Highlights of rougher surfaces, of no metal, are not told from their diffuse light.
 inline constexpr float least_rough = 0.6f, least_metal = 0.05f;
@@ -49,4 +49,4 @@ inline GlossLanes unpack_gloss(const uint32_t* codes, const uint8_t* metallic) {
   return gloss;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -10,7 +10,7 @@
 #include "light/sample/medium.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int most_specular = 8;     // mirrors on the way: they may face each other
@@ -137,4 +137,4 @@ GuidePlanes make_guides(const World& world, const Lights& lights, const View& vi
   return planes;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -12,7 +12,7 @@
 #include "light/sample/lights.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Surfaces whose facets are sharper than this (alpha of GGX) show a picture of others.
 inline constexpr float sharp_alpha = 0.1f;
@@ -32,4 +32,4 @@ struct GuidePlanes {
 // Means over `rays` rays a pixel, spread evenly over it. All cores.
 GuidePlanes make_guides(const World& world, const Lights& lights, const View& view, int rays = 16);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -3,7 +3,7 @@
 #pragma once
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // From the eye: the sampling place of pixel (x, y), `offset` into it, lies at
 // view.position + depth * at(x, y).
@@ -19,4 +19,4 @@ struct PixelGrid {
   vec3 at(float x, float y) const { return corner + right * x + down * y; }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/material/gloss_albedo.h"
 #include "light/visible/visibility_impl.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // The nodes around a place differ by at most that share of its light, or their light has an edge
@@ -260,4 +260,4 @@ uint64_t VisibleRun::known(const IlluminationMap& map, const RunSurface& surface
   return mapped.pixels;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -4,7 +4,7 @@
 #include "light/material/gloss_albedo.h"
 #include "light/visible/visibility_impl.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // The slope of radiance over that of irradiance follows from the bands of a clamped cosine
 // (Ramamoorthi and Hanrahan 2001).
@@ -131,4 +131,4 @@ uint64_t VisibleRun::light(const SkinLight& skin, const Lights& lights, const Ru
   return moving;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -9,7 +9,7 @@
 #include "light/visible/visibility_impl.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr int most_rays = 8;                // of a pixel
@@ -157,7 +157,7 @@ void VisibleRun::Impl::shine(const Lights& lights, RunSkin& to) const {
   // In parts that are not shared out to threads: a thread that waited could begin another run.
   for (size_t first = 0; first < rays.size(); first += most_together) {
     const size_t count = std::min(most_together, rays.size() - first);
-    wellspring::see(visibility.world, lights, std::span(rays).subspan(first, count),
+    wellspring::light::see(visibility.world, lights, std::span(rays).subspan(first, count),
                     std::span(seen).subspan(first, count));
   }
   for (size_t k = 0; k < rays.size(); k++) {
@@ -169,4 +169,4 @@ void VisibleRun::Impl::shine(const Lights& lights, RunSkin& to) const {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

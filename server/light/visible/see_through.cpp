@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "light/walk/first_surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr size_t packet = 64;  // rays intersected before their surfaces are looked at
@@ -90,4 +90,4 @@ void see(const World& world, const Lights& lights, std::span<const Ray> rays,
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 
 #include "light/sample/lights.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // As in the Sample a technique would give for the same ray, panes looked through.
 struct PrimaryHit {
@@ -22,4 +22,4 @@ struct PrimaryHit {
 void see(const World& world, const Lights& lights, std::span<const Ray> rays,
          std::span<PrimaryHit> seen);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "light/material/gloss_albedo.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 template <class T>
@@ -101,4 +101,4 @@ Gloss see_gloss(const Pictures& pictures, const Facet& f, vec2 barycentric, floa
   return gloss;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

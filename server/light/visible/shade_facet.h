@@ -12,7 +12,7 @@
 #include "light/walk/first_surface.h"
 #include "world/texture_pyramid.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Pictures with their smaller selves, of all that a scene's reflectance is made of.
 struct Pictures {
@@ -39,4 +39,4 @@ PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& 
 
 Gloss see_gloss(const Pictures& pictures, const Facet& f, vec2 barycentric, float pixel);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "light/visible/describe_run.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 size_t memory_bytes(const SurfaceBuffer& surfaces) {
   return bytes_of(surfaces.depth, surfaces.nx, surfaces.ny, surfaces.nz, surfaces.object,
@@ -43,4 +43,4 @@ void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuf
   visibility.see(view, vec2(0.5f), take, shows);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -5,7 +5,7 @@
 #include "base/raw_vector.h"
 #include "light/visible/visibility.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Row after row; arrays end with `surface_buffer_pad` more items that may be read.
 inline constexpr int surface_buffer_pad = 16;
@@ -26,4 +26,4 @@ size_t memory_bytes(const SurfaceBuffer& surfaces);
 void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuffer& surfaces,
                   RasterShows shows = RasterShows::all);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

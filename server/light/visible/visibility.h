@@ -10,7 +10,7 @@
 #include "light/visible/see_through.h"
 #include "world/raster/raster.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 class VisibilityPass;
 
@@ -113,4 +113,4 @@ class VisibilityPass {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

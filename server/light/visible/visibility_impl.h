@@ -12,7 +12,7 @@
 #include "light/visible/visibility.h"
 #include "light/visible/visible_material.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct VisibilityPass::Impl {
   const World& world;
@@ -135,4 +135,4 @@ struct VisibleRun::Impl {
   void describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -11,7 +11,7 @@
 #include "light/sample/medium.h"
 #include "light/walk/first_surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 VisibilityPass::VisibilityPass(const World& world, const Lights& lights)
     : impl_(std::make_unique<Impl>(world, lights)) {
   const Scene& scene = world.scene();
@@ -220,7 +220,8 @@ PrimaryHit VisibleRun::Impl::see(int i) const {
   } else {
     const Facet& f = facet(i);
     if (visibility.reflectance[size_t(f.placed->mesh->material)] == Reflectance::traced) {
-      wellspring::see(visibility.world, visibility.lights, std::span(&ray, 1), std::span(&seen, 1));
+      wellspring::light::see(visibility.world, visibility.lights, std::span(&ray, 1),
+                             std::span(&seen, 1));
       return seen;
     }
     float pixel = pixel_width(f, distance(i), blurred_angle);
@@ -280,8 +281,8 @@ void VisibilityPass::cast(const View& view, vec2 offset, uint64_t picture,
       uint32_t object[most + 8];
       for (int i = 0; i < run.count; i++)
         rays[i] = view_ray(view, float(x + i) + offset.x, float(y) + offset.y);
-      wellspring::see(impl_->world, impl_->lights, std::span(rays, size_t(run.count)),
-                      std::span(seen, size_t(run.count)));
+      wellspring::light::see(impl_->world, impl_->lights, std::span(rays, size_t(run.count)),
+                             std::span(seen, size_t(run.count)));
       for (int i = 0; i < run.count; i++) {
         object[i] = seen[i].object;
         depth[i] = seen[i].distance * dot(rays[i].direction, view.forward);
@@ -332,4 +333,4 @@ bool VisibilityPass::draw(const View& view, RasterSettings settings, float blur,
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

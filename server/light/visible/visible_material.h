@@ -6,7 +6,7 @@
 #include "light/visible/guides.h"
 #include "light/walk/first_surface.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // How the reflectance of a material is found.
 enum class Reflectance : uint8_t {
@@ -76,4 +76,4 @@ inline bool is_plain(const Material& m, TextureRanges& ranges) {
          m.metallic * range.high.z <= most_plain_metal;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

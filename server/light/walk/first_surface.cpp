@@ -5,7 +5,7 @@
 
 #include "light/material/bsdf_frame.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float soft_alpha = least_soft_roughness * least_soft_roughness;
@@ -141,4 +141,4 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
   return first;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -6,7 +6,7 @@
 #include "light/sample/medium.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct FirstSurface {
   bool scatters = false;  // there is a surface, it is not unlit, and edges are left
@@ -57,4 +57,4 @@ inline vec3 demodulated_albedo(const Surface& surface, MetalDemodulation metal) 
   return demodulated_albedo(surface.base_color, surface.metallic, metal);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

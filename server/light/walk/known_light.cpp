@@ -7,7 +7,7 @@
 #include "light/material/microfacet.h"
 #include "light/sample/light_tables.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float near_radii = 2.5f;  // of the sphere around what moves: it takes a tenth of the sky
@@ -109,4 +109,4 @@ bool may_be_shaded(const Transport& transport, vec3 position) {
   return false;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

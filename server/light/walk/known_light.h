@@ -7,7 +7,7 @@
 #include "light/sample.h"
 #include "light/sample/transport.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct KnownLight {
   bool known = false;
@@ -48,4 +48,4 @@ inline void tell_in_units(const KnownLight& known, vec3 light, Sample& sample) {
   sample.smooth = (light + vec3(known.raised)) / known.unit;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

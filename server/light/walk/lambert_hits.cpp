@@ -9,7 +9,7 @@
 #include "world/packet_simd.h"
 #include "world/surface_simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Eight of them, `first` on.
@@ -72,4 +72,4 @@ LambertHits see_lambert(const Transport& transport, std::span<const Request> req
   return seen;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

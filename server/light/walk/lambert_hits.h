@@ -8,7 +8,7 @@
 #include "light/sample.h"
 #include "light/sample/sample_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct LambertHit {
   uint32_t request = 0;  // number among those asked
@@ -27,4 +27,4 @@ struct LambertHits {
 LambertHits see_lambert(const Transport& transport, std::span<const Request> requests,
                         std::span<Sample> samples);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

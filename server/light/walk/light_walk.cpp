@@ -7,7 +7,7 @@
 #include "light/sample/emission.h"
 #include "light/walk/walk.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Veach 1997, equation 5.19: flux is conserved per geometric area, lobes are written for the
@@ -118,4 +118,4 @@ vec3 eval_scattered(const Arrival& arrival, vec3 direction) {
   return rough * factor;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

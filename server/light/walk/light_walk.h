@@ -10,7 +10,7 @@
 #include "light/sample/sample_light.h"
 #include "light/walk/part_colors.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 inline constexpr float sharp_alpha = caustic_roughness * caustic_roughness;
 // Roughest of what the eye follows as mirrors; may differ, since no path is sorted by it.
@@ -62,4 +62,4 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const std::optional<Wavele
 // Intensity that flux of 1 leaves towards a direction, by the rough lobes.
 vec3 eval_scattered(const Arrival& arrival, vec3 direction);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::light {
 
 bool parts_colors(const Transport& transport, const Media& media, const Surface& surface) {
   if (!transport.tables.plan.uses(TransportPart::dispersion)) return false;
@@ -22,4 +22,4 @@ void part_colors(const Transport& transport, const Media& media, vec3 direction,
   spread_wavelengths(surface, material, direction, albedo, carried, u, bsdf, spread, outside);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

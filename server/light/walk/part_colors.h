@@ -8,7 +8,7 @@
 #include "light/sample/medium.h"
 #include "light/sample/sample_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 // Never true where the plan has no dispersion.
 bool parts_colors(const Transport& transport, const Media& media, const Surface& surface);
@@ -19,4 +19,4 @@ void part_colors(const Transport& transport, const Media& media, vec3 direction,
                  const Surface& surface, const Wavelengths& carried, float u, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -13,7 +13,7 @@
 #include "world/packet_simd.h"
 #include "world/surface_simd.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 struct LambertWalks {
@@ -299,4 +299,4 @@ void trace_samples(const Transport& transport, const WalkRules& rules,
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

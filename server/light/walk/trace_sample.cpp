@@ -5,7 +5,7 @@
 #include "light/walk/first_surface.h"
 #include "light/walk/known_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 // Mirrors, glass and polished metal: what is seen there moves with the view.
@@ -145,4 +145,4 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
   return sample;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

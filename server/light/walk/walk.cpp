@@ -10,7 +10,7 @@
 #include "light/walk/known_light.h"
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::light {
 namespace {
 
 constexpr float wide = 1;           // density of rays among which shadows of what moves are lost
@@ -292,4 +292,4 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::light

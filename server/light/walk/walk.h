@@ -10,7 +10,7 @@
 #include "light/sample/medium.h"
 #include "light/sample/sample_light.h"
 
-namespace wellspring {
+namespace wellspring::light {
 
 struct WalkRules {
   int max_depth = 8;          // edges, panes passed straight and what glass does not counted
@@ -118,4 +118,4 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request,
                     const Hit& first_hit);
 
-}  // namespace wellspring
+}  // namespace wellspring::light

@@ -7,7 +7,7 @@
 #include "base/spread.h"
 #include "light/technique/pixel_requests.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 // Pixel k of a square, in an order of its own, so that no direction is preferred.
@@ -90,4 +90,4 @@ uint64_t plan_still(const View& view, uint64_t first, int count, uint64_t seed,
   return i;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

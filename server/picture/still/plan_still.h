@@ -11,7 +11,7 @@
 #include "picture/still/still_samples.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 // Appends `count` requests for the samples [first, first + count) of the view's sequence.
 void plan_still(const View& view, uint64_t first, int count, uint64_t seed,
@@ -26,4 +26,4 @@ uint64_t plan_still(const View& view, uint64_t first, int count, uint64_t seed,
                     const PointImage& image, const StillSamples& kept,
                     std::vector<Request>& requests);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

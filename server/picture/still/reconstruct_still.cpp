@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 constexpr float prior_weight = 0.5f;  // samples that the drawn picture counts as
@@ -50,4 +50,4 @@ void finish_reconstruction(const StillSamples& samples, const Denoiser& denoiser
   frame.color = work.color;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

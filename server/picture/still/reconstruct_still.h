@@ -15,7 +15,7 @@
 #include "light/visible/guides.h"
 #include "picture/still/still_samples.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 struct StillReconstruction {
   int width = 0, height = 0;      // of the picture
@@ -36,4 +36,4 @@ void begin_reconstruction(const StillSamples& samples, const Frame& drawn, Denoi
 void finish_reconstruction(const StillSamples& samples, const Denoiser& denoiser,
                            StillReconstruction& work, Frame& frame);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

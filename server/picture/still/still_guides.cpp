@@ -8,7 +8,7 @@
 #include "base/spread.h"
 #include "light/visible/describe_run.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 struct GuidePass {
@@ -84,4 +84,4 @@ void add_still_guides(const World& world, const Lights& lights, const Visibility
       view, pass.place, [&](const VisibleRun& run) { pass.take(run); }, shows);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

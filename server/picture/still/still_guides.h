@@ -9,7 +9,7 @@
 #include "light/visible/guides.h"
 #include "light/visible/visibility.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 inline constexpr int guide_places = 4;  // that antialias well enough
 
@@ -20,4 +20,4 @@ void add_still_guides(const World& world, const Lights& lights, const Visibility
                       const View& view, RasterShows shows, int place, GuidePlanes& planes,
                       std::vector<uint8_t>& followed);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

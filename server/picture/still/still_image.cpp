@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "cache/packing.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 namespace {
 
@@ -42,4 +42,4 @@ void accumulate_drawn(const std::function<bool(uint32_t)>& moves, bool changes, 
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -10,7 +10,7 @@
 #include "base/vec.h"
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 struct StillImage {
   std::array<std::vector<uint16_t>, 3> mean;  // pack_half
@@ -25,4 +25,4 @@ inline constexpr int still_places = 16;
 void accumulate_drawn(const std::function<bool(uint32_t)>& moves, bool changes, uint32_t seed,
                       StillImage& still, Frame& frame);
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

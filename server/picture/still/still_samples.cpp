@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "cache/packing.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 namespace {
 
 constexpr int square_side = 8;  // pixels a side of what takes one share of the mean
@@ -118,4 +118,4 @@ void mix_in_means(const StillSamples& samples, ivec2 size, std::vector<float>& s
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -12,7 +12,7 @@
 #include "cache/packing.h"
 #include "picture/still/still_image.h"
 
-namespace wellspring {
+namespace wellspring::picture {
 
 struct StillSamples {
   std::vector<uint32_t> mean;  // pack_rgb9e5
@@ -44,4 +44,4 @@ inline size_t samples_bytes(const StillSamples& samples) {
   return bytes_of(samples.mean, samples.deviation, samples.count);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::picture

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -112,4 +112,4 @@ HttpReply answer_file(const ServedFile& file) {
   return reply;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

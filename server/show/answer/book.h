@@ -6,7 +6,7 @@
 #include "show/exhibit/exhibit.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 nlohmann::json describe_book(const Exhibit& exhibit);  // null: there is none
 nlohmann::json describe_sounds(const Exhibit& exhibit);
@@ -20,4 +20,4 @@ const ServedFile* find_served_file(const Exhibit& exhibit, const std::string& ta
 // The file, 404 when it is not there any more as it was checked.
 HttpReply answer_file(const ServedFile& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #include "show/answer/trust.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 bool is_lost(const Eye& eye) { return eye.gone >= 0; }
 bool is_silent(const Eye& eye, double now) { return now - eye.received > observation_lifetime; }
@@ -101,4 +101,4 @@ size_t connected_cameras(const Show& show) {
   return size_t(std::ranges::count_if(show.eyes, [](const Eye& eye) { return !is_lost(eye); }));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double lost_camera_listed = 7 * 24 * 3600;  // seconds
 inline constexpr size_t most_lost_cameras = 32;  // more: the one longest lost is forgotten
@@ -22,4 +22,4 @@ size_t connected_cameras(const Show& show);
 bool is_lost(const Eye& eye);
 bool is_silent(const Eye& eye, double now);  // it says nothing, connected or not
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -13,7 +13,7 @@
 #include "show/state/lamps.h"
 #include "wire/limits.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -219,4 +219,4 @@ bool come_back(Show& show, Visitor& visitor, const std::string& token) {
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double kept_seconds = 60;  // a visit that was broken off is kept as it is
 inline constexpr size_t most_kept = 4;      // more: the one that left first is forgotten
@@ -26,4 +26,4 @@ void forget_visits(Show& show);
 // text that is too old, not ours or another exhibit's changes nothing: false.
 bool come_back(Show& show, Visitor& visitor, const std::string& token);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -21,7 +21,7 @@
 #include "show/state/make_show.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -280,4 +280,4 @@ std::optional<WireError> handle(Show& show, Visitor& visitor, const BrowserMessa
   return std::visit([&](const auto& one) { return handle_one(show, visitor, one); }, message);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,9 +6,9 @@
 #include "show/state/show.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Applies one message; the error to send back, if any.
 std::optional<WireError> handle(Show& show, Visitor& visitor, const BrowserMessage& message);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

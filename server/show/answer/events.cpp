@@ -11,7 +11,7 @@
 #include "show/state/animations.h"
 #include "show/state/lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -372,4 +372,4 @@ std::string reply_message(const Show& show, const Visitor& visitor, const std::s
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

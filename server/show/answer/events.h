@@ -8,7 +8,7 @@
 #include "show/state/show.h"
 #include "show/state/visitor.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // `resumed`: the visit goes on where it was.
 std::string welcome_message(const Show& show, const Visitor& visitor, bool resumed = false);
@@ -40,4 +40,4 @@ std::string announce_message(const Announcement& announcement, double seconds);
 std::string reply_message(const Show& show, const Visitor& visitor, const std::string& question,
                           const FoundAnswer& found, const LocalScript& said);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

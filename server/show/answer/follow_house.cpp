@@ -6,7 +6,7 @@
 #include "base/log.h"
 #include "show/answer/events.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -58,4 +58,4 @@ void tell_house(const Show& show, Visitor& visitor) {
     visitor.link->send_text(announce_message(show.announced, left));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

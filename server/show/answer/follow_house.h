@@ -4,7 +4,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Once a tick, before visitors are read.
 void follow_house(Show& show, Arrivals& arrivals);
@@ -12,4 +12,4 @@ void follow_house(Show& show, Arrivals& arrivals);
 // To a page that has just been welcomed: how the house is, and what is announced at the moment.
 void tell_house(const Show& show, Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #include "show/visit/closer.h"
 #include "show/visit/route.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -160,4 +160,4 @@ std::optional<WireError> go(Show& show, Visitor& visitor, const GoTo& order) {
   return go_to_ground(show, visitor, order, pointed->ground);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,11 +6,11 @@
 #include "show/state/show.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The visitor is on its way afterwards, and told so ("went"), or looks at an object from all sides
 // ("state"); else the error: no_way,
 // nothing_there, unknown_object or bad_field.
 std::optional<WireError> go(Show& show, Visitor& visitor, const GoTo& order);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

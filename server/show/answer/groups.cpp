@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -131,4 +131,4 @@ void follow_leader(Show& show, Visitor& visitor, float dt) {
   place.velocity = vec3(0);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

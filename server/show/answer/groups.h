@@ -8,7 +8,7 @@
 #include "show/state/show.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double look_round_seconds = 4;  // after the last turn the view comes back
 
@@ -22,4 +22,4 @@ void go_away(Visitor& visitor);
 // moved. Tells those whose leader has left.
 void follow_leader(Show& show, Visitor& visitor, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 
 #include "show/answer/commands.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 // The page that its guests stand before.
@@ -74,4 +74,4 @@ void follow_gestures(Show& show, Kiosk& kiosk) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,9 +8,9 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Once a tick, after the kiosk's step. A gesture counts once, however long it is told.
 void follow_gestures(Show& show, Kiosk& kiosk);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

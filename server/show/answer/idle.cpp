@@ -10,7 +10,7 @@
 #include "show/count/count.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 // What the page of somebody who is not there says by itself.
@@ -82,4 +82,4 @@ void watch_presence(Show& show, double dt) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // After a message was carried out.
 void note_presence(Visitor& visitor, const BrowserMessage& message);
@@ -16,4 +16,4 @@ void note_presence(Visitor& visitor, const BrowserMessage& message);
 // back as its first text.
 void watch_presence(Show& show, double dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #include "show/kiosk/screen_window.h"
 #include "show/state/in_view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -69,4 +69,4 @@ void look_through(const Show& show, Visitor& page, float dt) {
   move_eye(eye, dt);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Where a kiosk's screen is a window: its own viewpoint, that of its storyteller, or of whoever is
 // there; the exhibit's start where there is nobody. Index into Exhibit::viewpoints.
@@ -17,4 +17,4 @@ View kiosk_window(const Show& show, const std::string& kiosk);
 // way.
 void look_through(const Show& show, Visitor& page, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

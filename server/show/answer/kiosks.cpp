@@ -12,7 +12,7 @@
 #include "show/answer/kiosk_window.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -192,4 +192,4 @@ Kiosk* her_kiosk(Show& show) {
   return nullptr;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

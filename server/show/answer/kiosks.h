@@ -4,7 +4,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Once a tick, before the storyteller behaves. Steps every kiosk with what its cameras and pages
 // say; stops stories and tours of who has left; finds the kiosk that the storyteller is with, from
@@ -18,4 +18,4 @@ void note_touch(Visitor& visitor, const BrowserMessage& message);
 // The kiosk that the storyteller is with; null: none.
 Kiosk* her_kiosk(Show& show);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 
 #include "show/exhibit/exhibit_objects.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -96,4 +96,4 @@ std::string describe_map(const Exhibit& exhibit, const WalkMap& map) {
   return about.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #include "show/exhibit/exhibit.h"
 #include "show/visit/walk_map.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // [{id, title, position, text, story, provenance, manifest, around}], texts in all languages; of
 // the last five those that there are. provenance: [{element, value}] in the order of the Dublin
@@ -20,4 +20,4 @@ nlohmann::json describe_objects(const Exhibit& exhibit, const std::string& lang)
 // and z: 'o' where there is room to walk, 'x' where something stands, '.' elsewhere.
 std::string describe_map(const Exhibit& exhibit, const WalkMap& map);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

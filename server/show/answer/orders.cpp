@@ -11,7 +11,7 @@
 #include "show/answer/kiosks.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -154,4 +154,4 @@ void follow_orders(Show& show, Visitor& visitor) {
   orders.waiting.erase(orders.waiting.begin(), orders.waiting.begin() + long(most));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

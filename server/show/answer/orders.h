@@ -15,7 +15,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // How many orders of a kind are carried out: a second, and at once after a pause.
 struct OrderBound {
@@ -31,4 +31,4 @@ inline constexpr size_t most_waiting_orders = 32;
 // Carries out what is due of what the visitor has ordered; what is wrong is answered.
 void follow_orders(Show& show, Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 #include "show/answer/events.h"
 #include "wire/sound_packet.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -206,4 +206,4 @@ void send_sounds(Show& show) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -10,7 +10,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double sound_piece = 0.25;  // seconds of one packet
 inline constexpr double sound_ahead = 1.2;   // seconds sent before they are due
@@ -26,4 +26,4 @@ VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt);
 // advance_speech, once a tick.
 void send_sounds(Show& show);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

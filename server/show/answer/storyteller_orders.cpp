@@ -9,7 +9,7 @@
 #include "show/count/count.h"
 #include "show/state/make_show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -152,4 +152,4 @@ void forget_absent_listeners(Show& show) {
   teller.agent_sent_at = -1e9;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

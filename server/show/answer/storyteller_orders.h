@@ -6,7 +6,7 @@
 #include "show/state/show.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Carries it out, and gives who orders something a storyteller of their own where the exhibit does
 // not share it; the error to send back, if any.
@@ -23,4 +23,4 @@ void fall_silent(Show& show, Teller& teller);
 // Subtitles go with what is broken off.
 void clear_subtitle(Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -38,4 +38,4 @@ json describe_transcript(const Exhibit& exhibit) {
   return {{"stories", stories}, {"tours", tours}};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,10 +5,10 @@
 
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // {stories: [{id, title, teller, text: {lang: [sentence]}}], tours: [{id, title, stops: [{title,
 // way_text, text}]}]}, without marks, in all languages; `teller` where the story has one.
 nlohmann::json describe_transcript(const Exhibit& exhibit);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

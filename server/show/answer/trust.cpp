@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/answer/trust.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -32,4 +32,4 @@ std::optional<WireError> check_camera(const Link& link, Observation& seen) {
   return check_name(link.kiosk, seen.kiosk);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -10,7 +10,7 @@
 #include "wire/link.h"
 #include "wire/tokens.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Of a `hello` with the role kiosk; any other needs no trust. `kiosk`: becomes the name of the
 // kiosk that it speaks for. Else `not_trusted`, and what to do.
@@ -19,4 +19,4 @@ std::optional<WireError> check_page(const std::vector<Token>& kiosk_tokens, cons
 // Of a camera, which was let in. One whose token names its kiosk need not name it.
 std::optional<WireError> check_camera(const Link& link, Observation& seen);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -13,7 +13,7 @@
 #include "show/check/scene_scale.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr int directions = 64;
@@ -257,4 +257,4 @@ void check_light(const Exhibit& exhibit, World& world, std::vector<Problem>& pro
                                         off > 1 ? "white" : "black", *wanted));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

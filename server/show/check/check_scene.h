@@ -6,7 +6,7 @@
 #include "show/exhibit/problem.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Whether `place` (relative to Scene::origin) lies in something solid: nearly all around there are
 // first the backs of surfaces that are no glass. What moves does not count. The name of what the
@@ -31,4 +31,4 @@ void check_shipped_light(const Exhibit& exhibit, std::vector<Problem>& problems)
 // exhibit.scene alone.
 void check_light(const Exhibit& exhibit, World& world, std::vector<Problem>& problems);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

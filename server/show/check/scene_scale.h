@@ -2,7 +2,7 @@
 // Files in centimetres or miles, found out by their size.
 #pragma once
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The scale that makes metres of a scene `largest` units across: 1 unless a visitor whose eye is
 // `eye_height` metres high would take it for a toy (a tenth of that) or a country (250 times); a
@@ -17,4 +17,4 @@ inline double propose_scale(double largest, double eye_height) {
   return scale;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::show {
 
 void count(Show& show, const char* what, const std::string& thing, double by) {
   const std::string& id = show.exhibit.id;
@@ -71,4 +71,4 @@ void count_place(Show& show, Visitor& visitor, bool finished, double seconds) {
 
 void count_leaving(Show& show, Visitor& visitor) { end_tour(show, visitor, "tours_abandoned"); }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

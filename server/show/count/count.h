@@ -13,7 +13,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double dwell_distance = 3;   // metres
 inline constexpr double dwell_at_most = 600;  // seconds without a move: nobody is taken to be there
@@ -28,4 +28,4 @@ void count_place(Show& show, Visitor& visitor, bool finished, double seconds);
 // When the visitor has gone for good.
 void count_leaving(Show& show, Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -16,7 +16,7 @@
 #include "show/draw/still_pass.h"
 #include "show/state/visitor_world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -154,4 +154,4 @@ void draw_now(Show& show, int waiting) {
   finish_samples(show);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

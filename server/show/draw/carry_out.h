@@ -5,7 +5,7 @@
 #include "show/draw/decide.h"
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What the renderer has finished. Returns whether it may be given the next: asked once a tick, as
 // what it finishes later in the tick has not been taken.
@@ -17,4 +17,4 @@ void carry_out(Show& show, const Decision& decision, int waiting);
 // background.
 void draw_now(Show& show, int waiting);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

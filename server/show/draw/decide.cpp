@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double on_time = 0.0005;   // seconds that a picture may come too early
@@ -160,4 +160,4 @@ Decision decide(double now, std::span<const VisitorDrawState> states,
   return {Drawing::picture, next.visitor, false, purpose, next.served};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -16,7 +16,7 @@
 
 #include "show/state/reconstruction.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What of one visitor the decision depends on. Times are show times, rates pictures a second.
 struct VisitorDrawState {
@@ -113,4 +113,4 @@ bool keeps_picture(const VisitorDrawState& state);
 // The next picture is to become a reconstruction.
 bool wants_pass(double now, const VisitorDrawState& state, const RendererState& renderer);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

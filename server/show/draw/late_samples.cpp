@@ -10,7 +10,7 @@
 #include "show/draw/pace.h"
 #include "show/state/visitor_world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 bool request_samples(Show& show) {
   Renderer& renderer = show.renderer;
@@ -54,4 +54,4 @@ void finish_samples(Show& show) {
   renderer.brokers.clear();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // By the tick, while the renderer is idle. Says whether there is anything.
 bool request_samples(Show& show);
@@ -13,4 +13,4 @@ void trace_samples(const Show& show, Renderer& renderer);
 // By the tick, when that is done.
 void finish_samples(Show& show);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #include "show/state/animations.h"
 #include "show/state/lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -125,4 +125,4 @@ bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor
           job.moving != sees_moving(show, visitor, visitor.place.last_view));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

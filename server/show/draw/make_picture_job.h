@@ -5,7 +5,7 @@
 #include "show/draw/decide.h"
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // `busy` visitors share the time.
 PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
@@ -15,4 +15,4 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
 // were switched, the storyteller came or went.
 bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

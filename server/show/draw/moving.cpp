@@ -11,7 +11,7 @@
 #include "show/state/animations.h"
 #include "show/state/visitor_world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr int cycles = 2, first_cycles = 6;  // of smoothing; when it was not found for a while
@@ -153,4 +153,4 @@ void merge_moving(VisitorPicture& picture) {
   picture.backdrop = false;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What is laid over a picture is kept of each visitor: it may be a third of it.
 bool may_be_laid_over(const PictureWindow& window, const View& view);
@@ -24,4 +24,4 @@ void finish_backdrop(VisitorPicture& picture);
 // For warps, the keyframe shows what was last laid over it from now on.
 void merge_moving(VisitorPicture& picture);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -10,7 +10,7 @@
 #include "show/state/dynamic_lights.h"
 #include "show/state/in_view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double still_rate = 25;    // pictures a second while only the storyteller moves
@@ -263,4 +263,4 @@ RendererState renderer_state(const Show& show) {
   return state;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 #include "show/draw/sample_budget.h"
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double still_after = 0.25;  // seconds without motion until a picture is a still
 
@@ -48,4 +48,4 @@ VisitorDrawState draw_state(const Show& show, const Visitor& visitor);
 std::vector<VisitorDrawState> draw_states(const Show& show);
 RendererState renderer_state(const Show& show);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

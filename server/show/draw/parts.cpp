@@ -6,7 +6,7 @@
 #include "frame/jpeg.h"
 #include "show/visit/flow.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 // Of 255: less is not seen, and is sent with the fine tiles. Noise that goes is a little
@@ -111,4 +111,4 @@ void note_complete(const Image8& newest, int quality, bool in_full, double now,
   has.pending = true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 #include "show/state/browser_picture.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct PartsOrder {
   int quality = 82;               // of what has changed
@@ -30,4 +30,4 @@ void make_parts(const Image8& newest, const PartsOrder& order, PacketHeader head
 void note_complete(const Image8& newest, int quality, bool in_full, double now,
                    BrowserPicture& has);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

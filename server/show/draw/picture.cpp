@@ -7,7 +7,6 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "base/process_clock.h"
 #include "picture/compose_drawn.h"
 #include "picture/still/still_guides.h"
 #include "show/draw/moving.h"
@@ -17,7 +16,7 @@
 #include "show/draw/still_pass.h"
 #include "show/state/lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -279,4 +278,4 @@ void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   show.totals.surroundings++;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

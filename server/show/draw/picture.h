@@ -9,7 +9,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Changes nothing but what of the visitor is the renderer's, and what techniques keep in
 // show.lights. Ends early, with costs.given_up and all samples traced by then, once
@@ -23,4 +23,4 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor);
 void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor);
 void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -10,7 +10,7 @@
 #include "show/draw/sample_budget.h"
 #include "show/state/lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr float predicted_share = 0.3f;  // of the samples, at most
@@ -181,4 +181,4 @@ void remember_traced(const Show& show, const PictureJob& job, const Technique& t
   picture.costs.kept_samples = mean_count(picture.compositor.samples());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The light that is missing for the picture, and for the next: fills work.requests. Says by
 // costs.late whether answers may come after it.
@@ -22,4 +22,4 @@ void remember_traced(const Show& show, const PictureJob& job, const Technique& t
 // Answers that came after the picture they were asked for.
 void take_answers(const Show& show, VisitorPicture& picture);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/process_clock.h"
 #include "frame/disparity_code.h"
 #include "frame/jpeg.h"
 #include "frame/shrink.h"
@@ -19,7 +18,7 @@
 #include "show/state/in_view.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -437,4 +436,4 @@ bool has_to_show(const Show& show, const Visitor& visitor) {
           (visitor.place.last_view != visitor.shown.view && !visitor.wants.local));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

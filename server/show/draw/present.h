@@ -6,7 +6,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What is known of the pictures before and of the line; before acknowledgements are read.
 void note_deliveries(Show& show, Visitor& visitor);
@@ -19,4 +19,4 @@ void present_all(Show& show);
 // There is something that the visitor has not been shown, and would be if a picture were due.
 bool has_to_show(const Show& show, const Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

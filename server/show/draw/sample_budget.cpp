@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double unmeasured_light = 0.4;  // of the display's time, for who moves
@@ -70,4 +70,4 @@ bool wants_reference(double seconds_at_rest, bool before, float guessed, float k
   return before || (guessed <= nearly_none && known >= most_known);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #pragma once
 #include <cstddef>
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct DrawingCosts {
   double samples_per_second = 0;  // all cores
@@ -57,4 +57,4 @@ float tour_pace(float turn, float fov);
 // no point told; `known`: share of the pixels with that many (CacheStats::converged).
 bool wants_reference(double seconds_at_rest, bool before, float guessed, float known);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

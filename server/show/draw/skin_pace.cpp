@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double most_skin_seconds = 0.025;  // of tracing, each time; when there are
@@ -25,4 +25,4 @@ SkinPace plan_skin(float pixels, double samples_per_second, float known) {
   return {std::max(int(samples), 1), least_interval * slower};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 // pictures, and none where nobody sees it.
 #pragma once
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double least_interval = 0.2;  // seconds: it is found no more often
 
@@ -16,4 +16,4 @@ struct SkinPace {
 // `pixels`: of whoever sees most of it. `known`: samples that a place has already, on average.
 SkinPace plan_skin(float pixels, double samples_per_second, float known);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -12,7 +12,7 @@
 #include "show/kiosk/screen_window.h"
 #include "show/state/in_view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 // Of hints: radius over the picture's width, and weight. A pointer is exact, and beside its object
@@ -215,4 +215,4 @@ std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,
   return hints;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double analysis_rate = 25;    // a second and visitor, at most
 inline constexpr int widest_seen = 320;        // pixels of the analysed picture, at most
@@ -35,4 +35,4 @@ void analyse(AttentionAnalysis& analysis);
 std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,
                                       const SeenPicture& seen);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

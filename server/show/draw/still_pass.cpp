@@ -9,7 +9,7 @@
 #include "show/draw/moving.h"
 #include "show/draw/make_picture_job.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double slice = 0.02, least_step = 0.004;  // seconds
@@ -85,4 +85,4 @@ void watch_pass(Show& show) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // By the tick, while the renderer is idle: the job's picture is drawn, and `pass` begins with it.
 void begin_pass(Show& show, const PictureJob& job, Visitor& visitor);
@@ -20,4 +20,4 @@ void take_pass(Show& show);
 // By the tick: notes that nobody needs it any more.
 void watch_pass(Show& show);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "base/near_name.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 // The entry for `lang`, its base language, or the first of `languages` that has one, else any.
@@ -110,4 +110,4 @@ std::string unknown_object(const Exhibit& exhibit, const std::string& id) {
                         [](const PointOfInterest& one) { return one.id; });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

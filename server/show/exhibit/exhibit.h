@@ -17,7 +17,7 @@
 #include "world/load/credit.h"
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using LocalText = std::map<std::string, std::string>;               // language tag -> text
 using LocalLine = std::map<std::string, StoryLine>;                 // language tag -> a sentence
@@ -236,4 +236,4 @@ std::string unknown_storyteller(const Exhibit& exhibit, const std::string& id);
 std::string unknown_prop(const Exhibit& exhibit, const std::string& id);
 std::string unknown_object(const Exhibit& exhibit, const std::string& id);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 #include "base/near_name.h"
 #include "world/motion/scene_motion.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -176,4 +176,4 @@ void take_movers(Exhibit& exhibit) {
   scene.instances.resize(kept);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // `animations` of exhibit.json; after its objects.
 void read_animations(Exhibit& exhibit, Fields& root);
@@ -11,4 +11,4 @@ void read_animations(Exhibit& exhibit, Fields& root);
 // Takes what the exhibit's animations move out of its scene, and forgets all other animations.
 void take_movers(Exhibit& exhibit);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 
 #include "show/exhibit/media_file.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 struct BookReader {
@@ -151,4 +151,4 @@ void read_ambient_sounds(Exhibit& exhibit, Fields& root) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr size_t most_topics = 40, most_partners = 40, most_presentations = 20,
                         most_slides = 60, most_paragraphs = 20, most_sounds = 16;
@@ -17,4 +17,4 @@ inline constexpr const char* sound_kinds[] = {"fire", "water", "room", "wind"};
 void read_book(Exhibit& exhibit, Fields& root);
 void read_ambient_sounds(Exhibit& exhibit, Fields& root);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

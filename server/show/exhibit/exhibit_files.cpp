@@ -9,7 +9,7 @@
 #include "world/load/scene_load.h"
 #include "world/sky.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double one_degree = 3.14159265358979323846 / 180;
@@ -109,4 +109,4 @@ void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) 
                  false);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,10 +4,10 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Reads "scene" or "scenes", "scale", "light_scale" and "environment". Where a file cannot be read
 // exhibit.scene.objects is empty.
 void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

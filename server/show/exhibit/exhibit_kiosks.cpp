@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -55,4 +55,4 @@ void read_kiosks(Exhibit& exhibit, Fields& root) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 void read_lamps(Exhibit& exhibit, Fields& root) {
   root.objects("lamps", false, [&](Fields fields) {
@@ -45,4 +45,4 @@ LampLevels first_levels(const Exhibit& exhibit) {
   return lamp_levels(exhibit.day, first_lamps(exhibit), {});
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Fills exhibit.lamps, and exhibit.scene.lamps one for one. Call when the scene is there.
 void read_lamps(Exhibit& exhibit, Fields& root);
@@ -12,4 +12,4 @@ void read_lamps(Exhibit& exhibit, Fields& root);
 std::vector<char> first_lamps(const Exhibit& exhibit);
 LampLevels first_levels(const Exhibit& exhibit);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

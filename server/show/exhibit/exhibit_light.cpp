@@ -10,7 +10,7 @@
 #include "light/visible/guides.h"
 #include "show/exhibit/exhibit_lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr int width = 48, height = 27, samples = 16, bounces = 6;
@@ -69,4 +69,4 @@ float measure_exposure(const Exhibit& exhibit) {
   return measure_exposure(exhibit, world).value_or(1.0f);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

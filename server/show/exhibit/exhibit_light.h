@@ -6,7 +6,7 @@
 #include "show/exhibit/exhibit.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The exposure with which what is seen from the viewpoints (each counts the same) is well lit: the
 // light that falls on it, not what it reflects, so that a black statue stays black. From a coarse
@@ -16,4 +16,4 @@ std::optional<float> measure_exposure(const Exhibit& exhibit, World& world);
 // The same with a world of its own; 1 where no light is found.
 float measure_exposure(const Exhibit& exhibit);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double most_candela = 1e6, longest_track = 3600;
@@ -245,4 +245,4 @@ void put_sun(const Day& day, double hour, Scene& scene) {
   scene.lights[size_t(lamp.lights.front())] = eval_sun(day, hour);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

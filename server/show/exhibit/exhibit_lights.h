@@ -4,7 +4,7 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What the object "flicker" says; nothing: the light is steady.
 Flicker read_flicker(Fields& fields);
@@ -25,4 +25,4 @@ void put_lights(const std::vector<ChangingLight>& lights, double time, Scene& sc
 // Likewise the sun of that hour in place of the scene's.
 void put_sun(const Day& day, double hour, Scene& scene);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -24,7 +24,7 @@
 #include "show/exhibit/media_file.h"
 #include "show/exhibit/package_file.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace fs = std::filesystem;
 
@@ -275,4 +275,4 @@ Exhibit load_exhibit(const std::string& folder) {
   return exhibit;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 #include "show/exhibit/exhibit.h"
 #include "show/exhibit/problem.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // `folder` holds exhibit.json; the folder's name is the exhibit's id. Appends to `problems`; the
 // exhibit is usable when none of them is fatal. All of the scene stands at rest.
@@ -18,4 +18,4 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems);
 // ExhibitError when a problem is fatal; logs the others.
 Exhibit load_exhibit(const std::string& folder);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 
 #include "base/near_name.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -123,4 +123,4 @@ void read_objects(Exhibit& exhibit, Fields& root) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Fills exhibit.points. Call when the scene and the stories are there; without a scene no name is
 // missed.
@@ -15,4 +15,4 @@ inline constexpr const char* provenance_elements[] = {
     "format",   "description", "subject",     "source",   "publisher",
     "language", "coverage",    "identifier",  "relation", "rights"};
 
-}  // namespace wellspring
+}  // namespace wellspring::show

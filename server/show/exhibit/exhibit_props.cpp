@@ -12,7 +12,7 @@
 #include "show/exhibit/package_file.h"
 #include "world/load/scene_load.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -137,4 +137,4 @@ void read_props(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) 
                [&](Fields fields) { read_prop(exhibit, std::move(fields), problems); });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Bounds of what a hand holds: triangles, texels of its pictures, metres from the hand, lights.
 inline constexpr size_t most_prop_triangles = 20'000, most_prop_texels = size_t(1) << 22,
@@ -15,4 +15,4 @@ inline constexpr float farthest_prop = 1.5f;
 // or held, is a problem.
 void read_props(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/exhibit/exhibit_questions.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 void read_questions(Exhibit& exhibit, Fields& root) {
   root.objects("questions", false, [&](Fields fields) {
@@ -15,4 +15,4 @@ void read_questions(Exhibit& exhibit, Fields& root) {
     root.problem("questions", "are more than " + std::to_string(most_questions));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,8 +3,8 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 void read_questions(Exhibit& exhibit, Fields& root);  // fills exhibit.questions
 
-}  // namespace wellspring
+}  // namespace wellspring::show

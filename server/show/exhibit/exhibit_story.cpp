@@ -11,7 +11,7 @@
 #include "base/near_name.h"
 #include "show/exhibit/package_file.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -212,4 +212,4 @@ void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems) {
     }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 #include "show/exhibit/exhibit.h"
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // A text for each language: a sentence list (each a line), or the name of a .story, .ssml, .xml,
 // .txt or .vtt file of the package. Also one text with markup, whose sentences are lines, where
@@ -23,4 +23,4 @@ VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& oth
 // are there, and languages have as many sentences as each other. What is not is not fatal.
 void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

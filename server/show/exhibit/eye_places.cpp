@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::show {
 
 std::vector<vec3> eye_places(const Exhibit& exhibit) {
   std::vector<vec3> places;
@@ -29,4 +29,4 @@ std::vector<vec3> all_eye_places(const Exhibit& exhibit) {
   return places;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

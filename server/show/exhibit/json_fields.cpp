@@ -11,7 +11,7 @@
 #include "base/unicode.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -189,4 +189,4 @@ void Fields::finish() {
               false);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #include "show/exhibit/exhibit.h"
 #include "show/exhibit/problem.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 bool is_language_tag(const std::string& tag);
 
@@ -76,4 +76,4 @@ class Fields {
   std::set<std::string> read_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

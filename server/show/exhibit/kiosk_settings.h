@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Seconds that a kiosk waits; what they decide: show/kiosk/stage.h.
 struct KioskTimes {
@@ -31,4 +31,4 @@ struct KioskSettings {
   KioskTimes times;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #include "show/exhibit/package_file.h"
 #include "world/load/gltf_image.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace fs = std::filesystem;
 
@@ -130,4 +130,4 @@ bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const 
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

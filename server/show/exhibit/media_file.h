@@ -4,7 +4,7 @@
 #pragma once
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 enum class Medium { image, video, sound };
 
@@ -22,4 +22,4 @@ std::string media_type(Medium medium, std::string_view first_bytes);
 bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const std::string& name,
                      Medium medium);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

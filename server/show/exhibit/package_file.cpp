@@ -7,7 +7,7 @@
 #include "gltf/find_file.h"
 #include "base/near_name.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace fs = std::filesystem;
 
@@ -36,4 +36,4 @@ std::string package_file(Fields& fields, const char* field, const std::string& f
   return path.string();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/exhibit/problem.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 std::string join(const std::vector<Problem>& problems) {
@@ -20,4 +20,4 @@ std::string to_string(const Problem& problem) {
 ExhibitError::ExhibitError(std::vector<Problem> problems_)
     : std::runtime_error(join(problems_)), problems(std::move(problems_)) {}
 
-}  // namespace wellspring
+}  // namespace wellspring::show

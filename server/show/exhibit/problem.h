@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Problem {
   std::string file, where, what;
@@ -19,4 +19,4 @@ struct ExhibitError : std::runtime_error {
   explicit ExhibitError(std::vector<Problem> problems);
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Announcement {
   uint32_t id = 0;     // grows with each
@@ -14,4 +14,4 @@ struct Announcement {
   bool urgent = false;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -57,4 +57,4 @@ float kiosk_volume(const HouseSettings& settings, const HouseState& house, float
   return house.quiet ? std::min(volume, settings.quiet_volume) : volume;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr int minutes_a_day = 24 * 60;
 
@@ -51,4 +51,4 @@ HouseState house_at(const HouseSettings& settings, const LocalTime& now);
 // Of a kiosk whose own volume is `own`: quiet hours make none louder.
 float kiosk_volume(const HouseSettings& settings, const HouseState& house, float own);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

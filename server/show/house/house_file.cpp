@@ -7,7 +7,7 @@
 #include "show/exhibit/exhibit_kiosks.h"
 #include "show/exhibit/json_fields.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -99,4 +99,4 @@ HouseSettings load_house(const std::string& file, Exhibit& exhibit) {
   return house;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 #include "show/exhibit/problem.h"
 #include "show/house/house.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Never throws; what is wrong is in `problems`. Its `kiosks` come into the exhibit: what is said of
 // one that is there already takes the place of what was said.
@@ -17,4 +17,4 @@ HouseSettings read_house(const std::string& file, Exhibit& exhibit, std::vector<
 // As above. Throws ExhibitError where a problem is fatal; logs the others.
 HouseSettings load_house(const std::string& file, Exhibit& exhibit);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

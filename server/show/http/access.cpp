@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -45,4 +45,4 @@ UpgradeAnswer admit(const AccessRules& rules, const HttpQuestion& question) {
                  "TOKEN, one of the server's WELLSPRING_KIOSK_TOKEN or --kiosk-token-file")};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "base/layers.h"
 #include "wire/http.h"
 #include "wire/tokens.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct AccessRules {
   std::string admin_token;          // empty: there is none
@@ -32,4 +33,4 @@ HttpReply refuse_access(const Access& access);
 // visit is, and shows by its `hello` whether it is a kiosk's (show/answer/trust.h).
 UpgradeAnswer admit(const AccessRules& rules, const HttpQuestion& question);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #include "show/exhibit/json_fields.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -63,4 +63,4 @@ HttpReply answer_announce(const AnnouncementDesk& desk, const Access& access,
   return reply_of(200, {{"id", desk.put(std::move(announcement))}});
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

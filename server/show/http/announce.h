@@ -8,7 +8,7 @@
 #include "show/http/access.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr size_t most_announced_bytes = 2000;       // of the text in one language
 inline constexpr double longest_announcement = 24 * 3600;  // seconds
@@ -23,4 +23,4 @@ struct AnnouncementDesk {
 HttpReply answer_announce(const AnnouncementDesk& desk, const Access& access,
                           const HttpQuestion& question);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #include "show/http/still_question.h"
 #include "show/http/take_along.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -309,4 +309,4 @@ HttpReply answer(const AnswerSources& sources, const HttpQuestion& question) {
   return error_reply(404, "not_found", "there is nothing at " + path);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -16,7 +16,7 @@
 #include "show/visit/walk_map.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // One exhibit; all borrowed, all safe to read from any thread.
 struct ServedExhibit {
@@ -71,4 +71,4 @@ std::string join_metrics(const std::vector<std::pair<std::string, std::string>>&
 std::string failure_metrics(const std::vector<FailedExhibit>& failed);
 std::string still_metrics(const StillStatus& stills);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

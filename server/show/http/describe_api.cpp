@@ -4,7 +4,7 @@
 #include "show/http/answer.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The machine-readable twin of the protocol's description in ARCHITECTURE.md. What a browser may
 // say comes from the messages' own lists of fields (wire/messages.h).
@@ -159,4 +159,4 @@ std::string describe_api() {
   return body;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #include "show/http/answer.h"
 #include "wire/prometheus.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -298,4 +298,4 @@ std::string failure_metrics(const std::vector<FailedExhibit>& failed) {
   return out;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -10,7 +10,7 @@
 #include "base/rng.h"
 #include "wire/gzip.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace fs = std::filesystem;
 
@@ -72,4 +72,4 @@ std::map<std::string, PageFile> load_pages(const std::string& folder) {
   return pages;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

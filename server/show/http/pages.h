@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct PageFile {
   std::string content_type, body, etag;
@@ -21,4 +21,4 @@ std::map<std::string, PageFile> load_pages(const std::string& folder);
 
 std::string make_etag(const std::string& body);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 #include "show/state/delivery.h"
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 static CameraReport report_camera(const Eye& eye, double now) {
   CameraReport report{eye.kiosk,
@@ -111,4 +111,4 @@ ShowReport make_report(const Show& show) {
   return report;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

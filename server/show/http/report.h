@@ -13,7 +13,7 @@
 #include "show/visit/give_way.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct VisitorReport {
   uint64_t id = 0;
@@ -111,4 +111,4 @@ class ReportBoard {
 struct Show;
 ShowReport make_report(const Show& show);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -10,7 +10,7 @@
 #include "light/visible/guides.h"
 #include "show/exhibit/exhibit_lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 constexpr size_t most_kept_bytes = size_t(16) << 20;
@@ -176,4 +176,4 @@ StillPicture StillRoom::make(const StillJob& order, const std::function<bool()>&
   return kept_.front().picture;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -13,7 +13,7 @@
 #include "base/clock.h"
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct StillJob {
   int viewpoint = 0, width = 640, height = 360;
@@ -80,4 +80,4 @@ class StillRoom {
   std::list<Kept> kept_;  // newest first
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

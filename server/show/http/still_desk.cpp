@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -251,4 +251,4 @@ StillStatus StillDesk::status() const {
   return now;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

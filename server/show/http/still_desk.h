@@ -22,7 +22,7 @@
 #include "base/rate.h"
 #include "show/http/still.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct StillLimits {
   double most_seconds = 120;    // of the machine, for one picture
@@ -106,4 +106,4 @@ class StillDesk {
   std::vector<std::thread> threads_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 
 #include "wire/limits.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -101,4 +101,4 @@ StillQuestion read_still_question(const Exhibit& exhibit,
   return asked;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

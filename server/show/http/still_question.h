@@ -7,7 +7,7 @@
 #include "show/http/still.h"
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct StillQuestion {
   StillJob job;
@@ -18,4 +18,4 @@ struct StillQuestion {
 StillQuestion read_still_question(const Exhibit& exhibit,
                                   const std::map<std::string, std::string>& query);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

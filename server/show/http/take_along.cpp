@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <qrcodegen/qrcodegen.hpp>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -75,4 +75,4 @@ HttpReply answer_qr(const Exhibit& exhibit, const std::string& address,
   return reply;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #include "show/exhibit/exhibit.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The picture of a QR code (ISO/IEC 18004, error correction level M) as SVG: black on white, with
 // the quiet zone of four modules. Throws std::length_error for more text than such a code holds.
@@ -18,4 +18,4 @@ std::string draw_qr_code(const std::string& text);
 HttpReply answer_qr(const Exhibit& exhibit, const std::string& address,
                     const HttpQuestion& question);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/kiosk/screen_window.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -68,4 +68,4 @@ EyeNeeds needs_of(const Kiosk& kiosk, bool here, bool page) {
   return {stage != Stage::sleep, here && met, page && has_guest(stage)};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

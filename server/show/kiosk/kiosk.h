@@ -9,7 +9,7 @@
 #include "show/kiosk/stage.h"
 #include "show/storyteller/audience.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What is known of the guests of one visit, and forgotten when it ends.
 struct KioskVisit {
@@ -53,4 +53,4 @@ bool turns_pages(Showing showing);
 // What its cameras are to tell. `here`: the storyteller is; `page`: there is one.
 EyeNeeds needs_of(const Kiosk& kiosk, bool here, bool page);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 
 #include "show/storyteller/audience.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -95,4 +95,4 @@ View through_window(const View& rest, const ScreenSize& screen, vec3 place) {
   return view;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 #include "show/exhibit/kiosk_settings.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Where a page's picture is seen from. A plain value.
 struct WindowEye {
@@ -43,4 +43,4 @@ void move_eye(WindowEye& eye, float dt);
 // What is seen through the screen from that place; `rest` where it is 0.
 View through_window(const View& rest, const ScreenSize& screen, vec3 place);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

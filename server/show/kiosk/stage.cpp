@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -81,4 +81,4 @@ Stage step_stage(StageState& state, const KioskTimes& times, const StageInput& s
   return next;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -20,7 +20,7 @@
 
 #include "show/exhibit/kiosk_settings.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 enum class Stage : uint8_t { sleep, awake, person, engaged, farewell };
 const char* to_string(Stage stage);
@@ -56,4 +56,4 @@ Stage step_stage(StageState& state, const KioskTimes& times, const StageInput& i
 inline bool has_guest(Stage stage) { return stage == Stage::person || stage == Stage::engaged; }
 inline bool is_visit(Stage stage) { return has_guest(stage) || stage == Stage::farewell; }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 // FNV-1a (Fowler, Noll, Vo), the same on every machine.
@@ -77,4 +77,4 @@ PunctualLight eval_light(const ChangingLight& light, double time) {
   return now;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

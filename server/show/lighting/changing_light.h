@@ -11,7 +11,7 @@
 
 #include "world/emitter.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double most_turns = 5;  // a second, of a light's brightness
 inline constexpr size_t most_changing_lights = 16, most_track_keys = 1000;
@@ -48,4 +48,4 @@ TrackKey eval_track(const ChangingLight& light, double time);
 // The light at `time`, seconds from 0 on.
 PunctualLight eval_light(const ChangingLight& light, double time);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double pi_ = 3.14159265358979323846;
@@ -137,4 +137,4 @@ LampLevels lamp_levels(const std::optional<Day>& day, std::span<const char> on,
   return levels;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -16,7 +16,7 @@
 #include "world/lamp_level.h"
 #include "world/sky.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr double least_sun = 10;  // degrees that the scene's sun stands high, at least
 
@@ -58,4 +58,4 @@ float eval_sky(const Day& day, double hour);
 LampLevels lamp_levels(const std::optional<Day>& day, std::span<const char> on,
                        std::optional<double> hour);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

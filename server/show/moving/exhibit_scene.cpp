@@ -9,7 +9,7 @@
 #include "show/moving/movers.h"
 #include "show/moving/play.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene) {
   // A humanoid faces +Z, a yaw of 0 faces -Z: half a turn between them.
@@ -65,4 +65,4 @@ Scene make_exhibit_scene(Exhibit exhibit, double time) {
   return std::move(scene);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

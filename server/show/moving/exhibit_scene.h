@@ -3,7 +3,7 @@
 #pragma once
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The storyteller's placement in the world of `scene`.
 mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene);
@@ -13,4 +13,4 @@ mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene);
 // that change are as they are then.
 Scene make_exhibit_scene(Exhibit exhibit, double time);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -12,7 +12,7 @@
 #include "world/load/scene_join.h"
 #include "world/mesh_finish.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 // Index of the scene's texture for a picture file; -1 where it cannot be read.
@@ -190,4 +190,4 @@ void show_figure(World& world, const Figure& figure, bool visible) {
   for (const FigurePart& part : figure.parts) world.show(part.moving, visible);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

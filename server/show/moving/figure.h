@@ -8,7 +8,7 @@
 #include "avatar/figure/skin.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct FigurePart {
   int moving = 0;                  // which of the World's moving meshes
@@ -43,4 +43,4 @@ void pose_figure(World& world, Figure& figure, const Character& character, const
 
 void show_figure(World& world, const Figure& figure, bool visible);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

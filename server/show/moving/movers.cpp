@@ -7,7 +7,7 @@
 #include "world/mesh_finish.h"
 #include "world/motion/scene_motion.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -125,4 +125,4 @@ bool pose_movers(const Exhibit& exhibit, const std::vector<double>& times, Mover
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #include "show/exhibit/exhibit.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Where something may be while it moves, relative to the scene's origin.
 struct Reach {
@@ -32,4 +32,4 @@ bool pose_movers(const Exhibit& exhibit, const std::vector<double>& times, Mover
 // The same as a mesh of exhibit.movers[mover].
 Mesh mover_mesh(const Exhibit& exhibit, size_t mover, const std::vector<double>& times);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 
 double time_of(const ExhibitAnimation& animation, const Play& play, double now) {
   if (animation.start == ExhibitAnimation::Start::loop)
@@ -23,4 +23,4 @@ void set_on(const ExhibitAnimation& animation, bool on, double now, Play& play) 
   play = {on, time_of(animation, play, now), now};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

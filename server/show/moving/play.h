@@ -4,7 +4,7 @@
 #pragma once
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Of an animation that is started by touch. Times are show times.
 struct Play {
@@ -18,4 +18,4 @@ double time_of(const ExhibitAnimation& animation, const Play& play, double now);
 bool is_running(const ExhibitAnimation& animation, const Play& play, double now);
 void set_on(const ExhibitAnimation& animation, bool on, double now, Play& play);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

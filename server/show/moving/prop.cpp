@@ -8,7 +8,7 @@
 #include "world/load/scene_join.h"
 #include "world/mesh_finish.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 // The lowest of it, in the middle.
@@ -81,4 +81,4 @@ bool pose_prop(World& world, Prop& prop, const PropPose& pose) {
   return changed;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

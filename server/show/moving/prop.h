@@ -5,7 +5,7 @@
 #include "show/exhibit/exhibit.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct PropPart {
   int moving = 0;                        // which of the World's moving meshes
@@ -34,4 +34,4 @@ Prop make_prop(const ExhibitProp& prop, Scene& scene, std::vector<Mesh>& moving,
 // Moves, shows and hides it. True: something changed; call World::commit() afterwards.
 bool pose_prop(World& world, Prop& prop, const PropPose& pose);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -19,7 +19,7 @@
 #include "world/motion/scene_motion.h"
 #include "world/sky.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ NewExhibit make_new_exhibit(const std::string& content, const std::string& id,
   return {folder.string(), maker.told};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct NewExhibit {
   std::string folder;
@@ -18,4 +18,4 @@ struct NewExhibit {
 NewExhibit make_new_exhibit(const std::string& content, const std::string& id,
                             const std::string& model);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

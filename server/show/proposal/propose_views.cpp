@@ -8,7 +8,7 @@
 #include "world/fit_view.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr float degree = pi / 180;
@@ -180,4 +180,4 @@ ProposedViews propose_views(const World& world, float eye_height) {
   return proposed;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct ProposedViews {
   bool is_room = false;
@@ -18,4 +18,4 @@ struct ProposedViews {
 // views each time; milliseconds to tenths of a second.
 ProposedViews propose_views(const World& world, float eye_height);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 
 #include "show/questions/words.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -185,4 +185,4 @@ LocalScript words_for(const QuestionIndex& index, const FoundAnswer& found) {
   return said;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Something that can be said in answer.
 struct Passage {
@@ -52,4 +52,4 @@ FoundAnswer find_answer(const QuestionIndex& index, const Exhibit& exhibit,
 // where there is none.
 LocalScript words_for(const QuestionIndex& index, const FoundAnswer& found);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -117,4 +117,4 @@ std::vector<Word> words_of(const std::string& text, const std::string& lang) {
   return words;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Word {
   std::string stem;    // for comparison
@@ -18,4 +18,4 @@ struct Word {
 // by the language's list: of en, de, sk, fr and es; others have none.
 std::vector<Word> words_of(const std::string& text, const std::string& lang);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/state/in_view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -80,4 +80,4 @@ void touch_object(Show& show, Visitor& visitor, int point) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

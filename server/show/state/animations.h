@@ -6,7 +6,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Whose own animations the visitor sees: theirs or their leader's; null: nobody has touched any.
 const Visitor* who_touched(const Show& show, const Visitor& visitor);
@@ -26,4 +26,4 @@ bool play_animation(Show& show, Visitor& visitor, std::string_view id, bool on);
 // The object was touched: what that starts, if anything, goes the other way.
 void touch_object(Show& show, Visitor& visitor, int point);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

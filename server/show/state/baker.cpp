@@ -14,7 +14,7 @@
 #include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double look_every = 0.05, save_every = 120, at_a_time = 1;  // seconds
@@ -144,4 +144,4 @@ void Baker::live(const std::stop_token& end) {
   if (bake.passes > 0 && !save_bake(bake, file, key)) log::warn("{} cannot be written", file);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -14,7 +14,7 @@
 #include "light/sample/illumination_map.h"
 #include "light/sample/lights.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct BakerSettings {
   std::string file;            // without its ending: .bake is what goes on, .maps what is shown
@@ -74,4 +74,4 @@ struct BakerLooks {
   double told_at = -1e9, took_at = -1e9;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 
 #include "frame/tiles.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct BrowserPicture {
   Image8 image;                    // before it was encoded; empty: the next one is complete
@@ -17,4 +17,4 @@ struct BrowserPicture {
   bool pending = false;  // some tiles could be finer, or are not quite what was drawn last
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

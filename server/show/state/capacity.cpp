@@ -6,7 +6,7 @@
 
 #include "base/memory_limit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double usable = 0.85;        // of the cores: sockets, ticks and the system take the rest
@@ -153,4 +153,4 @@ Capacity::Standing Capacity::standing() const {
   return {all_.seats, cores_of(all_), cores_, all_.bytes, memory_, cost()};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

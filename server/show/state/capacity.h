@@ -12,7 +12,7 @@
 #include <mutex>
 #include <string>
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct CapacitySettings {
   double rate = 15;   // pictures a second that everybody is to have who walks
@@ -123,4 +123,4 @@ class Capacity : public std::enable_shared_from_this<Capacity> {
   std::map<std::string, Part> parts_;  // by address
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::show {
 
 // A second, to a page that draws by itself: keyframes of a walk, and layers of what moves.
 static constexpr double most_keyframes = 10, most_layers = 25;
@@ -19,4 +19,4 @@ PicturePlan picture_plan(const Show& show, const Visitor& visitor) {
   return plan_picture(visitor.shown.way, visitor.shown.flow, flow_wishes(show, visitor));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,10 +3,10 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What this visitor would get, were it not for line, encoder and decoder.
 FlowWishes flow_wishes(const Show& show, const Visitor& visitor);
 PicturePlan picture_plan(const Show& show, const Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

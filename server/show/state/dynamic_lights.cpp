@@ -6,7 +6,7 @@
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 void add(const PunctualLight& light, uint32_t id, DynamicLights& lights) {
@@ -46,4 +46,4 @@ DynamicLights dynamic_lights_in(const View& view, DynamicLights lights) {
   return lights;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

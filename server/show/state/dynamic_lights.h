@@ -5,7 +5,7 @@
 #include "light/dynamic/dynamic_light.h"
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // DynamicLight::id: of exhibit.lights their place there and this, and of the others.
 inline constexpr uint32_t first_changing_light = 1, sun_of_the_day = 1000, first_carried = 2000;
@@ -15,4 +15,4 @@ DynamicLights dynamic_lights_of(const Show& show, const Visitor& visitor, double
 // Those that may shine on what the view shows: one of finite range only within that.
 DynamicLights dynamic_lights_in(const View& view, DynamicLights lights);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "picture/moving_picture.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double duration = 0.5;  // seconds
@@ -35,4 +35,4 @@ void mix_fade(const Fade& fade, float share, Image8& image) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 #include "frame/tonemap.h"
 #include "picture/keyframe.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Fade {
   Image8 from;  // what was shown; empty: nothing fades
@@ -20,4 +20,4 @@ float fade_share(const Fade& fade, const View& view, double time);
 // Mixes what was shown into a picture of its size, in display codes.
 void mix_fade(const Fade& fade, float share, Image8& image);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 
 #include "show/kiosk/screen_window.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -96,4 +96,4 @@ float viewer_distance(const Show& show, const Teller& teller) {
   return nearest;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

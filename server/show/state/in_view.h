@@ -3,7 +3,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Whether a sphere touches the cone around the view's pyramid; says yes rather too often than too
 // seldom.
@@ -28,4 +28,4 @@ const PointOfInterest* looked_at_beside_her(const Show& show, const Teller& tell
 // may.
 float viewer_distance(const Show& show, const Teller& teller);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 #include "light/visible/visible_material.h"
 #include "show/exhibit/exhibit_lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double least_between = 0.2;  // seconds from one change of the light to the next
@@ -218,4 +218,4 @@ void forget_lights(Show& show) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

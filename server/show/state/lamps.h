@@ -16,7 +16,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Tells of each object whether some of its light depends on the view, which maps do not know.
 std::vector<char> shining_objects(const Scene& scene);
@@ -51,4 +51,4 @@ void follow_lamps(Show& show, Visitor& visitor);
 // idle.
 void forget_lights(Show& show);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -13,7 +13,7 @@
 #include "show/state/lamps.h"
 #include "show/state/visitor_world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   return show;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a
 // tour that cannot be walked. Seconds; may be cancelled (base/cancel.h).
@@ -15,4 +15,4 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 // and greets anew. Nothing happens when it is there already. It is seen from the next picture on.
 void change_storyteller(const Show& show, Teller& teller, size_t storyteller_index);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 #include "light/dynamic/dynamic_light.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What of a visitor's rest, since the view or the light last changed, reconstructions depend on.
 struct RestState {
@@ -52,4 +52,4 @@ struct PictureJob {
 // It is drawn in steps, between which the world may move and what moves be drawn.
 inline bool in_steps(const PictureJob& job) { return job.still && job.keep; }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

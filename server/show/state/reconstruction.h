@@ -14,7 +14,7 @@
 #include "picture/still/reconstruct_still.h"
 #include "show/state/picture_job.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Visitor;
 
@@ -40,4 +40,4 @@ size_t memory_bytes(const StillPass& pass);
 inline constexpr double most_rest_samples = 0.98 * most_still_samples;
 inline bool has_all_samples(const RestState& rest) { return rest.samples >= most_rest_samples; }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

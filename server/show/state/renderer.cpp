@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 size_t memory_bytes(const DrawingWork& work) {
   return memory_bytes(*work.cache) + memory_bytes(*work.compositor) + memory_bytes(work.frame) +
@@ -13,4 +13,4 @@ size_t memory_bytes(const DrawingWork& work) {
          memory_bytes(work.moving_light) + memory_bytes(work.moving);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

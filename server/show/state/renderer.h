@@ -27,7 +27,7 @@
 #include "show/state/picture_job.h"
 #include "show/state/visitor_attention.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What it took: milliseconds, and counts.
 struct PictureCosts {
@@ -40,7 +40,7 @@ struct PictureCosts {
   double guide_seconds = 0;  // for what a reconstruction begins with
   bool backdrop = false;     // of what does not move: the rest is to be laid over it
   double seconds = 0;        // from its job on, without others' in between
-  double core_seconds = 0;   // of the process, for all but its samples (base/process_clock.h)
+  double core_seconds = 0;   // of the process, for all but its samples (process_seconds_now())
 };
 
 // A picture at rest is drawn in steps, so that what moves in it need not wait for all of them.
@@ -115,4 +115,4 @@ struct Renderer {
   bool idle() const { return !worker.busy(); }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

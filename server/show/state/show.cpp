@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::show {
 
 void Arrivals::put(std::shared_ptr<Link> link, std::unique_ptr<Seat> seat) {
   std::lock_guard lock(mutex_);
@@ -87,4 +87,4 @@ bool listens_to(const Show& show, const Visitor& visitor, const Teller& teller) 
          hears_storyteller(show, visitor);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -35,7 +35,7 @@
 #include "wire/seal.h"
 #include "wire/tokens.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // How a visitor's pictures get their diffuse light.
 enum class Display : uint8_t {
@@ -189,4 +189,4 @@ bool hears_storyteller(const Show& show, const Visitor& visitor);
 // Whether what `teller` says is for the visitor.
 bool listens_to(const Show& show, const Visitor& visitor, const Teller& teller);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

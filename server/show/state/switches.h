@@ -9,7 +9,7 @@
 #include "light/known/lamps.h"
 #include "light/known/skin_light.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What became of the light between two states of the lamps.
 struct LightStep {
@@ -47,4 +47,4 @@ struct VisitorLamps {
   double lit_at = -1e9;  // show time of the last change of that
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

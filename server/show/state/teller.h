@@ -12,7 +12,7 @@
 #include "show/storyteller/sounding.h"
 #include "show/storyteller/voice.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Teller {
   uint64_t number = 0;  // Link::id of the visitor who called her first; 0: the house's
@@ -28,4 +28,4 @@ struct Teller {
   Mood agent_mood = Mood::idle;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Counters since the start, unless said otherwise.
 struct ShowTotals {
@@ -26,4 +26,4 @@ struct ShowTotals {
   float attention_ms = 0;  // of the last of these
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

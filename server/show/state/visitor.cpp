@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 size_t picture_memory(const Visitor& visitor) {
   const SeenPicture* seen = visitor.looks.seen.get();
@@ -11,4 +11,4 @@ size_t picture_memory(const Visitor& visitor) {
          (seen ? bytes_of(seen->picture.rgb, seen->object) : 0);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

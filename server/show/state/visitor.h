@@ -22,7 +22,7 @@
 #include "wire/messages.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {
@@ -61,7 +61,7 @@ struct VisitorDelivery {
   View view;                     // that it showed
   double sent_at = -1e9;         // show time of it
   double pictured_at = -1e9;     // when it was due
-  double warp_core_seconds = 0;  // for the last (process_clock.h); 0: it was drawn for its view
+  double warp_core_seconds = 0;  // for the last; 0: it was drawn for its view
   bool lost = false;             // the browser has not what it was sent
   bool has_still = false;        // its keyframe is of a picture at rest, and parts of such fit it
   bool has_layer = false;        // what moves was laid over it (packet_layer)
@@ -132,4 +132,4 @@ inline bool is_shown(const Visitor& visitor) {
 // MB (of 10^6 bytes) at 1280x720 while the visitor walks, 64 MiB at rest.
 size_t picture_memory(const Visitor& visitor);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -13,7 +13,7 @@
 #include "frame/frame.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // A drawn picture, made small, and the object that each of its pixels shows; 0: none.
 struct SeenPicture {
@@ -60,4 +60,4 @@ struct AttentionAnalysis {
   Worker worker;  // the last member: it is waited for before the others end
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

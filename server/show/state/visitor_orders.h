@@ -8,7 +8,7 @@
 #include "base/rate.h"
 #include "wire/messages.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct WaitingOrder {
   BrowserMessage message;
@@ -20,4 +20,4 @@ struct VisitorOrders {
   std::array<RateBound, std::variant_size_v<BrowserMessage>> spent;  // of each kind
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

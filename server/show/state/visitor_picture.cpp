@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 size_t memory_bytes(const VisitorPicture& picture) {
   return picture.cache.memory_bytes() + picture.compositor.memory_bytes() +
@@ -13,4 +13,4 @@ size_t memory_bytes(const VisitorPicture& picture) {
          bytes_of(picture.image.rgb, picture.fade.from.rgb);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

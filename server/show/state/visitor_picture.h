@@ -20,7 +20,7 @@
 #include "show/state/reconstruction.h"
 #include "show/state/renderer.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // As the visitor's page asks for it.
 struct PictureWishes {
@@ -82,4 +82,4 @@ struct VisitorPicture {
 // The same memory as it is now: not while the renderer is at work on it.
 size_t memory_bytes(const VisitorPicture& picture);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

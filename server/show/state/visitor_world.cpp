@@ -4,7 +4,7 @@
 #include "show/state/animations.h"
 #include "show/state/lamps.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 uint64_t number_who_touched(const Show& show, const Visitor& visitor) {
@@ -49,4 +49,4 @@ bool see_the_same(const Show& show, const Visitor& a, const Visitor& b) {
          a.lamps.lit_hour == b.lamps.lit_hour && who_touched(show, a) == who_touched(show, b);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

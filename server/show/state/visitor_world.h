@@ -5,7 +5,7 @@
 #pragma once
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Shows that teller alone, as it is now, and animations at these times, seconds of each.
 void pose_world(Show& show, const Teller& teller, const std::vector<double>& times);
@@ -16,4 +16,4 @@ void go_on_in_world_of(Show& show, Visitor& visitor);
 // Whether two visitors see the same lamps, hour, animations and teller.
 bool see_the_same(const Show& show, const Visitor& a, const Visitor& b);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 
 #include "show/answer/cameras.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -356,4 +356,4 @@ std::vector<Finding> judge(const ShowReport& report, JudgeMemory& memory) {
   return judge.end();
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

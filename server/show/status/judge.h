@@ -8,7 +8,7 @@
 
 #include "show/http/report.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Its words make one line: "WHAT since 14:03: WHY. REMEDY"
 struct Finding {
@@ -36,4 +36,4 @@ struct JudgeMemory {
 // lasted a moment, and a moment longer than it lasts; what is counted, for ten minutes after.
 std::vector<Finding> judge(const ShowReport& report, JudgeMemory& memory);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

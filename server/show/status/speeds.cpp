@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -59,4 +59,4 @@ std::string read_speeds(const std::string& file) {
   return speeds.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,10 +3,10 @@
 #pragma once
 #include <string>
 
-namespace wellspring {
+namespace wellspring::show {
 
 // {"date", "commit", "cpu", "cores", "points": [{technique, scene, spp, seconds (of all threads),
 // flip}]}, or {"problem"}: why there are none. Reads the file each time.
 std::string read_speeds(const std::string& file);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -87,4 +87,4 @@ Standing StatusDesk::tell() const {
   return standing_;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #include "show/http/answer.h"
 #include "show/status/judge.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // How one exhibit is.
 struct Standing {
@@ -36,4 +36,4 @@ class StatusDesk {
   Standing standing_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -43,4 +43,4 @@ HttpReply answer_sums(const ReadSums& read, const HttpQuestion& question) {
   return reply;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,10 +3,11 @@
 #pragma once
 #include <functional>
 
+#include "base/layers.h"
 #include "ledger/sums.h"
 #include "wire/http.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Those of both days and all between; throws where the file cannot be read. Empty: none are kept.
 using ReadSums = std::function<Sums(int64_t from, int64_t to)>;
@@ -15,4 +16,4 @@ using ReadSums = std::function<Sums(int64_t from, int64_t to)>;
 // day, 503 where the file cannot be read.
 HttpReply answer_sums(const ReadSums& read, const HttpQuestion& question);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

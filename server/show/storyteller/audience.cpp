@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::show {
 
 Guest place_person(const Person& person, const View& kiosk_view, uint32_t eye, float away) {
   Guest guest;
@@ -137,4 +137,4 @@ Audience gather_audience(const std::vector<Eye>& eyes, const std::string& kiosk,
   return audience;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #include "wire/messages.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // One kiosk camera, connected or lost.
 struct Eye {
@@ -60,4 +60,4 @@ Audience gather_audience(const std::vector<Eye>& eyes, const std::string& kiosk,
                          const View& kiosk_view, double now, const Audience& before = {},
                          float away = viewing_distance);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

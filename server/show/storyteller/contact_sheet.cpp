@@ -10,7 +10,7 @@
 #include <stb_easy_font.h>
 #pragma GCC diagnostic pop
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr int gap = 4;
@@ -79,4 +79,4 @@ Frame render_sheet(const Character& character, const std::vector<SheetCell>& cel
   return sheet;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 
 #include "show/storyteller/portrait.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct SheetCell {
   std::string label;
@@ -23,4 +23,4 @@ Frame render_sheet(const Character& character, const std::vector<SheetCell>& cel
 void draw_text(Frame& frame, const std::string& text, int x, int y, int scale, vec3 color);
 int text_width(const std::string& text, int scale);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

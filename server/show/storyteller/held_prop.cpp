@@ -7,7 +7,7 @@
 #include "show/exhibit/exhibit_props.h"
 #include "show/lighting/changing_light.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 uint32_t channel_of(int prop) { return 7000 + 8 * uint32_t(prop); }
@@ -75,4 +75,4 @@ void add_held_lights(const Exhibit& exhibit, const HeldProp& held, double time, 
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 #include "show/exhibit/exhibit.h"
 #include "show/moving/prop.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct HeldProp {
   int prop = -1;     // index into Exhibit::props; -1: nothing is held and nothing shines
@@ -34,4 +34,4 @@ PropPose pose_of(const Exhibit& exhibit, const HeldProp& held, int prop, double 
 void add_held_lights(const Exhibit& exhibit, const HeldProp& held, double time, uint32_t first_id,
                      DynamicLights& lights);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

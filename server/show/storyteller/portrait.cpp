@@ -9,7 +9,7 @@
 #include "show/moving/figure.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 Material paint(const char* name, vec3 color, float roughness) {
@@ -149,4 +149,4 @@ Frame render_portrait(const Character& character, const Pose& pose, const Portra
   return render_still(*find_technique("path"), world, lights, view, settings);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

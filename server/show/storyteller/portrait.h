@@ -7,7 +7,7 @@
 #include "frame/frame.h"
 #include "show/storyteller/held_prop.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct PortraitShot {
   int width = 720, height = 1080, spp = 64;
@@ -23,4 +23,4 @@ struct PortraitShot {
 Frame render_portrait(const Character& character, const Pose& pose, const PortraitShot& shot,
                       std::vector<std::string>& warnings);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -15,7 +15,7 @@
 #include "base/rng.h"
 #include "show/storyteller/voice.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace fs = std::filesystem;
 
@@ -143,4 +143,4 @@ void read_recordings(Exhibit& exhibit, const RecordingOptions& options,
     }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

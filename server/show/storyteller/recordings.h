@@ -7,7 +7,7 @@
 #include "show/exhibit/exhibit.h"
 #include "show/exhibit/problem.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct RecordingOptions {
   std::string
@@ -26,4 +26,4 @@ void read_recordings(Exhibit& exhibit, const RecordingOptions& options,
 // Marks of one recording as the file beside it would hold them: for `speak --story --audio --json`.
 std::string marks_file_of(const std::string& recording);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

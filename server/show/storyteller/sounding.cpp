@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/storyteller/sounding.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 SpeechSource make_speech_source(std::shared_ptr<Speaker> speaker) {
   SpeechSource source;
@@ -50,4 +50,4 @@ std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
   return lines;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

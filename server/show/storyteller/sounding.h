@@ -13,7 +13,7 @@
 #include "show/exhibit/exhibit.h"
 #include "show/storyteller/voice.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Who speaks: a Speaker, or a test's stand-in. Each call returns at once.
 struct SpeechSource {
@@ -57,4 +57,4 @@ SpeechRequest request_of(const StoryLine& line, const std::string& lang, const V
 // may tell and tours in the voice of the first. The rest is made when it is asked for.
 std::vector<SpeechRequest> lines_of(const Exhibit& exhibit);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

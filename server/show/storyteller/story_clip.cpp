@@ -5,7 +5,7 @@
 
 #include "show/storyteller/story_marks.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 std::vector<StoryMoment> act_story(const Exhibit& exhibit, const Character& character,
                                    const mat4& placement, const StoryText& story,
@@ -47,4 +47,4 @@ std::vector<StoryMoment> act_story(const Exhibit& exhibit, const Character& char
   return moments;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

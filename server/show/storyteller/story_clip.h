@@ -9,7 +9,7 @@
 #include "avatar/mind/storyteller.h"
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct StoryMoment {
   double time = 0;   // seconds from the beginning
@@ -34,4 +34,4 @@ std::vector<StoryMoment> act_story(const Exhibit& exhibit, const Character& char
                                    const std::vector<std::shared_ptr<const Speech>>& spoken,
                                    const ClipSettings& settings);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/storyteller/held_prop.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -45,4 +45,4 @@ StoryCue make_cue(const Exhibit& exhibit, const Voice& voice, const VoiceEvents&
   return cue;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

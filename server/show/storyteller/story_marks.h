@@ -6,9 +6,9 @@
 #include "show/exhibit/exhibit.h"
 #include "show/storyteller/voice.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What the story asks of the body now; nothing while nothing marked is told. `events` of this tick.
 StoryCue make_cue(const Exhibit& exhibit, const Voice& voice, const VoiceEvents& events);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 constexpr float breath = 0.35f;  // pause after a sentence, part of its time
@@ -155,4 +155,4 @@ float speaking(const Voice& voice, float ahead) {
   return std::clamp(std::min(voice.elapsed / 0.15f, left / 0.15f), 0.0f, 1.0f);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -13,7 +13,7 @@
 #include "avatar/story/timeline.h"
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Utterance {
   LocalLine line;
@@ -81,4 +81,4 @@ VisemeWeights mouth_shape(const Voice& voice, float ahead = 0);
 // at the beginning of the sentence and a fall at its end.
 float speaking(const Voice& voice, float ahead = 0);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -91,4 +91,4 @@ void advance_around(const Viewpoint& from, float forward, bool leaps, float dt, 
   find_view(from, around);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

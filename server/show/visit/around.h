@@ -6,7 +6,7 @@
 #include "show/exhibit/exhibit.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Around {
   int point = -1;       // index into Exhibit::points; -1: nothing
@@ -33,4 +33,4 @@ void turn_around(vec2 look, Around& around);
 // visitor stands; `leaps`: at once. It ends by itself once it has gone back.
 void advance_around(const Viewpoint& from, float forward, bool leaps, float dt, Around& around);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -266,4 +266,4 @@ float turn_ahead(const CameraPath& path, double time, double seconds) {
   return std::hypot(then.yaw - now.yaw, then.pitch - now.pitch);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct CameraLimits {
   float speed = 1.2f;              // metres a second
@@ -40,4 +40,4 @@ Viewpoint eval_camera_path(const CameraPath& path, double time);
 // Radians that it turns within `seconds` from `time` on.
 float turn_ahead(const CameraPath& path, double time, double seconds);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -253,4 +253,4 @@ std::optional<Viewpoint> good_view(const Exhibit& exhibit, const World& world, c
   return view;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

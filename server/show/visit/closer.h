@@ -9,7 +9,7 @@
 #include "show/visit/walk_map.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The first surface along a ray that is neither glass nor a storyteller.
 Hit first_solid(const World& world, Ray ray);
@@ -34,4 +34,4 @@ std::optional<Viewpoint> good_view(const Exhibit& exhibit, const World& world, c
                                    std::optional<vec3> near, const Viewpoint& from, float aspect,
                                    float fov);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

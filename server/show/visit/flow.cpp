@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 constexpr double silence = 2;       // seconds without an acknowledgement before a trickle is sent
@@ -99,4 +99,4 @@ double expected_bytes(const Flow& flow, double pixels, int quality, bool full_ch
                          (full_chroma ? full_chroma_size : 1));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,9 +11,10 @@
 #include <cstdint>
 #include <deque>
 
+#include "base/layers.h"
 #include "wire/delivery.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 inline constexpr size_t max_in_flight = 2;
 
@@ -55,4 +56,4 @@ float size_of_quality(int quality);
 // As the pictures before suggest. `pixels` may be of a part.
 double expected_bytes(const Flow& flow, double pixels, int quality, bool full_chroma);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

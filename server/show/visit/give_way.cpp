@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -146,4 +146,4 @@ PicturePlan plan_picture(const GiveWay& way, const Flow& flow, const FlowWishes&
   return plan;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

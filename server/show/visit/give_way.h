@@ -9,7 +9,7 @@
 
 #include "show/visit/flow.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 enum class Limit : uint8_t { none, network, server, browser };
 inline constexpr const char* limit_names[] = {"none", "network", "server", "browser"};
@@ -56,4 +56,4 @@ double usable_bytes(const Flow& flow);
 // JPEG quality, at most `best`, for `pixels` in so many bytes.
 int quality_within(const Flow& flow, double bytes, double pixels, int best, bool full_chroma);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 constexpr float slow_seconds = 0.35f;  // how softly it slows down
@@ -19,4 +19,4 @@ Viewpoint advance_glide(Glide& glide, bool leaps, float dt) {
   return view;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/visit/camera_path.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // Quicker than a tour: the visitor knows where it leads.
 inline constexpr CameraLimits glide_limits{1.7f, 0.9f, 1.1f, 1.5f};
@@ -19,4 +19,4 @@ struct Glide {
 // Moves on by `dt` seconds, 0 to 0.25, or, where it leaps, to the end. Call while there is a path.
 Viewpoint advance_glide(Glide& glide, bool leaps, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 #include "cache/predict.h"
 #include "picture/keyframe.h"
 
-namespace wellspring {
+namespace wellspring::show {
 namespace {
 
 constexpr double motion_seconds =
@@ -85,4 +85,4 @@ bool is_elsewhere(const View& wide, const View& now) {
          length(wide.position - now.position) > walked_away;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Heading {
   struct PastView {
@@ -38,4 +38,4 @@ View wide_view(const View& now);
 // The visitor has moved away from what such a view shows well.
 bool is_elsewhere(const View& wide, const View& now);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/visit/walk.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
@@ -68,4 +68,4 @@ TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
   return {};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

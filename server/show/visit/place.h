@@ -12,7 +12,7 @@
 #include "world/view.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct VisitorPlace {
   Viewpoint view;
@@ -43,4 +43,4 @@ void stand(VisitorPlace& place);
 // There is then nothing left to be seen of where the visitor was.
 void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibit, int viewpoint);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 #include <queue>
 #include <fmt/core.h>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -193,4 +193,4 @@ int nearest_of(const WalkMap& map, const std::vector<int>& places, vec3 ground) 
   return best;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 
 #include "show/visit/walk_map.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Route {
   std::vector<vec3> points;  // on the ground, some 0.15 m apart, the ends included; empty: no way
@@ -26,4 +26,4 @@ std::vector<int> reachable_places(const WalkMap& map, vec3 eye);
 // Of these the one nearest to a point on the ground; -1: there are none.
 int nearest_of(const WalkMap& map, const std::vector<int>& places, vec3 ground);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -7,7 +7,7 @@
 
 #include "show/visit/route.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -234,4 +234,4 @@ TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,
   return step;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -11,7 +11,7 @@
 #include "show/storyteller/voice.h"
 #include "show/visit/walk_map.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // What tours of an exhibit need, made once: where one can walk, and the ways between stops.
 struct TourRoads {
@@ -71,4 +71,4 @@ void look_round(TourRide& ride, vec2 by);
 TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,
                       const TourRoads& roads, float dt);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -131,4 +131,4 @@ dvec3 walk(const World& world, const std::optional<WalkSettings>& rules, dvec3 p
   return result;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -6,7 +6,7 @@
 #include "show/exhibit/problem.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // The place after moving from `position` (absolute) with `velocity` (metres a second, world axes)
 // for `dt` seconds (0 to 0.25; longer steps are cut). With no rules: free flight.
@@ -25,4 +25,4 @@ void check_ground(const Exhibit& exhibit, const World& world, std::vector<Proble
 // Velocity in world axes of `move` = [right, up, forward] for a visitor looking along `yaw`.
 vec3 move_direction(vec3 move, float yaw);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -8,7 +8,7 @@
 #include "base/cancel.h"
 #include "base/parallel.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -255,4 +255,4 @@ float ground_at(const WalkMap& map, float x, float z, float near) {
   return weights > 1e-6f ? sum / weights : near;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

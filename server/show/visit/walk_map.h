@@ -9,7 +9,7 @@
 #include "show/exhibit/exhibit.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct WalkPlace {
   vec3 ground{0};   // relative to the scene's origin
@@ -52,4 +52,4 @@ float clear_at(const WalkMap& map, vec3 ground);
 // Height of the ground near (x, z), from the places around; `near` tells storeys apart.
 float ground_at(const WalkMap& map, float x, float z, float near);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace fs = std::filesystem;
 
@@ -45,4 +45,4 @@ bool FolderWatch::changed() {
   return std::exchange(known_, last_) != last_;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

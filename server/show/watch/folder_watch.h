@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::show {
 
 class FolderWatch {
  public:
@@ -31,4 +31,4 @@ class FolderWatch {
   Files known_, last_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace wellspring {
+namespace wellspring::show {
 
 using nlohmann::json;
 
@@ -26,4 +26,4 @@ void set_problems(Show& show, std::vector<Problem> problems) {
     if (visitor.welcomed) visitor.link->send_text(message);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -5,7 +5,7 @@
 
 #include "show/state/show.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 // {"type": "problems", "list": [{file, where, what}]}; an empty list: all is mended.
 std::string write_problems(const std::vector<Problem>& problems);
@@ -14,4 +14,4 @@ std::string write_problems(const std::vector<Problem>& problems);
 // is no news.
 void set_problems(Show& show, std::vector<Problem> problems);
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -15,7 +15,7 @@
 #include "show/state/show.h"
 #include "show/watch/folder_watch.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 namespace {
 
@@ -115,4 +115,4 @@ bool Rehearsal::at_work() const { return impl_->at_work; }
 
 std::optional<Rehearsal::Outcome> Rehearsal::take() { return impl_->outcome.take(); }
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -9,7 +9,7 @@
 
 #include "show/exhibit/problem.h"
 
-namespace wellspring {
+namespace wellspring::show {
 
 struct Show;
 
@@ -39,4 +39,4 @@ class Rehearsal {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::show

@@ -3,9 +3,10 @@
 
 #include <filesystem>
 
+#include "base/layers.h"
 #include "gltf/file.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 using namespace gltf;
 
@@ -30,4 +31,4 @@ Credit load_credit(const std::string& path, const std::string& package) {
   return credit;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -4,7 +4,7 @@
 #pragma once
 #include <string>
 
-namespace wellspring {
+namespace wellspring::world {
 
 struct Credit {
   std::string file;  // as the exhibit names it
@@ -18,4 +18,4 @@ struct Credit {
 // Throws LoadError. `package` as in SceneLoadOptions.
 Credit load_credit(const std::string& path, const std::string& package = "");
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -21,7 +21,7 @@
 #include <stb_image.h>
 #pragma GCC diagnostic pop
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 struct Free {
@@ -154,4 +154,4 @@ std::string decode_radiance(std::span<const uint8_t> bytes, Image& image) {
   return "";
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

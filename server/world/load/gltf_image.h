@@ -7,7 +7,7 @@
 
 #include "world/texture.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 constexpr int image_side_limit = 16384;
 constexpr int64_t image_texel_limit = int64_t(1) << 28;  // all pictures of a scene together
@@ -19,4 +19,4 @@ std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image
 // Radiance .hdr to linear floats. Returns an empty string, or what is wrong.
 std::string decode_radiance(std::span<const uint8_t> bytes, Image& image);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -10,7 +10,7 @@
 #include "gltf/uri.h"
 #include "world/load/gltf_image.h"
 
-namespace wellspring::gltf {
+namespace wellspring::world {
 namespace {
 
 class Materials {
@@ -298,4 +298,4 @@ void load_materials(File& file, Scene& scene) {
     scene.materials.push_back(materials.make(list[i], at("/materials", i)));
 }
 
-}  // namespace wellspring::gltf
+}  // namespace wellspring::world

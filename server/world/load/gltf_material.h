@@ -4,10 +4,10 @@
 #include "gltf/file.h"
 #include "world/scene.h"
 
-namespace wellspring::gltf {
+namespace wellspring::world {
 
 // Fills scene.materials (0 is the default material, i + 1 the file's material i), textures and
 // images.
 void load_materials(File& file, Scene& scene);
 
-}  // namespace wellspring::gltf
+}  // namespace wellspring::world

@@ -10,7 +10,7 @@
 #include "gltf/primitive.h"
 #include "world/mesh_finish.h"
 
-namespace wellspring::gltf {
+namespace wellspring::world {
 namespace {
 
 constexpr float farthest = 1e15f;  // beyond it squares of distances leave the range of float
@@ -232,4 +232,4 @@ std::vector<dmat4> joint_matrices(File& file, size_t skin, const std::vector<dma
   return result;
 }
 
-}  // namespace wellspring::gltf
+}  // namespace wellspring::world

@@ -6,7 +6,7 @@
 #include "gltf/file.h"
 #include "world/scene.h"
 
-namespace wellspring::gltf {
+namespace wellspring::world {
 
 // What poses a primitive's vertices: morph weights and, for skinned ones, a matrix per joint.
 struct Deformation {
@@ -33,4 +33,4 @@ BuiltMesh build_primitive(File& file, size_t mesh, size_t primitive, const Defor
 // The joints and bind matrices of a skin, `global` being every node's transform.
 std::vector<dmat4> joint_matrices(File& file, size_t skin, const std::vector<dmat4>& global);
 
-}  // namespace wellspring::gltf
+}  // namespace wellspring::world

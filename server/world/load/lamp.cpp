@@ -6,7 +6,7 @@
 
 #include "base/near_name.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 bool has(const std::vector<int>& list, int value) {
@@ -82,7 +82,7 @@ struct Gathered {
   void add_instance(const Scene& scene, size_t instance) {
     exists = true;
     int material = material_of(scene, scene.instances[instance]);
-    if (!wellspring::emits(scene.materials[size_t(material)])) return;
+    if (!wellspring::light::emits(scene.materials[size_t(material)])) return;
     emits = true;
     if (const Lamp* owner = owner_of_material(scene, material)) taken = owner;
     else instances.push_back(instance);
@@ -214,4 +214,4 @@ void remove_lights(std::span<const int> lights, Scene& scene) {
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

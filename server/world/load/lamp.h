@@ -5,7 +5,7 @@
 
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 struct LampNames {
   std::string name;
@@ -34,4 +34,4 @@ int lamp_of_light(const Scene& scene, int light);
 // Takes these lights out of the scene and its lamps; the others move up.
 void remove_lights(std::span<const int> lights, Scene& scene);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -10,7 +10,7 @@
 #include "gltf/pose.h"
 #include "world/load/gltf_mesh.h"
 
-namespace wellspring::gltf {
+namespace wellspring::world {
 namespace {
 
 void mend(std::vector<vec3>& differences) {
@@ -107,4 +107,4 @@ void MotionLoad::finish(Scene& scene) {
   scene.motions.push_back(std::move(placed));
 }
 
-}  // namespace wellspring::gltf
+}  // namespace wellspring::world

@@ -6,7 +6,7 @@
 #include "gltf/file.h"
 #include "world/motion/scene_motion.h"
 
-namespace wellspring::gltf {
+namespace wellspring::world {
 
 class MotionLoad {
  public:
@@ -30,4 +30,4 @@ class MotionLoad {
   std::vector<Shown> shown_;
 };
 
-}  // namespace wellspring::gltf
+}  // namespace wellspring::world

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <csetjmp>
 
-namespace wellspring {
+namespace wellspring::world {
 
 PngReader::PngReader(std::span<const uint8_t> bytes) : left_(bytes) {
   png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, fail, [](png_structp, const char*) {});
@@ -57,4 +57,4 @@ bool PngReader::read_texels(void* texels) {
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -10,7 +10,7 @@
 struct png_struct_def;
 struct png_info_def;
 
-namespace wellspring {
+namespace wellspring::world {
 
 class PngReader {
  public:
@@ -38,4 +38,4 @@ class PngReader {
   png_info_def* info_ = nullptr;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 
+#include "base/layers.h"
 #include "gltf/uri.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 using namespace gltf;
 
@@ -26,4 +27,4 @@ std::vector<std::string> list_scene_files(const std::string& path) {
   return names;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Of buffers and pictures that lie beside a .gltf or .glb: paths relative to its folder, each once;
 // not the file itself, and none of those that are missing. Throws LoadError.
 std::vector<std::string> list_scene_files(const std::string& path);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 // Farther than this from zero floats lose millimetres: the scene gets an origin of its own.
@@ -94,4 +94,4 @@ void scale_light(Scene& scene, float factor) {
   for (Material& material : scene.materials) material.emission *= factor;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -3,7 +3,7 @@
 #pragma once
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Where a scene stands: scaled, then turned about +Y, then moved.
 struct ScenePlace {
@@ -27,4 +27,4 @@ int add_materials(Scene& into, Scene& part);
 // Multiplies punctual lights and what materials emit.
 void scale_light(Scene& scene, float factor);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -18,7 +18,7 @@
 #include "gltf/instances.h"
 #include "gltf/pose.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 using namespace gltf;
@@ -337,4 +337,4 @@ void load_environment(const std::string& path, Scene& scene) {
   if (scene.environment.radiance == vec3(0)) scene.environment.radiance = vec3(1);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

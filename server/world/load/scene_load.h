@@ -8,7 +8,7 @@
 
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 struct SceneLoadOptions {
   // Seconds: the pose of the file's first animation at this time; 0 is the rest pose.
@@ -26,4 +26,4 @@ Scene load_scene(const std::string& path, const SceneLoadOptions& options = {});
 // Latitude-longitude environment picture (.hdr) appended to the scene's images. Throws LoadError.
 void load_environment(const std::string& path, Scene& scene);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

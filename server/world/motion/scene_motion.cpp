@@ -7,7 +7,7 @@
 
 #include "gltf/pose.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 namespace {
 
@@ -170,4 +170,4 @@ void subdivide(Mover& mover, double scale, double longest, size_t most_triangles
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -11,7 +11,7 @@
 #include "gltf/node.h"
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 struct MorphTarget {
   std::vector<vec3> positions, normals;  // differences; empty, or as long as the mesh's
@@ -67,4 +67,4 @@ void pose_mover(const ScenePose& pose, const Mover& mover, const dmat4& to_scene
 // stays as it is.
 void subdivide(Mover& mover, double scale, double longest, size_t most_triangles);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -6,7 +6,7 @@
 
 #include "base/simd.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Of `pixel` (row after row from the picture's top left), the share that is covered by what
 // `other`, a neighbour or a pixel near, shows: above 0, at most a half. Exact where one straight
@@ -21,4 +21,4 @@ struct EdgeShare {
 // it is empty, none is.
 using PixelsDiffer = std::function<Lanes(uint32_t pixel, uint32_t step, int count)>;
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -16,7 +16,7 @@
 #include "world/raster/raster_tile.h"
 #include "world/world_alpha.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 constexpr int block_clusters = 32;
@@ -145,7 +145,7 @@ void Raster::Impl::find_pieces(const View& view, const RasterSettings& settings)
     if (settings.shows == RasterShows::still && placed.moving) continue;
     if (settings.shows == RasterShows::moving && !placed.moving && !veils(placed)) continue;
     moving[i] = moving_box(placed);
-    wellspring::find_pieces(view, placed, meshes[mesh_of[i]], i, moving[i],
+    wellspring::world::find_pieces(view, placed, meshes[mesh_of[i]], i, moving[i],
                             std::max(near, view.near), pieces);
   }
 }
@@ -426,4 +426,4 @@ void Raster::draw(const View& view, const RasterSettings& settings,
     }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

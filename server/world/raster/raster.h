@@ -15,7 +15,7 @@
 #include "world/view.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // What see-through surfaces do to the light from behind: light * tint + glow.
 struct Veil {
@@ -82,4 +82,4 @@ class Raster {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::world

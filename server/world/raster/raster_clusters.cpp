@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 uint64_t spread(uint32_t x) {  // ten bits to every third place
@@ -112,4 +112,4 @@ MeshClusters make_clusters(const Mesh& mesh) {
   return out;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -8,7 +8,7 @@
 
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 struct Cluster {
   static constexpr int most_triangles = 128, most_corners = 248;  // so that they pad to 256
@@ -36,4 +36,4 @@ struct MeshClusters {
 };
 MeshClusters make_clusters(const Mesh& mesh);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::world {
 
 Bounds moving_box(const PlacedMesh& placed) {
   Bounds box;
@@ -116,4 +116,4 @@ bool is_hidden(const View& view, const RasterView& raster, const Bounds& box, co
   return true;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

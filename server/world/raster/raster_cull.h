@@ -10,7 +10,7 @@
 #include "world/raster/raster_tile.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // One cluster of one instance that may be in sight.
 struct RasterPiece {
@@ -36,4 +36,4 @@ size_t put_hiding_first(std::vector<RasterPiece>& pieces);
 bool is_hidden(const View& view, const RasterView& raster, const Bounds& box, const mat4* to_world,
                std::span<const TilePixels> tiles);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

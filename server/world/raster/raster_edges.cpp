@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 constexpr float step_tolerance = 0.01f;  // of the depth: farther apart is another surface
@@ -96,4 +96,4 @@ EdgeCover find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y,
   return {};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

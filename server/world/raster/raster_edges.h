@@ -11,7 +11,7 @@
 #include "world/raster/raster_tile.h"
 #include "world/raster/raster_walk.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // One of two neighbouring sampling places: its triangle (null: nothing there) and inverse depth.
 struct EdgeSide {
@@ -175,4 +175,4 @@ struct EdgeFinder {
   }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::world

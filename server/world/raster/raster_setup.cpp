@@ -6,7 +6,7 @@
 
 #include "base/simd.h"
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 RasterPoint to_picture(const RasterCorner& c) {
@@ -180,4 +180,4 @@ void add_triangle(const RasterView& view, const RasterCorners& c, int i, int j, 
            to_picture(polygon[side][m + 1]), part, out);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

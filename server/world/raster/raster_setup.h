@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Subdivision of a pixel that corners are rounded to; the furthest pixel from the centre they may
 // reach.
@@ -72,4 +72,4 @@ void project_corners(const RasterView& view, int count, RasterCorners& corners);
 void add_triangle(const RasterView& view, const RasterCorners& corners, int i, int j, int k,
                   const RasterTriangle& unfinished, std::vector<RasterTriangle>& out);
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -8,7 +8,7 @@
 #include "base/simd.h"
 #include "world/raster/raster_setup.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 inline constexpr int tile_width = 64, tile_height = 32;  // depths and numbers fit the first cache
 inline constexpr uint32_t no_triangle = 0xffffffffu;
@@ -184,4 +184,4 @@ template <class Body>
   }
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

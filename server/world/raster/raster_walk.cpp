@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace wellspring {
+namespace wellspring::world {
 namespace {
 
 constexpr float crease_cosine = 0.9f;  // of the angle between neighbours' normals
@@ -169,4 +169,4 @@ EdgeLine SurfaceWalk::end_of(const RasterTriangle& t, const TriangleExit& exit, 
   return end;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::world

@@ -11,7 +11,7 @@
 #include "world/view.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::world {
 
 // Which triangles of a mesh meet along their edges, vertices being the same where their places are.
 struct MeshNeighbours {
@@ -56,4 +56,4 @@ struct SurfaceWalk {
                   bool vertical) const;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::world

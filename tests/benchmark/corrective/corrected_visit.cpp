@@ -10,7 +10,7 @@
 #include "picture/read_surface.h"
 #include "show/exhibit/eye_places.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int still_after = 15;  // pictures, as the show's quarter of a second
@@ -98,4 +98,4 @@ void CorrectedVisit::draw(const View& view, Frame& shown) {
   cache_.end_frame(points);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

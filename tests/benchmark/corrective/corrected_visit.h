@@ -8,7 +8,7 @@
 #include "picture/compositor.h"
 #include "show/exhibit/exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // How a visitor's samples are spent. `share` of them is asked for by the order, at most; the render
 // cache plans the others, with `weight` as the factor of what shines.
@@ -60,4 +60,4 @@ class CorrectedVisit {
   std::vector<Sample> samples_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

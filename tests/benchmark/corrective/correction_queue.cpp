@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 CorrectionSettings usable(CorrectionSettings settings) {
@@ -124,4 +124,4 @@ CorrectionStats CorrectionQueue::stats() const {
   return stats_;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,7 +13,7 @@
 #include "sqrt5_grid.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct CorrectionRegion {
   uint32_t object = 0;
@@ -97,4 +97,4 @@ class CorrectionQueue {
   CorrectionStats stats_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

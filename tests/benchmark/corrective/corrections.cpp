@@ -12,7 +12,7 @@
 #include "light/visible/visible_material.h"
 #include "picture/surface_image.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // The words of a sample are those of a point of its surface (picture/surface_image.h), the last as
@@ -214,4 +214,4 @@ void Corrections::show(const View& lit, Frame& light) {
   });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

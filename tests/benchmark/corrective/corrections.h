@@ -15,7 +15,7 @@
 #include "light/sample.h"
 #include "light/visible/visibility.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Of each object by its number, how far the cosine to the eye may change until its samples are
 // invalid (delta_of()); 0: it is matte, and nothing of it is corrected.
@@ -79,4 +79,4 @@ class Corrections {
   CorrectionCounts counts_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

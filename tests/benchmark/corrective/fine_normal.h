@@ -9,7 +9,7 @@
 
 #include "base/simd3.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Of a vector of any length but 0.
 inline uint32_t pack_fine_normal(vec3 n) {
@@ -34,4 +34,4 @@ inline Lanes3 unpack_fine_normal(const LaneBits& p) {
   return {x * scale, y * scale, z * scale};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

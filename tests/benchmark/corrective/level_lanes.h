@@ -3,7 +3,7 @@
 #pragma once
 #include "base/simd3.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // The first `count` of eight neighbours in memory, 0 in the other lanes.
 template <class V = Lanes, class T>
@@ -20,4 +20,4 @@ inline Lanes3 load_places(const Samples& list, int begin, int count) {
   return {load_some(&list.x[i], count), load_some(&list.y[i], count), load_some(&list.z[i], count)};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

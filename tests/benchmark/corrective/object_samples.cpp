@@ -10,7 +10,7 @@
 #include "fine_normal.h"
 #include "level_lanes.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // What is done to every array of a list.
@@ -245,4 +245,4 @@ AgeingStats age_samples(SampleStore& store, vec3 eye, uint32_t age,
   return {checked, invalid, dropped};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "sqrt5_grid.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // What a sample shows, towards the view that asked: words of the caller's, kept as they are.
 using SampleWords = std::array<uint32_t, 4>;
@@ -84,4 +84,4 @@ struct AgeingStats {
 AgeingStats age_samples(SampleStore& store, vec3 eye, uint32_t age,
                         const AgeingSettings& settings = {});
 
-}  // namespace wellspring
+}  // namespace wellspring::test

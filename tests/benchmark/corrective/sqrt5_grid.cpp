@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Towards minus infinity; b > 0.
@@ -128,4 +128,4 @@ void list_places(const Sqrt5Grid& grid, int level, const PixelBox& box, int64_t 
   for (int64_t i = 0; i < count && walk.next(place); i++) places.push_back(place);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -14,7 +14,7 @@
 
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Pixels from (x0, y0) up to, but without, (x1, y1).
 struct PixelBox {
@@ -79,4 +79,4 @@ class Sqrt5Places {
 void list_places(const Sqrt5Grid& grid, int level, const PixelBox& box, int64_t position,
                  int64_t count, std::vector<ivec2>& places);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "fine_normal.h"
 #include "level_lanes.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int tile_width = 64, tile_height = 32;
@@ -251,4 +251,4 @@ SplatStats warp_and_splat(const SampleStore& store, const View& view,
   return stats;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

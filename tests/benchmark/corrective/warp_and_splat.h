@@ -11,7 +11,7 @@
 #include "base/raw_vector.h"
 #include "object_samples.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct SplatStats {
   int samples = 0;  // that were warped
@@ -54,4 +54,4 @@ SplatStats warp_and_splat(const SampleStore& store, const View& view,
                           std::span<const uint32_t> object, SplatScratch& scratch,
                           std::span<SampleWords> words, std::span<uint8_t> level);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 
 #include "frame/picture_file.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::vector<std::vector<VisitorSeen>> watch_visitors(VisitorStage& stage,
   return seen;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -59,4 +59,4 @@ void turn_upside_down(VisitorPicture& picture) {
     for (size_t c = 0; c < 3; c++) std::swap(rgb[3 * i + c], rgb[3 * j + c]);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

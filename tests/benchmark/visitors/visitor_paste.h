@@ -4,7 +4,7 @@
 #pragma once
 #include "visitor_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // In pixels.
 struct PictureArea {
@@ -18,4 +18,4 @@ void paste_portrait(const Image8& from, const PictureArea& part, const PictureAr
 void paste_stripes(const PictureArea& to, float phase, VisitorPicture& picture);
 void turn_upside_down(VisitorPicture& picture);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -16,7 +16,7 @@
 #include "show/moving/figure.h"
 #include "visitor_things.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -292,4 +292,4 @@ VisitorPicture VisitorStage::draw(const VisitorShot& shot, int spp) {
   return impl_->draw(shot, spp);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 
 #include "frame/frame.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 enum class VisitorLight : uint8_t { bright, normal, dim, side, back };
 const char* name_of(VisitorLight light);
@@ -61,4 +61,4 @@ class VisitorStage {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -173,4 +173,4 @@ std::vector<Mesh> make_worn(Scene& scene) {
   return all;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include "world/scene.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Floor, wall and a picture's frame behind whoever stands up to 4 m before the origin, along +z.
 void add_room(Scene& scene);
@@ -16,4 +16,4 @@ void add_window(Scene& scene, vec3 radiance);
 // metres, origin between the pupils, +y up, +z out of the face. Adds their materials to the scene.
 std::vector<Mesh> make_worn(Scene& scene);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,6 +11,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 std::vector<int> order_of(const std::vector<float>& attention, int shares) {

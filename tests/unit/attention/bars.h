@@ -6,7 +6,7 @@
 
 #include "attention/saliency.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct Color8 {
   uint8_t r, g, b;
@@ -62,4 +62,4 @@ inline vec2 most_salient_place(const SaliencyMap& saliency) {
   return (place - saliency.offset) * float(1 << saliency_scale);
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

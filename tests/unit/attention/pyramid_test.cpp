@@ -11,6 +11,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 Plane noise(int width, int height) {

@@ -15,6 +15,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 Image8 noise(int width, int height, uint64_t seed) {

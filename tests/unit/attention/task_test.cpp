@@ -14,6 +14,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 // A view's objects, and what is found in it.

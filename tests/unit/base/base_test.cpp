@@ -12,7 +12,7 @@
 #include "base/rng.h"
 #include "base/vec.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Rng, StreamIsAFunctionOfItsSeedAlone) {
@@ -125,4 +125,4 @@ TEST(LoadError, NamesFilePlaceAndProblem) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include <thread>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Cancel, NothingIsCancelledWithoutAScope) { EXPECT_NO_THROW(check_cancelled()); }
@@ -41,4 +41,4 @@ TEST(Cancel, OtherThreadsGoOn) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr uint64_t format = 0x1234, key = 4711;
@@ -129,4 +129,4 @@ TEST(KeyedFile, ADamagedOneIsNamedOnceAndOneOfAnotherFormatIsNot) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

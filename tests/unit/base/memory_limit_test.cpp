@@ -8,7 +8,7 @@
 
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(MemoryLimit, IsTheLeastOfAllGroupsThatHoldTheProcess) {
@@ -31,4 +31,4 @@ TEST(MemoryLimit, IsTheLeastOfAllGroupsThatHoldTheProcess) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,6 +7,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 const std::vector<std::string> known = {"hall", "crown", "point_far", "Lamp Crown", "well", ""};
 }

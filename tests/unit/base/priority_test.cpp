@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Priority, DoesEachOnce) {
@@ -76,4 +76,4 @@ TEST(Priority, ManyAtATime) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Progress, TellsWhatIsDoneAndWhatIsLeft) {
@@ -50,4 +50,4 @@ TEST(Progress, IsQuietWhereThereIsNoTerminal) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

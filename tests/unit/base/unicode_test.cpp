@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Unicode, AccentsThatStandApartJoinTheirLetters) {
@@ -21,4 +21,4 @@ TEST(Unicode, OtherTextStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include "base/worker.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Worker, DoesOneThingAfterTheOther) {
@@ -48,4 +48,4 @@ TEST(Worker, EndsWithItsWork) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(WriteFile, WhatWasLeftUnfinishedIsTakenAwayUnlessSomebodyWritesIt) {
@@ -43,4 +43,4 @@ TEST(WriteFile, WhatWasLeftUnfinishedIsTakenAwayUnlessSomebodyWritesIt) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

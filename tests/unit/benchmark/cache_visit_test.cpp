@@ -15,7 +15,7 @@
 #include "light/sample/lights.h"
 #include "scenes/scenes.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 VisitTrace make_trace() {
@@ -349,4 +349,4 @@ TEST(VisitMethod, TheSameVisitIsTheSamePicture) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

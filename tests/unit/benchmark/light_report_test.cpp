@@ -12,6 +12,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 size_t count_of(const std::string& text, const std::string& part) {

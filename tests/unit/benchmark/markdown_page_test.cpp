@@ -11,6 +11,8 @@
 #include "benchmark/reports.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using nlohmann::json;
 
 namespace {

@@ -8,6 +8,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 // Radiance 1 with Gaussian noise, brighter by `step` in the left half.

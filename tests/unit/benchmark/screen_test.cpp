@@ -7,7 +7,7 @@
 #include "frame/jpeg.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Image8 plain(int width, int height, uint8_t value) {
@@ -70,4 +70,4 @@ TEST(ScalePicture, MixesBetweenTheMiddlesOfPixels) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

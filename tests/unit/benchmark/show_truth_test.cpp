@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "frame/flip.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Image8 noise(int width, int height) {
@@ -45,4 +45,4 @@ TEST(Window, IsJudgedAsAPartOfTheWholePicture) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,7 +12,7 @@
 #include "frame/flip.h"
 #include "unit/cache/visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 View hall(float x = -1, int width = 160, int height = 90) {
@@ -339,4 +339,4 @@ TEST(BrokeredVisit, AnswersAboutAFigureThatHasMovedOnLandOnItsSkin) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

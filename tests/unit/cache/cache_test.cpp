@@ -13,7 +13,7 @@
 #include "frame/compare.h"
 #include "unit/cache/visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Visitor : Visit {
@@ -335,4 +335,4 @@ TEST(Cache, MovingPointsFollowTheirTriangle) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "cache/packing.h"
 #include "unit/cache/room.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Planner {
@@ -303,4 +303,4 @@ TEST_F(Changes, AreSeenWhereTheViewHasCarriedThem) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,7 +13,7 @@
 #include "picture/surface_image.h"
 #include "unit/cache/room.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Stage {
@@ -473,4 +473,4 @@ TEST(Packing, DeviationsOverTheirMeanKeepTheirValue) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

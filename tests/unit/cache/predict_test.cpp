@@ -11,7 +11,7 @@
 #include "cache/broker.h"
 #include "unit/cache/visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 View turned(float yaw, float pitch = 0, vec3 eye = vec3(0, 1.5f, 2)) {
@@ -180,4 +180,4 @@ TEST(Predict, ATurningCamerasLeadingEdgeIsKnownBefore) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

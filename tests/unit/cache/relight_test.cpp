@@ -10,7 +10,7 @@
 #include "unit/cache/visit.h"
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 View hall() { return look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, 160, 90); }
@@ -229,4 +229,4 @@ TEST(Relight, SwitchedAgainAndAgainStaysFinite) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

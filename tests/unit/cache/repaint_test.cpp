@@ -8,7 +8,7 @@
 #include "light/sample.h"
 #include "unit/cache/room.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Two squares that may move before a wall; each is as bright as its colour.
@@ -147,4 +147,4 @@ TEST(Repaint, TheNextPictureShowsIt) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

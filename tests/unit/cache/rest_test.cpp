@@ -9,7 +9,7 @@
 #include "cache/project.h"
 #include "unit/cache/visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 View hall() { return look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, 160, 90); }
@@ -144,4 +144,4 @@ TEST(Rest, CoplanarSurfacesHideNothingOfEachOther) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "scenes/build.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr vec3 low{-4, 0, -5}, high{4, 3, 5};
@@ -288,4 +288,4 @@ Scene make_room_scene(const Room& room) {
   return scene;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "light/sample.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct Room {
   bool lamp = true, spot = true;
@@ -28,4 +28,4 @@ Frame render_room(const Room& room, const View& view, int spp, uint64_t seed = 9
 // Looking from `eye` at `target`, up +Y.
 View look_at(vec3 eye, vec3 target, float fov_degrees, int width, int height);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

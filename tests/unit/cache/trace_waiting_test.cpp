@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::vector<uint64_t> traced;  // seeds, in order; one thread only
@@ -118,4 +118,4 @@ TEST(TraceWaiting, OtherWorkersMayHelp) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

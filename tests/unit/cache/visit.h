@@ -7,7 +7,7 @@
 #include "picture/compositor.h"
 #include "unit/cache/room.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct Visit {
   Room room;  // with or without its lamp for good, once there is a picture
@@ -61,4 +61,4 @@ struct Visit {
   View shown_;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,7 +12,7 @@
 #include "cache/point_image.h"
 #include "unit/cache/visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const View view = look_at(vec3(0, 1.2f, 3), vec3(0, 1, 0), 60, 160, 90);
@@ -141,4 +141,4 @@ TEST(WeightCells, CoverOddPicturesAndWhatIsEmpty) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

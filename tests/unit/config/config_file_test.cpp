@@ -4,9 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
+#include "base/layers.h"
 #include "unit/folder.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using wellspring::test::Folder;
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include "denoise/transfer.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Picture {
@@ -199,4 +199,4 @@ TEST(Denoiser, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

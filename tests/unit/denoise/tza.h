@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 
 class TzaFile {
  public:
@@ -63,4 +63,4 @@ class TzaFile {
   uint32_t count_ = 0;
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -14,7 +14,7 @@
 
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Of few channels each, none a multiple of a vector's.
@@ -245,4 +245,4 @@ TEST(UNet, RefusesWeightsOfAnotherNetwork) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "base/load_error.h"
 #include "tza.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::string error_of(const std::vector<std::byte>& file) {
@@ -104,4 +104,4 @@ TEST(Weights, SaysWhichFileIsMissing) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,6 +7,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 Frame flat(int width, int height, vec3 color) {
   Frame frame;

@@ -9,7 +9,7 @@
 
 #include "unit/wire/golden.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 160, height = 90;
@@ -121,4 +121,4 @@ TEST(DisparityCode, RefusesTooFewDisparities) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -20,6 +20,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 Image8 flat(int width, int height, int r, int g, int b) {

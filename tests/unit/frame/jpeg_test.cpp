@@ -11,6 +11,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 Image8 gradient(int width, int height) {

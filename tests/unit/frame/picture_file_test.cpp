@@ -16,6 +16,8 @@
 #include "unit/frame/tonemap_color.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 namespace fs = std::filesystem;
 
 namespace {

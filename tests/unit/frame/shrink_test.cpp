@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Image8 noise(int width, int height) {
@@ -37,4 +37,4 @@ TEST(Shrink, EvenColoursStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "frame/jpeg.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Image8 grey(int width, int height, uint8_t value) {
@@ -83,4 +83,4 @@ TEST(Tiles, APartIsEncodedAsItIsInThePicture) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,6 +12,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 Frame row_of(std::vector<vec3> colors) {

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float degree = pi / 180;
@@ -90,4 +90,4 @@ TEST_F(Standing, EachMarkCountsOnceTheyStandStill) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

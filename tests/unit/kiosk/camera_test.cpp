@@ -16,7 +16,7 @@
 #include "kiosk/figure.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::unique_ptr<Camera> open(const std::string& source, bool loop = false) {
@@ -234,4 +234,4 @@ TEST(Feed, a_camera_that_hangs_does_not_hang_the_reader) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Watched : testing::Test {
@@ -61,4 +61,4 @@ TEST_F(Watched, WithoutPicturesItIsMissing) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "kiosk/camera.h"
 #include "kiosk/observe.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const std::filesystem::path faces = std::filesystem::path(WELLSPRING_DATA) / "5_faces";
@@ -78,4 +78,4 @@ TEST(Clips, a_person_at_arms_length_is_confirmed_within_a_second_and_a_half) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "base/load_error.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct ConfigFile : testing::Test {
@@ -126,4 +126,4 @@ TEST_F(ConfigFile, KeepsTheRestWhenTheMountIsWritten) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

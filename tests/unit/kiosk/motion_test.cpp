@@ -7,7 +7,7 @@
 
 #include "kiosk/figure.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double rate = 15;
@@ -84,4 +84,4 @@ TEST(Motion, frames_of_any_size_are_taken) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

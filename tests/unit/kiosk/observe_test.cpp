@@ -13,7 +13,7 @@
 #include "kiosk/face/face_finder.h"
 #include "kiosk/figure.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double frame_rate = 10;
@@ -212,4 +212,4 @@ TEST(Observe, a_missing_cascade_is_named_with_its_package) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

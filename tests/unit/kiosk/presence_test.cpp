@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Change {
@@ -176,4 +176,4 @@ TEST(Presence, a_time_that_is_no_number_changes_nothing) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

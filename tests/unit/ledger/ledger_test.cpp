@@ -13,10 +13,11 @@
 #include <chrono>
 #include <thread>
 
+#include "base/layers.h"
 #include "ledger/sums_file.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct LedgerTest : testing::Test {
@@ -212,4 +213,4 @@ TEST_F(LedgerTest, AFullDiskLosesNothing) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Days as texts, and sums as a table.
+#include "base/layers.h"
 #include "ledger/sums.h"
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Sums, DaysAreReadAsTheyAreWritten) {
@@ -41,4 +42,4 @@ TEST(Sums, AreAdded) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

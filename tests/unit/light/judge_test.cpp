@@ -8,6 +8,8 @@
 #include "statistics.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
 

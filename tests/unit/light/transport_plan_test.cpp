@@ -11,8 +11,10 @@
 #include "unit/light/full_plan.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
-using enum wellspring::TransportPart;
+using enum wellspring::light::TransportPart;
 
 namespace {
 

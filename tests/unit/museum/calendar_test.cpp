@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/layers.h"
 #include "museum/calendar.h"
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr std::time_t noon = 1780000000, day = 86400, year = 365 * day;
@@ -50,4 +51,4 @@ TEST(Calendar, NeverBelievesAClockThatLeapsAllTheTimeOrWasNeverSet) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "base/layers.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Disks, OnlyOnesWithoutRoomAreFull) {
@@ -17,4 +18,4 @@ TEST(Disks, OnlyOnesWithoutRoomAreFull) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

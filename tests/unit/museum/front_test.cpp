@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const std::map<std::string, PageFile> pages = {
@@ -50,4 +50,4 @@ TEST(Front, PeersWaitWithWhatTheyHaveSaid) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

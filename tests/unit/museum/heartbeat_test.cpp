@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-using wellspring::Heartbeat;
+using wellspring::museum::Heartbeat;
 
 TEST(Heartbeat, GoesOnWithTicks) {
   Heartbeat heart;

@@ -10,7 +10,7 @@
 
 #include "unit/show/exhibit/room_package.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::RoomPackage;
@@ -106,4 +106,4 @@ TEST(Museum, ReloadKeepsWhatCannotBeReplaced) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -217,4 +217,4 @@ TEST_F(ReceptionTest, WhoRestsForLongestMakesRoom) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -151,4 +151,4 @@ TEST_F(WaitingQueueTest, WhoLeavesOrIsGoneIsForgottenAndAnotherHelloCounts) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

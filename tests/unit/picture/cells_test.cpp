@@ -8,7 +8,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 96, height = 64;
@@ -144,4 +144,4 @@ TEST(Cells, AnEdgeThatManySamplesKnowStays) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,7 +13,7 @@
 #include "frame/tonemap.h"
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -256,4 +256,4 @@ TEST(Drawn, AnEmptyCacheIsDark) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

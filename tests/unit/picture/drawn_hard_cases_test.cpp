@@ -10,7 +10,7 @@
 #include "frame/compare.h"
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -274,4 +274,4 @@ TEST(DrawnHardCases, ThinRailings) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

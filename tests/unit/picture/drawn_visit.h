@@ -9,7 +9,7 @@
 #include "picture/compositor.h"
 #include "scenes/scenes.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // A scene, and all that drawing asks of it. The ball is a mesh that moves, the scene's last object.
 struct Stage {
@@ -123,4 +123,4 @@ struct DrawnVisit {
   }
 };
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -116,4 +116,4 @@ TEST(FewPoints, GlossyFloorsHaveFewOutliersAtRest) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -99,4 +99,4 @@ TEST(Glow, FollowsTheLampThatIsSwitched) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include "frame/flip.h"
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -42,4 +42,4 @@ TEST(Hint, ShadowsOfALampWithoutASizeAreSure) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "unit/light/bake/bake_cases.h"
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -218,4 +218,4 @@ TEST(MappedLight, ConvergesToTheLightThereIs) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

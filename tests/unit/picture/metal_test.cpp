@@ -6,7 +6,7 @@
 
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -115,4 +115,4 @@ TEST(Metal, HasOneReflectanceInSamplesAndDrawnPictures) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,7 +12,7 @@
 #include "unit/frame/tonemap_color.h"
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 192, height = 128, pixels = width * height;
@@ -399,4 +399,4 @@ TEST(MovingPicture, MergesIntoAKeyframe) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

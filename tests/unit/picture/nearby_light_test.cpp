@@ -14,6 +14,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 constexpr int width = 37, height = 19;  // no lanes divide it, and both sides are near everywhere

@@ -8,6 +8,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 TEST(PixelLight, SomeFlatPixelsAreLitAsAllWouldBe) {
   Rng rng(3);
   auto number = [&] { return float(rng.next() >> 8) * 0x1p-24f; };

@@ -12,6 +12,8 @@
 #include "scenes/scenes.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 
 namespace {

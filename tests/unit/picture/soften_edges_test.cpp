@@ -8,6 +8,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 // Through the tone curve as compose_drawn() does, softened, and what the curve says of light that

@@ -10,7 +10,7 @@
 
 #include "picture/warp_picture.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -429,4 +429,4 @@ TEST(MakeKeyframe, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,7 +13,7 @@
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -136,4 +136,4 @@ TEST_F(Crowd, DisturbsNobodyAndLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

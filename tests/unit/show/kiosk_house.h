@@ -8,7 +8,7 @@
 #include "unit/show/show_stage.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 using nlohmann::json;
 
@@ -97,4 +97,4 @@ struct KioskHouse : testing::Test, ShowStage {
 
 inline const vec3 near_screen(0, 0, 1);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

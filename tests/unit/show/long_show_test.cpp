@@ -8,7 +8,7 @@
 #include "unit/show/kiosk_house.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct House : ShowStage {
@@ -115,4 +115,4 @@ TEST_F(KioskDay, LeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

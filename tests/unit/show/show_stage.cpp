@@ -11,7 +11,7 @@
 #include "show/state/make_show.h"
 #include "show/tick.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 using nlohmann::json;
 
@@ -146,4 +146,4 @@ double mean_difference(const Image8& a, const Image8& b) {
   return sum / double(a.rgb.size());
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

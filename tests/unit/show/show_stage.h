@@ -8,7 +8,7 @@
 #include "unit/show/tiny_exhibit.h"
 #include "wire/packet.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Pictures at rest are drawn by the same technique, but after "gather" by "path".
 ShowSettings settings_for(const std::string& technique, bool background = true, float fps = 60);
@@ -69,4 +69,4 @@ struct ShowStage {
 
 double mean_difference(const Image8& a, const Image8& b);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

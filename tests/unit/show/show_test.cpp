@@ -10,7 +10,7 @@
 #include "unit/show/show_stage.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct ShowTest : testing::Test, ShowStage {
@@ -192,4 +192,4 @@ TEST(MakeShow, UnknownTechniqueIsRefused) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include "unit/show/tiny_figure.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 inline void add_quad(Mesh& mesh, vec3 corner, vec3 u, vec3 v) {
   uint32_t first = uint32_t(mesh.positions.size());
@@ -96,4 +96,4 @@ inline StorytellerPlace& add_storyteller(Exhibit& exhibit, const std::string& id
   return added;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,7 +3,7 @@
 #pragma once
 #include "avatar/figure/character.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 inline Character make_tiny_figure() {
   Character character;
@@ -19,4 +19,4 @@ inline Character make_tiny_figure() {
   return character;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

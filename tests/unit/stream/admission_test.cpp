@@ -2,12 +2,14 @@
 // Who is let in and how much one address may have: rules without sockets.
 #include <gtest/gtest.h>
 
+#include "base/layers.h"
 #include "stream/address.h"
 #include "stream/admission.h"
 #include "stream/frames.h"
 #include "unit/stream/raw_client.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 static Address at(const char* text) { return read_address(text).value(); }

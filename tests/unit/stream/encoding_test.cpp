@@ -6,6 +6,7 @@
 #include "wire/gzip.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 namespace {

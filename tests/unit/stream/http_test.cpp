@@ -8,6 +8,7 @@
 #include "unit/stream/fixture.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 TEST(Http, get_and_head_on_one_connection) {

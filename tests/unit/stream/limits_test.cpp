@@ -3,6 +3,7 @@
 #include "unit/stream/fixture.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 static std::string frame(int first, std::string_view payload) {

@@ -3,6 +3,7 @@
 #include "fixture.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 namespace {

@@ -16,6 +16,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 TEST(Target, good_ones_are_decoded_once) {
   HttpQuestion q;
   ASSERT_EQ(read_target("/", q), 200);

@@ -7,6 +7,7 @@
 #include "stream/ws_client.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 static long resident_kib() {

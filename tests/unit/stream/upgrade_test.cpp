@@ -4,6 +4,7 @@
 #include "stream/ws_client.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 TEST(Upgrade, visit_and_eye_become_links_of_their_kind) {

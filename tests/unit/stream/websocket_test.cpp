@@ -4,6 +4,7 @@
 #include "wire/json.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 static std::string frame(int first, std::string_view payload, bool masked = true) {

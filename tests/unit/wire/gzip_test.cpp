@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/layers.h"
 #include "wire/gzip.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // One member of gzip and nothing behind it, whose checksum is right; else "broken".
@@ -50,4 +51,4 @@ TEST(Gzip, PicturesAndSoundAreNoText) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/layers.h"
 #include "wire/json_line.h"
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(JsonLine, IsWhereTheNameOfAValueStands) {
@@ -21,4 +22,4 @@ TEST(JsonLine, OfWhatIsNoJsonIsUnknown) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

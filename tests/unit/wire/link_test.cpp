@@ -7,6 +7,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 static std::shared_ptr<const Packet> packet(uint8_t value) {
   return std::make_shared<const Packet>(Packet{value});
 }

@@ -11,6 +11,8 @@
 #include "wire/json.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using nlohmann::json;
 
 static std::vector<json> golden(const std::string& name) {

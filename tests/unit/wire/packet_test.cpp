@@ -6,6 +6,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 static Packet golden_picture() { return test::read_golden("picture.hex"); }
 
 static constexpr PacketHeader golden_header{.frame = 0x04030201,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/layers.h"
 #include "wire/prometheus.h"
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Prometheus, AFamilyHasItsCommentsOnceAndItsKindByItsName) {
@@ -37,4 +38,4 @@ TEST(Prometheus, NumbersAreAsShortAsTheirTypeAllows) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,9 +6,10 @@
 #include <barrier>
 #include <thread>
 
+#include "base/layers.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Seal, WhatWasSealedOpensAndNothingElse) {
@@ -82,4 +83,4 @@ TEST(Seal, AnOwnKeyThatWasCutOffIsMadeAnew) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,6 +7,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 static Packet golden_sound() { return test::read_golden("sound.hex"); }
 
 static const SoundHeader golden_header{.utterance = 0x04030201,

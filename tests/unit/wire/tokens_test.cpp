@@ -10,7 +10,7 @@
 #include "base/load_error.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const char* variable = "WELLSPRING_TEST_TOKEN";
@@ -94,4 +94,4 @@ TEST(Token, ComesByBearer) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "world/surface.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -180,4 +180,4 @@ TEST(BackFaces, TheRasteriserSeesWhatRaysSee) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

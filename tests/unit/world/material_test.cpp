@@ -4,7 +4,7 @@
 
 #include "unit/world/load/asset.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::string crc_chunk(const std::string& kind, const std::string& data) {
@@ -382,4 +382,4 @@ TEST(Environment, RadiancePicture) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

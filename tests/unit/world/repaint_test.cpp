@@ -4,7 +4,7 @@
 
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Two squares side by side that move and wear one material, one that moves and wears another, and
@@ -106,4 +106,4 @@ TEST(Repaint, MayLetRaysThrough) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,6 +7,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 vec3 eval_sun_irradiance(const SkySettings& settings) {

@@ -7,7 +7,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 vec3 random_direction(Rng& rng) {
@@ -307,4 +307,4 @@ TEST(Surface, AnisotropyFollowsTheTangentTheAngleAndThePicture) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // 4x1 picture whose red counts 0, 0.25, 0.5, 0.75.
@@ -117,4 +117,4 @@ TEST(Texture, NoTexelsMeansOne) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

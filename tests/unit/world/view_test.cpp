@@ -7,7 +7,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float degrees = pi / 180;
@@ -146,4 +146,4 @@ TEST(View, BadNumbersGiveAUsableView) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

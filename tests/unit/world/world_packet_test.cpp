@@ -9,6 +9,8 @@
 #include "world/world.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 
 // Rays within the box; every 50th round one of them is not a number.

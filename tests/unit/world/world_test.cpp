@@ -8,7 +8,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 vec3 random_vec3(Rng& rng) {
@@ -374,4 +374,4 @@ TEST(World, WrongScenesAreRefused) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -18,7 +18,7 @@
 #include "unit/avatar/speech/narrator.h"
 #include "unit/avatar/speech/speech_texts.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Speech speak(const SpeechRequest& request) {
@@ -387,4 +387,4 @@ TEST_F(SpeechCorpus, ASentenceByTelephone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "avatar/align/time_warp.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // A smooth random curve: templates sample it evenly, recordings at warped times.
@@ -261,4 +261,4 @@ TEST(SpeechWarp, TooFewFramesHaveNoWay) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "base/load_error.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const std::array<ArmPose, 2> rest = {hanging_arm(0.15f), hanging_arm(0.15f)};
@@ -212,4 +212,4 @@ TEST(Gesture, AnyOrderAndTimeStepIsSafe) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "avatar/mind/storyteller.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const GestureLibrary& library = default_gestures();
@@ -149,4 +149,4 @@ TEST(Hold, GesturesOfOneHandAreMadeByTheFreeOne) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

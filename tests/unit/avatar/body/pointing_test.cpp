@@ -9,7 +9,7 @@
 #include "avatar/mind/storyteller.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 float angle_between(vec3 a, vec3 b) { return std::atan2(glm::length(cross(a, b)), dot(a, b)); }
@@ -196,4 +196,4 @@ TEST(Feet, DoNotSlideDuringAnyGesture) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "avatar/mind/storyteller.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Perlin's face after `seconds` with a target that changes at a third of them.
@@ -285,4 +285,4 @@ TEST(Storyteller, WaitsPatientlyAndInvitesAFewTimes) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

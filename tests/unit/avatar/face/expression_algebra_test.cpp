@@ -9,7 +9,7 @@
 #include "avatar/speech/visemes.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // All controls of the set as displacers of their own, and the joints that its rotators turn.
@@ -290,4 +290,4 @@ TEST(EmotionAlgebra, LayersKeepTheirLaws) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

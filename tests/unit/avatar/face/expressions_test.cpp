@@ -6,7 +6,7 @@
 #include "avatar/speech/visemes.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Expressions, TheSetHasTheSixTheVisemesAndWhatAFaceDoes) {
@@ -180,4 +180,4 @@ TEST(Expressions, NestingMultipliesOutAndRotatorsFollowTheirRanges) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include "avatar/figure/hanim_names.h"
 #include "unit/avatar/load/gltf_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using Tree = std::vector<std::pair<std::string, int>>;
@@ -242,4 +242,4 @@ TEST(BoneNames, NoPersonIsNone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

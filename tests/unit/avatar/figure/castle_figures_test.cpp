@@ -10,7 +10,7 @@
 #include "avatar/figure/rig.h"
 #include "avatar/figure/skin.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const char* const displacer_names[] = {
@@ -275,4 +275,4 @@ INSTANTIATE_TEST_SUITE_P(Castle, CastleFigure, testing::Values("storyteller.x3d"
                          });
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include "avatar/figure/describe.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Describe, JsonSaysWhatTheFigureIs) {
@@ -35,4 +35,4 @@ TEST(Describe, NamesThatAreNoUtf8DoNotBreakTheJson) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

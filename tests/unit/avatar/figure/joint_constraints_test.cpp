@@ -16,7 +16,7 @@
 #include "unit/avatar/figures.h"
 #include "unit/avatar/load/gltf_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::add_vrm_0;
@@ -326,4 +326,4 @@ TEST(JointConstraints, BadOnesAreRefusedWithTheirPlaceAndBadPosesAreSafe) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "base/rng.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 vec3 rotation_vector(quat q) {
@@ -153,4 +153,4 @@ TEST(JointLimits, StiffJointsTurnLess) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "gltf/pose.h"
 #include "unit/avatar/load/gltf_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::make_person;
@@ -407,4 +407,4 @@ ROUTE S.value_changed TO D.weight
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "avatar/figure/spring.h"
 #include "avatar/body/stance.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Spring, DoesNotDependOnTheTickRate) {
@@ -196,4 +196,4 @@ TEST(Stance, WholeTurnsAreTakenBack) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

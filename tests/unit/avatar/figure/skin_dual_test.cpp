@@ -5,7 +5,7 @@
 #include "base/rng.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 quat any_turn(Rng& rng) {
@@ -149,4 +149,4 @@ TEST(SkinDual, TheFileMayAskForIt) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

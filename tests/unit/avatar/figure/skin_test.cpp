@@ -4,7 +4,7 @@
 #include "avatar/figure/skin.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 void expect_near(vec3 a, vec3 b, float tolerance = 1e-5f) {
@@ -121,4 +121,4 @@ TEST(Skin, ScratchMayBeUsedForAnotherFigure) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -14,7 +14,7 @@
 #include "unit/avatar/figures.h"
 #include "unit/avatar/load/gltf_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float length = 0.12f;
@@ -341,4 +341,4 @@ TEST(SpringBones, SwingOnlyWhereSomebodyIsNearEnoughToSee) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,7 +12,7 @@
 #include "base/load_error.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -180,4 +180,4 @@ TEST(Corpus, TruncatedFiguresAreRefused) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "base/load_error.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::load_text;
@@ -211,4 +211,4 @@ TEST(Encodings, JoeIsTheSameInXmlAndClassic) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "unit/avatar/figures.h"
 #include "unit/avatar/load/gltf_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::add_vrm_0;
@@ -298,4 +298,4 @@ TEST(GltfFigure, EveryTruncationAndFlippedByteIsRefusedOrLoads) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

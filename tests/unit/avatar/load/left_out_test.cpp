@@ -4,7 +4,7 @@
 
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const std::string one_joint =
@@ -159,4 +159,4 @@ TEST(BvhOffsets, ThatAreZeroAreThoseOfTheFirstFrame) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "base/load_error.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::load_text;
@@ -446,4 +446,4 @@ TEST(Refuse, EveryFlippedByteIsRefusedOrLoads) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include "avatar/body/body.h"
 #include "avatar/load/character_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Thumbs, CloseAcrossThePalm) {
@@ -49,4 +49,4 @@ TEST(Thumbs, CloseAcrossThePalm) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

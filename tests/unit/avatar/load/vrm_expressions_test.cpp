@@ -13,7 +13,7 @@
 #include "base/load_error.h"
 #include "unit/avatar/load/vrm_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::add_vrm_0;
@@ -309,4 +309,4 @@ TEST(VrmExpressions, BindsMoveTheNodesTheyName) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "unit/avatar/figures.h"
 #include "unit/avatar/load/vrm_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::add_vrm_0;
@@ -144,4 +144,4 @@ TEST(VrmMaterials, UnityColoursAreLinear) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,7 +12,7 @@
 #include "base/rng.h"
 #include "unit/avatar/load/vrm_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::add_vrm_0;
@@ -124,4 +124,4 @@ TEST(VrmMutations, MutatedExtensionsNeverCrash) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 
 #include "avatar/mind/behaviour.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Play {
@@ -260,4 +260,4 @@ TEST(Behaviour, ManyPeopleDoNotGrowMemory) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

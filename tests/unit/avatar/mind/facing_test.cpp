@@ -5,7 +5,7 @@
 #include "avatar/mind/storyteller.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const Character& whole() {
@@ -164,4 +164,4 @@ TEST(Facing, AStoryIsToldToWhoIsFarOff) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

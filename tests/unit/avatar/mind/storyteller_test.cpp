@@ -7,7 +7,7 @@
 #include "avatar/mind/storyteller.h"
 #include "unit/avatar/figures.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float deg = pi / 180;
@@ -477,4 +477,4 @@ TEST(Storyteller, AnyFigureAndNoFigure) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a broken voice program may answer.
 #include "avatar/speech/answer.h"
+#include "base/layers.h"
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::string refusal(const std::string& json) {
@@ -43,4 +44,4 @@ TEST(SpeechAnswer, NumbersThatNoIntegerHoldsAreRefused) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

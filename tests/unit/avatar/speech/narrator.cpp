@@ -10,7 +10,7 @@
 #include "avatar/speech/mouth_shapes.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 namespace {
 
@@ -213,4 +213,4 @@ Narrated narrate(SpeechProcess& process, const SpeechRequest& request, const Man
   return {{manner.rate, resample(telling.out, speech.rate, manner.rate)}, std::move(telling.words)};
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,8 +9,9 @@
 #include "avatar/speech/speech.h"
 #include "avatar/speech/process.h"
 #include "avatar/speech/sound_file.h"
+#include "base/layers.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Chances are for each word, one of them at most befalls a word.
 struct Manner {
@@ -37,4 +38,4 @@ struct Narrated {
 // The speech of `request` in this manner.
 Narrated narrate(SpeechProcess& process, const SpeechRequest& request, const Manner& manner);
 
-}  // namespace wellspring
+}  // namespace wellspring::test

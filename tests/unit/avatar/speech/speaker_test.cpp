@@ -8,9 +8,10 @@
 #include <fstream>
 
 #include "avatar/speech/speaker.h"
+#include "base/layers.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,4 +176,4 @@ TEST(Speaker, WaitingRequestsAreBoundedAndAnsweredAtTheEnd) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

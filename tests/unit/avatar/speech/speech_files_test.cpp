@@ -17,7 +17,7 @@
 #include "base/rng.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -228,4 +228,4 @@ TEST(SpeechMarksFile, DamagedMarksNeverCrash) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,9 +13,10 @@
 
 #include "avatar/speech/process.h"
 #include "avatar/speech/mouth_shapes.h"
+#include "base/layers.h"
 #include "unit/avatar/speech/speech_texts.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::shared_ptr<const Speech> speak(SpeechProcess& process, const std::string& text,
@@ -192,4 +193,4 @@ TEST(SpeechProcess, ProgramsThatHangOrDieOrLieAreEnded) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

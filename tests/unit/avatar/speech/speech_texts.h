@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct SpeechText {
   std::string lang, text;
@@ -50,4 +50,4 @@ inline const std::vector<SpeechText>& rich_texts() {
   return texts;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "avatar/speech/make_visemes.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 float at(const VisemeWeights& weights, Viseme viseme) { return weights[size_t(viseme)]; }
@@ -191,4 +191,4 @@ TEST(SpeechVisemes, NothingAndNonsenseAreSilence) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,7 +12,7 @@
 #include "base/load_error.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const char* const tale =
@@ -177,4 +177,4 @@ TEST(SpeechFit, WrongTextsAreToldFromRightOnes) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,8 +10,9 @@
 
 #include "avatar/speech/process.h"
 #include "avatar/story/story_speech.h"
+#include "base/layers.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double window = 0.005;
@@ -135,4 +136,4 @@ TEST_P(StoryLips, OpenAndCloseWithTheSound) {
 INSTANTIATE_TEST_SUITE_P(Languages, StoryLips, testing::Values("en", "de", "sk"));
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

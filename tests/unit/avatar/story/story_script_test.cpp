@@ -11,7 +11,7 @@
 #include "base/load_error.h"
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::vector<std::string> texts(const StoryScript& script) {
@@ -290,4 +290,4 @@ TEST(StoryValue, AsSsmlWritesThem) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

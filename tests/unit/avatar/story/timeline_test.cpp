@@ -9,7 +9,7 @@
 #include "avatar/story/timeline.h"
 #include "base/load_error.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Speech speak(const SpeechRequest& request) {
@@ -235,4 +235,4 @@ TEST(Subtitles, AreAStoryWhoseSentencesMayGoOnInTheNextCue) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include <set>
 #include <thread>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int size = 96;
@@ -212,4 +212,4 @@ TEST(CorrectionQueue, PlansMayComeInWhileThreadsTrace) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

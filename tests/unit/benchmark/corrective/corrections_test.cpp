@@ -13,7 +13,7 @@
 #include "picture/surface_image.h"
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -236,4 +236,4 @@ TEST(Corrections, AreThereWithinGlass) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

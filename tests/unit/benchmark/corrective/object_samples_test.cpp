@@ -10,7 +10,7 @@
 
 #include "unit/benchmark/corrective/stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::Stage;
@@ -215,4 +215,4 @@ TEST(ObjectSamples, WithoutObjectsNothingIsDone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 
 #include "unit/benchmark/corrective/stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using Pixel = std::pair<int, int>;
@@ -151,4 +151,4 @@ TEST(Sqrt5Grid, FinerFootprintsCoverNoPlaceOfACoarserLevel) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,7 +12,7 @@
 #include "base/rng.h"
 #include "unit/benchmark/corrective/stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::count_wrong;
@@ -288,4 +288,4 @@ TEST(WarpAndSplat, TheNumberOfThreadsDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

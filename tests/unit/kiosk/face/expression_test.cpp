@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 FacePlane rest_face() {
@@ -164,4 +164,4 @@ TEST(Expression, nonsense_changes_nothing) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

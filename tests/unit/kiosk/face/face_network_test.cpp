@@ -11,7 +11,7 @@
 #include "kiosk/figure.h"
 #include "kiosk/observe.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -148,4 +148,4 @@ TEST(FaceNetwork, without_weights_or_with_damaged_ones_cascades_run) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 640, height = 480;
@@ -111,4 +111,4 @@ TEST(HeadPose, landmarks_that_are_no_face_are_refused) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 void expect_near(vec3 a, vec3 b, float limit) {
@@ -99,4 +99,4 @@ TEST(Head, degenerate_input_stays_finite) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

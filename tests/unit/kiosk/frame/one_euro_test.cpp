@@ -7,7 +7,7 @@
 
 #include "base/rng.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(OneEuro, the_first_value_passes) {
@@ -61,4 +61,4 @@ TEST(OneEuro, what_is_no_number_or_no_later_changes_nothing) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

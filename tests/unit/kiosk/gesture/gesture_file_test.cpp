@@ -11,7 +11,7 @@
 #include "kiosk/gesture/train.h"
 #include "kiosk/gesture/writer.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,4 +125,4 @@ TEST_F(GestureFile, models_that_are_no_probabilities_are_refused) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

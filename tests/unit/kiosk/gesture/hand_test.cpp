@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "kiosk/gesture/skin.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 320, height = 240;
@@ -144,4 +144,4 @@ TEST(Hand, views_that_cannot_be_used_hold_no_hand) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

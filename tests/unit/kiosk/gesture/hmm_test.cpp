@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "kiosk/gesture/non_gesture.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 void fill(Rng& rng, double* row, size_t count) {
@@ -191,4 +191,4 @@ TEST(NonGesture, the_most_similar_states_are_merged_first) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

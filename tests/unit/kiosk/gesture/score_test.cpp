@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(GestureScore, the_table_of_the_paper_gives_its_percentages) {
@@ -51,4 +51,4 @@ TEST(GestureScore, a_touch_of_a_gesture_is_not_that_gesture) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "kiosk/gesture/train.h"
 #include "kiosk/gesture/writer.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const GestureModels& models() {
@@ -149,4 +149,4 @@ TEST(Spot, nothing_to_learn_from_makes_no_models) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "kiosk/gesture/writer.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 HandPath straight(vec2 from, vec2 to, double seconds, double rate) {
@@ -113,4 +113,4 @@ TEST(Writer, strokes_end_where_their_chords_lead) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

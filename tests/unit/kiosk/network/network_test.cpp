@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The networks against the package that they come from. reference.json is what the package itself
 // computes; make_reference.mjs beside it made it.
+#include "base/layers.h"
 #include "kiosk/network/network.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +85,4 @@ TEST_F(Networks, a_picture_of_another_size_is_refused) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

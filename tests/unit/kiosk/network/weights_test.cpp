@@ -12,7 +12,7 @@
 #include "base/load_error.h"
 #include "kiosk/network/network.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,4 +133,4 @@ TEST_F(Weights, a_network_names_the_tensor_that_does_not_fit) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

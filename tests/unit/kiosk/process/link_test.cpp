@@ -12,7 +12,7 @@
 #include <functional>
 #include <thread>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace asio = boost::asio;
@@ -188,4 +188,4 @@ TEST(Link, something_that_is_no_websocket_server_is_survived) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

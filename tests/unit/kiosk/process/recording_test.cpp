@@ -7,7 +7,7 @@
 #include "unit/folder.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::string observed(double time) {
@@ -68,4 +68,4 @@ TEST_F(Recorded, AFullDiskIsTold) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

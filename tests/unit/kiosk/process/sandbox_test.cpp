@@ -20,7 +20,7 @@
 #include "kiosk/process/eye_process.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Whether the deed says 0 in a process of its own, in the sandbox.
@@ -162,4 +162,4 @@ TEST_F(Sandbox, HoldsForThreadsThatRun) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

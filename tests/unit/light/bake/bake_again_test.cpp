@@ -6,7 +6,7 @@
 #include "unit/folder.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -116,4 +116,4 @@ TEST(BakeAgain, WhatIsNoOtherShardIsNotMerged) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,14 +11,14 @@
 #include "light/bake/finish_bake.h"
 #include "scenes/scenes.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 // Until so many passes are done.
 inline void bake_passes(const BakeScene& scene, Bake& bake, uint64_t passes) {
   if (passes > 0) go_on(scene, bake, [&] { return bake.passes >= passes; });
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test
 
 namespace wellspring::test {
 

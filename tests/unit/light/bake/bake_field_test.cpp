@@ -9,7 +9,7 @@
 #include "unit/light/bake/bake_cases.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -184,4 +184,4 @@ TEST(BakeField, NearerTilesAreNotCoarser) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

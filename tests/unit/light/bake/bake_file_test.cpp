@@ -7,7 +7,7 @@
 #include "unit/folder.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -210,4 +210,4 @@ TEST_F(BakeFiles, LightOfAnotherSceneServesWhereThingsStandAsTheyStood) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

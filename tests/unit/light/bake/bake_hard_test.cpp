@@ -7,7 +7,7 @@
 #include "light/walk/known_light.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -237,4 +237,4 @@ TEST(BakeHard, AMillionTrianglesTakeNoMoreThanTheirNodes) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

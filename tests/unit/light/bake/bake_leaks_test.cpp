@@ -6,7 +6,7 @@
 
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -93,4 +93,4 @@ TEST(BakeLeaks, OutsideALitRoomOfPaperItIsDark) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

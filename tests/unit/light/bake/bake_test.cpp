@@ -7,7 +7,7 @@
 
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -306,4 +306,4 @@ TEST(Bake, GoesAheadWhereOneLooks) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -261,4 +261,4 @@ TEST(Charts, OfThinThingsTakeBoundedTiles) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

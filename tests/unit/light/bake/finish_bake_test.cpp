@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -183,4 +183,4 @@ TEST(FinishBake, CoarseLightIsAddedInBetween) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

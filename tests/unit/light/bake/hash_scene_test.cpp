@@ -7,7 +7,7 @@
 #include "light/bake/bake_file.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -96,4 +96,4 @@ TEST(HashScene, DoesNotChangeWithWhatNoInstanceShows) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -112,4 +112,4 @@ TEST(HeldOut, WhatIsRestoredMustBeOfTheWorld) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

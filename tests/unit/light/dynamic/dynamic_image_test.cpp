@@ -14,6 +14,8 @@
 #include "scenes/scenes.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 
 namespace {

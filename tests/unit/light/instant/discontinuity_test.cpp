@@ -7,6 +7,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 void filter_smooth(const View& view, const DiscontinuitySettings& settings,

@@ -5,7 +5,7 @@
 
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 vec3 daylight(vec3 place) { return {0.25f, 0.5f, 0.75f + 0.1f * place.x}; }
@@ -53,4 +53,4 @@ TEST_F(LampCellsTest, NothingThatIsKnownHasNoCells) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

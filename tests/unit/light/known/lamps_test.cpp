@@ -13,7 +13,7 @@
 #include "unit/light/judge.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // The Cornell box with its lamp, a spot onto its floor, and light from outside.
@@ -207,4 +207,4 @@ TEST(SwitchedLamps, AChangeIsToldWhereItIs) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "unit/light/known/skin_stage.h"
 #include "unit/light/statistics.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 vec3 eval_skin(const SkinTriangle& light, vec2 barycentric) {
@@ -378,4 +378,4 @@ TEST(SkinLight, WhatIsUnknownIsNotBlack) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

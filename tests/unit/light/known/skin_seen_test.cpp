@@ -8,7 +8,7 @@
 #include "light/material/light_slope.h"
 #include "unit/light/known/skin_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float radius = 0.1f;
@@ -129,4 +129,4 @@ TEST(SkinSight, MostSamplesGoWhereItIsSeen) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

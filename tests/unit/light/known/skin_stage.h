@@ -8,7 +8,7 @@
 #include "light/known/skin_light.h"
 #include "scenes/scenes.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 inline constexpr int sphere_rings = 24;
 
@@ -75,4 +75,4 @@ inline PunctualLight make_sun(vec3 direction = {0, -1, 0}, float intensity = pi)
   return sun;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,6 +9,8 @@
 #include "unit/light/statistics.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
 

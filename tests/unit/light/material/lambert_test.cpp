@@ -12,6 +12,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 float signed_unit(Rng& rng) { return 2 * rng.uniform() - 1; }

@@ -7,7 +7,7 @@
 #include "light/random/sampler.h"
 #include "light/random/warp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const vec3 up(0, 1, 0);
@@ -93,4 +93,4 @@ TEST(LightSlope, IsPackedToAHundredthAndBounded) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -12,6 +12,7 @@
 #include "unit/light/statistics.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 namespace {

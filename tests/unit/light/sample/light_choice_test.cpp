@@ -8,6 +8,7 @@
 #include "unit/light/statistics.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 namespace {

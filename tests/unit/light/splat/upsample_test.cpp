@@ -3,6 +3,7 @@
 #include "unit/light/splat/splat_stage.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 namespace {

@@ -3,6 +3,8 @@
 #include "unit/light/splat/splat_stage.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
 

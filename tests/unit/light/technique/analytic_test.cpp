@@ -4,6 +4,8 @@
 #include "unit/light/judge.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
 

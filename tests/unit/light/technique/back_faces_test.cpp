@@ -7,6 +7,8 @@
 #include "scenes/build.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 
 namespace {

@@ -9,7 +9,9 @@
 #include "world/load/scene_load.h"
 
 using namespace wellspring;
-using enum wellspring::TransportPart;
+
+using namespace wellspring::test;
+using enum wellspring::light::TransportPart;
 
 namespace {
 

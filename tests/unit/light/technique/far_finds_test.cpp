@@ -13,6 +13,8 @@
 #include "world/surface.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 
 namespace {

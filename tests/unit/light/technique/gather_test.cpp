@@ -11,7 +11,7 @@
 #include "light/random/warp.h"
 #include "scenes/scenes.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 dvec3 mean_of(const Frame& frame) {
@@ -186,4 +186,4 @@ TEST(Gather, AMirrorShowsKeptLightWithoutNoise) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

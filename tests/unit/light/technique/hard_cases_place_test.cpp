@@ -14,6 +14,8 @@
 #include "world/load/scene_load.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
 using nlohmann::json;

@@ -10,6 +10,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 View slanted_view() {

@@ -13,9 +13,11 @@
 #include "scenes/scenes.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
-using enum wellspring::TransportPart;
+using enum wellspring::light::TransportPart;
 
 namespace {
 

@@ -14,6 +14,8 @@
 #include "unit/light/statistics.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 namespace fs = std::filesystem;
 
 namespace {

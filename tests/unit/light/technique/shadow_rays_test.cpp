@@ -9,6 +9,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 // A square of so many cells a side in the plane z, a metre around the axis.

@@ -7,6 +7,8 @@
 #include "world/surface.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
 

@@ -9,7 +9,7 @@
 #include "light/walk/known_light.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -236,4 +236,4 @@ TEST(KnownRuns, OfManyKindsSideBySideAreLitAsSamplesAre) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "scenes/scenes.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float radius = 0.1f;
@@ -125,4 +125,4 @@ TEST(Shine, RoughGlossHasNoGlint) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "light/technique/technique.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace scenes;
@@ -48,7 +48,7 @@ struct LitRoom {
                             const test::PaintedLight& light = painted) {
     lights.maps = maps ? test::paint_map(world, 0.03f, {light}) : nullptr;
     std::vector<Sample> samples(requests.size());
-    wellspring::trace(*find_technique(technique), world, lights, {}, requests, samples);
+    wellspring::light::trace(*find_technique(technique), world, lights, {}, requests, samples);
     return samples;
   }
   // What a map has to say where a sample lies.
@@ -248,4 +248,4 @@ TEST(KnownLight, WhereAllIsDarkNothingIsBad) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

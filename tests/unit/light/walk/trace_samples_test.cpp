@@ -13,6 +13,8 @@
 #include "world/surface_simd.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
 

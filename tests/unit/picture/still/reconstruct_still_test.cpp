@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 160, height = 96;
@@ -127,4 +127,4 @@ TEST_F(ReconstructStill, LivesThroughLightOfAnyStrength) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "frame/compare.h"
 #include "unit/picture/drawn_visit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 120, height = 90, pixels = width * height;
@@ -207,4 +207,4 @@ TEST(StillDrawn, NothingOfAnotherViewRemainsInTheMean) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,6 +9,8 @@
 #include "unit/picture/drawn_visit.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 
 namespace {

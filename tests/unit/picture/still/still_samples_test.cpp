@@ -11,6 +11,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 constexpr int width = 93, height = 61, pixels = width * height;  // sizes that no square divides

@@ -6,7 +6,7 @@
 
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Asking : testing::Test, ShowStage {
@@ -57,4 +57,4 @@ TEST_F(Asking, WithoutAStorytellerTheAnswerIsThere) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

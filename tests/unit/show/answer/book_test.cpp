@@ -9,6 +9,8 @@
 #include "unit/show/show_stage.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using nlohmann::json;
 
 namespace {

@@ -10,7 +10,7 @@
 #include "unit/show/show_stage.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Cameras : testing::Test, ShowStage {
@@ -200,4 +200,4 @@ TEST_F(Cameras, TheScreenIsToldWhereThePersonIsToStand) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

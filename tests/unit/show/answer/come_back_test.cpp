@@ -11,7 +11,7 @@
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -235,4 +235,4 @@ TEST_F(ComeBack, FewAreKeptAndWhatDidNotChangeIsNotToldAgain) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

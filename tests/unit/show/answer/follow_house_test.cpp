@@ -6,7 +6,7 @@
 #include "show/draw/pace.h"
 #include "unit/show/kiosk_house.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct FollowHouse : KioskHouse {
@@ -214,4 +214,4 @@ TEST_F(FollowHouse, AnEmptyAnnouncementTakesTheLastBack) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "show/visit/route.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // A box on the floor between two corners, seen from outside.
@@ -313,4 +313,4 @@ TEST_F(GoTest, TheStorytellerTurnsToWhatIsLookedAtInHerSight) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Groups : testing::Test, ShowStage {
@@ -109,4 +109,4 @@ TEST_F(Groups, EndsWhenTheLeaderLeavesAndCodesAreChecked) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

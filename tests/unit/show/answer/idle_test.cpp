@@ -8,7 +8,7 @@
 #include "show/exhibit/exhibit_lamps.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -178,4 +178,4 @@ TEST_F(Idle, WhoRestsOrHasGoneGivesTheirSeatBack) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

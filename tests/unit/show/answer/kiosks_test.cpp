@@ -6,7 +6,7 @@
 #include "show/kiosk/screen_window.h"
 #include "unit/show/kiosk_house.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using Kiosks = KioskHouse;
@@ -336,4 +336,4 @@ TEST_F(Kiosks, AreAsTheExhibitSays) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

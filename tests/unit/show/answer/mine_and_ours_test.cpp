@@ -9,7 +9,7 @@
 #include "unit/show/show_stage.h"
 #include "wire/json.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -173,4 +173,4 @@ TEST_F(MineAndOurs, AKioskHasTheHousesStoryteller) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

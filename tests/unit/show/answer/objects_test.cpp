@@ -10,7 +10,7 @@
 #include "show/visit/tour.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -116,4 +116,4 @@ TEST_F(ObjectsTest, APersonsBrowserIsToldKindlyThatThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

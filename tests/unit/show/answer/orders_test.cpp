@@ -12,7 +12,7 @@
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -182,4 +182,4 @@ TEST_F(Orders, WhoeverOrdersTooMuchDoesNotKeepOthersFromBeingDrawn) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct PictureSize : testing::Test, ShowStage {
@@ -40,4 +40,4 @@ TEST_F(PictureSize, GrowsOnlyWhereThereIsRoomAndElseStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

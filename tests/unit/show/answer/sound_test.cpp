@@ -11,7 +11,7 @@
 #include "unit/wire/sound_view.h"
 #include "wire/sound_packet.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::shared_ptr<const Speech> make_speech(const std::string& text, const std::string& lang,
@@ -428,7 +428,7 @@ TEST_F(SoundTest, AFarewellCutsTheStoryShort) {
   say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.4);
   EXPECT_EQ(show->teller.voice.story, "tale");
-  wellspring::say(show->teller.voice, plain_line({{"en", "Goodbye."}}), true);
+  wellspring::show::say(show->teller.voice, plain_line({{"en", "Goodbye."}}), true);
   run(0.4);
   EXPECT_EQ(show->teller.voice.story, "");
   ASSERT_GE(speech(a).size(), 3u);
@@ -437,4 +437,4 @@ TEST_F(SoundTest, AFarewellCutsTheStoryShort) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

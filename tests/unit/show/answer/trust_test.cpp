@@ -8,7 +8,7 @@
 
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const std::string any = "a token for any kiosk", hall = "the token of the hall";
@@ -76,4 +76,4 @@ TEST_F(Trust, VisitorsNeedNone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -16,6 +16,7 @@
 #include "unit/show/tiny_exhibit.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 TEST(CheckScene, AGoodRoomIsGood) {

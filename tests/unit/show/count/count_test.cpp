@@ -4,7 +4,7 @@
 
 #include "unit/show/kiosk_house.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Counts : KioskHouse {
@@ -147,4 +147,4 @@ TEST_F(Counts, GuestsOfAKioskWhenTheyAreGreeted) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,10 +8,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/process_clock.h"
+#include "base/clock.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Stops this process for 20 ms out of every 25, until it ends.
@@ -70,4 +70,4 @@ TEST(BusyMachine, PicturesCostNoMoreThanTheProcessorTimeOfAll) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

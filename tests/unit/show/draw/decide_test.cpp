@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 
 void PrintTo(const Decision& one, std::ostream* out) {
   static const char* names[] = {"nothing", "moving", "skin", "go_on", "samples", "pass", "picture"};
@@ -487,4 +487,4 @@ TEST(Demand, nobody_waits_while_the_renderer_is_busy) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

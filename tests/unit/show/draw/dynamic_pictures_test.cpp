@@ -8,7 +8,7 @@
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // A torch that is carried to and fro, ten metres in as many seconds.
@@ -175,4 +175,4 @@ TEST_F(DynamicPictures, CostNothingWhereThereAreNone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

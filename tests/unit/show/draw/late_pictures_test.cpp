@@ -14,7 +14,7 @@
 #include "show/tick.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct LatePictures : testing::Test, ShowStage {
@@ -360,4 +360,4 @@ TEST_F(LatePictures, ReportSaysWhatWasDrawnAndWarped) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #include "show/http/answer.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Walking and turning, for which pictures are made wider, and at rest. Large pictures are drawn in
@@ -56,4 +56,4 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

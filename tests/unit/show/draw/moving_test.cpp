@@ -7,7 +7,7 @@
 #include "show/draw/picture.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // A storyteller as flat as a door stands before the visitor.
@@ -180,4 +180,4 @@ TEST_F(Moving, NoGhostStaysWhereSheStood) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,7 +9,7 @@
 
 #include "frame/jpeg.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 328, height = 184;
@@ -175,4 +175,4 @@ TEST_F(Parts, AfterASmallPictureAllOfItComes) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // The viewpoint's eye in the middle of a cube of solid glass, or of one that is nothing but pale.
@@ -53,4 +53,4 @@ TEST(Picture, IsRightForAnEyeInSolidGlassToo) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

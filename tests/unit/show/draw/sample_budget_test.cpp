@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/layers.h"
 #include "show/draw/sample_budget.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr DrawingCosts quick{1e6, 0.003, 0.01}, slow{1e5, 0.09, 0.02};
@@ -147,4 +148,4 @@ TEST(SampleBudget, NothingMeasuredYetIsNoDivisionByZero) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

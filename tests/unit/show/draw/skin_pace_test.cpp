@@ -7,7 +7,7 @@
 
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(SkinPace, NobodySeesIt) { EXPECT_EQ(plan_skin(0, 1e6, 0).samples, 0); }
@@ -65,4 +65,4 @@ TEST_F(SkinSamples, NoneBehindAWall) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

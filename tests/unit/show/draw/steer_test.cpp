@@ -14,7 +14,7 @@
 #include "show/draw/pace.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -230,4 +230,4 @@ TEST_F(Steering, WhatIsToldOfIsLookedAt) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "show/http/report.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct StillPassTest : testing::Test, ShowStage {
@@ -137,4 +137,4 @@ TEST_F(StillPassTest, WithoutWeightsPicturesAreDrawnAndItIsSaid) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

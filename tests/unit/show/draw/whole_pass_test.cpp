@@ -7,7 +7,7 @@
 #include "show/draw/picture_samples.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct WholePass : testing::Test, ShowStage {
@@ -71,4 +71,4 @@ TEST_F(WholePass, PicturesAtRestGetNearToTheTruth) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -9,6 +9,8 @@
 #include "unit/folder.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using Places = std::vector<std::string>;
 
 namespace {

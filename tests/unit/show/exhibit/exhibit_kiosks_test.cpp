@@ -7,7 +7,7 @@
 
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::vector<Problem> read(Exhibit& exhibit, const std::string& text) {
@@ -56,4 +56,4 @@ TEST(ExhibitKiosks, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "show/exhibit/exhibit_lamps.h"
 #include "unit/show/exhibit/room_package.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using test::RoomPackage;
@@ -219,4 +219,4 @@ TEST(ExhibitDay, EveryProblemIsToldWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

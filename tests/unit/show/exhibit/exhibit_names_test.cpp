@@ -8,6 +8,7 @@
 #include "unit/show/exhibit/room_package.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 TEST(ExhibitNames, ParentsWithoutAMeshAreNodes) {

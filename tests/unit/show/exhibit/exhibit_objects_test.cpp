@@ -5,7 +5,7 @@
 
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::vector<Problem> read_objects(Exhibit& exhibit, const std::string& text) {
@@ -59,4 +59,4 @@ TEST(ExhibitObjects, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

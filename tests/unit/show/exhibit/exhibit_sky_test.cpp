@@ -12,6 +12,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 struct SkyPackage {

@@ -12,7 +12,7 @@
 #include "unit/folder.h"
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using namespace std::chrono;
@@ -236,4 +236,4 @@ TEST(HouseFile, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 
 #include "show/http/answer.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -97,4 +97,4 @@ TEST(Access, ACameraComesFromHereOrWithAToken) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

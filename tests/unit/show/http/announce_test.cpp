@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -113,4 +113,4 @@ TEST_F(Announce, IsPosted) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 
 #include "show/http/answer.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Metrics, tell_what_the_cameras_see_and_what_the_storyteller_is_about) {
@@ -82,4 +82,4 @@ TEST(Metrics, of_several_exhibits_are_told_apart_and_each_name_is_explained_once
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "show/state/make_show.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct StillDeskTest : testing::Test {
@@ -179,4 +179,4 @@ TEST_F(StillDeskTest, ClosedItTellsWhoeverWaitsAndIsAtRest) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include "show/state/make_show.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(StillQuestion, AsksForAViewpointOrForAnyView) {
@@ -123,4 +123,4 @@ TEST(StillQuestion, AViewInNumbersIsThePictureFromThere) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 HttpReply take_along(const std::string& address, std::map<std::string, std::string> query = {}) {
@@ -58,4 +58,4 @@ TEST(TakeAlong, ThePictureIsAQrCode) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

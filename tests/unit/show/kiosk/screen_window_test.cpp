@@ -10,7 +10,7 @@
 #include "base/rng.h"
 #include "show/storyteller/audience.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr float tick = 1 / 30.0f;
@@ -248,4 +248,4 @@ TEST_F(Window, NoiseOfACentimetreIsHardlySeen) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

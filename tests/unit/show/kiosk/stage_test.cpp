@@ -7,9 +7,10 @@
 #include <random>
 #include <vector>
 
+#include "base/layers.h"
 #include "show/kiosk/stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double step = 0.1;
@@ -320,4 +321,4 @@ TEST_F(KioskStage, RandomGuests) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double frames = 60;  // a second
@@ -139,4 +139,4 @@ TEST(ChangingLight, StaysAtTheEndOfATrackThatIsNoLoop) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Towards -Z and up: the south of the scene at noon.
@@ -124,4 +124,4 @@ TEST(Day, WhatCannotBeIsToldWithWhy) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "show/moving/figure.h"
 #include "unit/avatar/load/gltf_person.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Made {
@@ -333,4 +333,4 @@ TEST(FigureOfGltf, MissingAndBrokenPicturesAreTold) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Two parts that share two vertices; everything follows one joint.
@@ -89,4 +89,4 @@ TEST(Figure, AMissingPictureIsAWarningOfTheScene) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

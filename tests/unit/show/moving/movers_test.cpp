@@ -15,7 +15,7 @@
 #include "unit/show/show_stage.h"
 #include "world/motion/scene_motion.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr vec3 weight_way(0, 0.8f, 0), door_way(1, 0, 0);
@@ -234,4 +234,4 @@ TEST_F(MovingThings, RunForHoursWithoutDrifting) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,6 +10,7 @@
 #include "world/view.h"
 
 using namespace wellspring;
+
 using namespace wellspring::test;
 
 namespace {

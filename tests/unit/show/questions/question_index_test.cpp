@@ -6,7 +6,7 @@
 #include "show/exhibit/exhibit_load.h"
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Questions that nobody wrote down for the castle, in words of their own, and words of the answer.
@@ -112,4 +112,4 @@ TEST_F(TinyQuestions, WhatIsNotThereIsNotInvented) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

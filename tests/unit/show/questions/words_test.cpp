@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/layers.h"
 #include "show/questions/words.h"
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 std::string stems(const std::string& text, const std::string& lang) {
@@ -38,4 +39,4 @@ TEST(Words, AnyBytesAreRead) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

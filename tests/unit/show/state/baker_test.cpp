@@ -11,7 +11,7 @@
 #include "unit/folder.h"
 #include "unit/light/bake/bake_cases.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 void wait(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
@@ -155,4 +155,4 @@ TEST_F(BakerTest, WhereNothingIsDiffuseItRests) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

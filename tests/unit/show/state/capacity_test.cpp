@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/layers.h"
 #include "show/state/capacity.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double pixels = 640 * 360;
@@ -166,4 +167,4 @@ TEST(Capacity, MeasurementsReplaceTheFirstGuessAndFollowTheMachine) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

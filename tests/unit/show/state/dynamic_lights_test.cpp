@@ -9,7 +9,7 @@
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -73,4 +73,4 @@ TEST_F(DynamicLightsOfAShow, GoOutWithTheirLamp) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

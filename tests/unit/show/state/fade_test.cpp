@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Keyframe gray_keyframe(int width, int height, uint8_t value) {
@@ -61,4 +61,4 @@ TEST(Fade, OtherViewsAndSizesAreLeftAlone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

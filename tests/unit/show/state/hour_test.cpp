@@ -9,7 +9,7 @@
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -146,4 +146,4 @@ TEST_F(Hour, IsRefusedWhereThereIsNoDay) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

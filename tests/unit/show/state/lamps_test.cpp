@@ -16,7 +16,7 @@
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -267,4 +267,4 @@ TEST(ExhibitLamps, EveryProblemIsToldWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

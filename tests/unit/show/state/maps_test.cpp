@@ -11,7 +11,7 @@
 #include "scenes/scenes.h"
 #include "world/load/lamp.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 vec3 daylight(vec3) { return {0.25f, 0.5f, 0.75f}; }
@@ -258,4 +258,4 @@ TEST_F(Maps, WhatShinesIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

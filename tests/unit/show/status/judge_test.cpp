@@ -7,7 +7,7 @@
 
 #include "show/status/status.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Judged : testing::Test {
@@ -368,4 +368,4 @@ TEST(Status, OfSeveralExhibitsTellsWhatIsAlikeOnceAndWhatFailed) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,9 +5,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/layers.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 using nlohmann::json;
@@ -50,4 +51,4 @@ TEST(Speeds, SayWhyThereAreNone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 
 #include "show/storyteller/audience.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 View straight_view() {
@@ -160,4 +160,4 @@ TEST_F(TwoCameras, NumbersAreForgotten) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 int inked(const Frame& frame) {
@@ -50,4 +50,4 @@ TEST(Sheet, CellsStandInRowsWithTheirLabels) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,7 +11,7 @@
 #include "show/moving/exhibit_scene.h"
 #include "show/storyteller/story_marks.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const Exhibit& content_package(const std::string& name) {
@@ -103,4 +103,4 @@ TEST(Facing, NoStoryOfTheContentTurnsItsBackToWhoListens) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct GuestGestures : testing::Test, ShowStage {
@@ -75,4 +75,4 @@ TEST_F(GuestGestures, MeanNothingWithoutAScreen) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 #include "show/state/visitor_world.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // A rod from 0.1 m below the fist to 0.3 m above it, a flame on it, a light over that.
@@ -237,4 +237,4 @@ TEST(HeldProp, AFlameFlickersAtMostThreeTimesASecond) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -13,7 +13,7 @@
 #include "show/storyteller/recordings.h"
 #include "show/storyteller/sounding.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ TEST_F(Recordings, AreToldInTheirOwnTime) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

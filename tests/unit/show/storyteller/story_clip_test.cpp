@@ -8,7 +8,7 @@
 #include "show/storyteller/story_marks.h"
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 StoryText make_story() {
@@ -89,4 +89,4 @@ TEST(StoryClip, WhatTheBodyIsAskedForDependsOnTheStoryAlone) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

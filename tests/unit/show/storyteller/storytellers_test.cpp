@@ -9,7 +9,7 @@
 #include "show/storyteller/sounding.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct StorytellersTest : testing::Test, ShowStage {
@@ -140,4 +140,4 @@ TEST(Storytellers, OnlyTheirOwnStoriesAreMadeReadyForThem) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 #include "show/storyteller/voice.h"
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Voice, SaysAStorySentenceBySentence) {
@@ -65,4 +65,4 @@ TEST(Voice, EmptyAndHugeSteps) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

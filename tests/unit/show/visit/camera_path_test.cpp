@@ -11,7 +11,7 @@
 #include "show/visit/tour.h"
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Largest speed, turning and their changes, by differences at 240 a second.
@@ -285,4 +285,4 @@ TEST(CastleTour, IsComfortableAndClear) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

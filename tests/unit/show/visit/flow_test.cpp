@@ -3,7 +3,7 @@
 
 #include "show/visit/flow.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Flow, WithoutAcknowledgementsTheSocketAlonePaces) {
@@ -95,4 +95,4 @@ TEST(Flow, UnknownAcknowledgementsAreHarmless) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 
 #include "unit/show/visit/simulated_line.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr double megabit = 1e6 / 8;
@@ -193,4 +193,4 @@ TEST(GiveWay, WithoutAnswersToPingsTwoInFlightStillHold) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

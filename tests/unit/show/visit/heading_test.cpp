@@ -7,7 +7,7 @@
 
 #include "picture/warp_picture.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 View facing(float yaw, vec3 place = vec3(0)) {
@@ -106,4 +106,4 @@ TEST(WideView, HoldsWhatAPageMayTurnTo) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -10,7 +10,7 @@
 
 #include "show/visit/give_way.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 struct SimulatedLine {
   // Of the time in seconds.
@@ -112,4 +112,4 @@ inline std::vector<SimulatedPicture> simulate(const SimulatedLine& line, const F
   return pictures;
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -6,7 +6,7 @@
 #include "show/state/in_view.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // One vowel of four seconds.
@@ -162,4 +162,4 @@ TEST(InView, AgreesWithProjectionAtTheEdge) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

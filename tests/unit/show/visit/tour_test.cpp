@@ -6,7 +6,7 @@
 #include "show/visit/tour.h"
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct TourTest : testing::Test {
@@ -225,4 +225,4 @@ TEST_F(TourTest, AnExhibitWithoutToursIsMappedForThoseWhoPoint) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

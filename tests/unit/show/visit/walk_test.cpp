@@ -4,7 +4,7 @@
 #include "show/visit/walk.h"
 #include "unit/show/tiny_exhibit.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Walk : testing::TestWithParam<double> {
@@ -163,4 +163,4 @@ TEST(MoveDirection, FollowsTheYaw) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -16,7 +16,7 @@
 #include "unit/show/exhibit/room_package.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct CancelledShow : testing::Test {
@@ -88,4 +88,4 @@ TEST_F(CancelledShow, IsGivenUpWhenItsRehearsalEnds) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

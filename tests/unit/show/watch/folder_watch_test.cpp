@@ -4,9 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "base/layers.h"
 #include "unit/folder.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(FolderWatch, TellsAChangeOnceWhenTheFilesAreStill) {
@@ -62,4 +63,4 @@ TEST(FolderWatch, AFolderThatIsGoneForAMomentIsNoChange) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

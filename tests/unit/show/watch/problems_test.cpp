@@ -15,7 +15,7 @@
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Problems : testing::Test, ShowStage {
@@ -89,4 +89,4 @@ TEST(Rehearsal, HandsOverAShowOrItsProblems) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

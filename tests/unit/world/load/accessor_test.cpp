@@ -2,7 +2,7 @@
 // Every accessor form of glTF 2.0 section 3.6.2, seen through the vertices it makes.
 #include "unit/world/load/asset.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 TEST(Accessor, Interleaved) {
@@ -217,4 +217,4 @@ TEST(Accessor, PrimitivesThatShareAListKeepOnlyTheirOwnVertices) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

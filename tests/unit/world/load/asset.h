@@ -15,7 +15,7 @@
 #include "base/load_error.h"
 #include "world/load/scene_load.h"
 
-namespace wellspring {
+namespace wellspring::test {
 
 using nlohmann::json;
 
@@ -170,4 +170,4 @@ inline vec3 corner_of(const Scene& scene, size_t instance, size_t triangle, int 
   return vec3(i.to_world * vec4(mesh.positions[mesh.triangles[triangle][corner]], 1));
 }
 
-}  // namespace wellspring
+}  // namespace wellspring::test

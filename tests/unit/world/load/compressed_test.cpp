@@ -10,7 +10,7 @@
 
 #include "unit/world/load/asset.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 const std::vector<float> square_positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
@@ -230,4 +230,4 @@ TEST(Basis, PicturesThatAreNotReadAreRefusedWithWhatToDo) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "unit/world/load/asset.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -235,4 +235,4 @@ TEST(Corpus, FiguresStandAsTheyShould) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

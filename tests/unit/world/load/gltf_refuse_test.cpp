@@ -4,7 +4,7 @@
 #include "base/rng.h"
 #include "world/world.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -275,4 +275,4 @@ TEST(Refuse, EveryValueReplaced) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "unit/world/load/asset.h"
 #include "world/surface.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 // Four squares in a row, at x = 0, 2, 4, 6: the first two are one mesh that emits light, the third
@@ -140,4 +140,4 @@ TEST(Lamp, ANodeStandsForAllBelowIt) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -4,7 +4,7 @@
 
 #include "unit/world/load/asset.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 constexpr size_t corners = 17'000'001;  // of one primitive
@@ -51,4 +51,4 @@ TEST(Limits, ASmallFileCannotAskForManyNumbersWithoutBytes) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -5,7 +5,7 @@
 
 #include "unit/world/load/asset.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 struct Nodes {
@@ -84,4 +84,4 @@ TEST(MirroredSkin, BitangentsAreMirroredToo) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,6 +11,8 @@
 
 using namespace wellspring;
 
+using namespace wellspring::test;
+
 namespace {
 
 std::vector<uint8_t> read_seed(const char* name) {

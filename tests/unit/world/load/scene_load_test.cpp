@@ -6,7 +6,7 @@
 #include "unit/world/load/asset.h"
 #include "world/view.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 Asset points_asset(int mode, std::vector<uint16_t> indices) {
@@ -352,4 +352,4 @@ TEST(SceneLoad, GlbIsTheSame) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

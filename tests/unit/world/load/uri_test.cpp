@@ -5,7 +5,7 @@
 
 #include "unit/world/load/asset.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ TEST(Uri, AMissingFileIsToldWithWhatWasTriedAndWhatIsNear) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -8,7 +8,7 @@
 #include "unit/world/load/asset.h"
 #include "world/load/scene_join.h"
 
-namespace wellspring {
+namespace wellspring::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ TEST(SceneMotion, RealFilesMoveAsTheyDoWhenTheyAreLoadedAtThatTime) {
 }
 
 }  // namespace
-}  // namespace wellspring
+}  // namespace wellspring::test

@@ -11,6 +11,8 @@
 #include "world/raster/raster_walk.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 
 namespace {

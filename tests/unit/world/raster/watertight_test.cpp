@@ -14,6 +14,8 @@
 #include "world/world.h"
 
 using namespace wellspring;
+
+using namespace wellspring::test;
 using namespace wellspring::scenes;
 
 namespace {

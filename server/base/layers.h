@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each layer has a namespace of its own, which sees the names of the layers that it may include
+// (tests/structure/includes.test.mjs); what is of `base` lies in wellspring itself. A name that two
+// layers define is written with its layer by whoever sees both.
+#pragma once
+
+namespace wellspring {
+namespace config {}
+namespace about {}
+namespace wire {}
+namespace ledger {}
+namespace frame {}
+namespace attention {}
+namespace denoise {}
+namespace gltf {}
+namespace world {}
+namespace light {}
+namespace cache {}
+namespace picture {}
+namespace avatar {}
+namespace show {}
+namespace museum {}
+namespace stream {}
+namespace kiosk {}
+
+namespace attention {
+using namespace frame;
+}  // namespace attention
+
+namespace world {
+using namespace gltf;
+}  // namespace world
+
+namespace light {
+using namespace world;
+using namespace frame;
+}  // namespace light
+
+namespace cache {
+using namespace light;
+using namespace world;
+using namespace frame;
+}  // namespace cache
+
+namespace picture {
+using namespace cache;
+using namespace denoise;
+using namespace light;
+using namespace world;
+using namespace frame;
+}  // namespace picture
+
+namespace avatar {
+using namespace gltf;
+}  // namespace avatar
+
+namespace show {
+using namespace picture;
+using namespace cache;
+using namespace denoise;
+using namespace light;
+using namespace world;
+using namespace gltf;
+using namespace attention;
+using namespace frame;
+using namespace avatar;
+using namespace wire;
+using namespace ledger;
+}  // namespace show
+
+namespace museum {
+using namespace show;
+using namespace wire;
+using namespace ledger;
+}  // namespace museum
+
+namespace stream {
+using namespace wire;
+}  // namespace stream
+
+namespace kiosk {
+using namespace wire;
+}  // namespace kiosk
+
+// Programs put layers together, and tests test them.
+namespace program {
+using namespace config;
+using namespace about;
+using namespace wire;
+using namespace ledger;
+using namespace frame;
+using namespace attention;
+using namespace denoise;
+using namespace gltf;
+using namespace world;
+using namespace light;
+using namespace cache;
+using namespace picture;
+using namespace avatar;
+using namespace show;
+using namespace museum;
+using namespace stream;
+using namespace kiosk;
+}  // namespace program
+
+namespace test {
+using namespace program;
+}  // namespace test
+namespace scenes {
+using namespace program;
+}  // namespace scenes
+namespace fuzz {
+using namespace program;
+}  // namespace fuzz
+namespace mitsuba {
+using namespace program;
+}  // namespace mitsuba
+
+}  // namespace wellspring

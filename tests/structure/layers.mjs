@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The layers of ARCHITECTURE.md.
+
+// layer -> layers it may include, besides itself.
+export const may_include = {
+  base: [],
+  config: ['base'],
+  about: ['base'],
+  wire: ['base'],
+  ledger: ['base'],
+  frame: ['base'],
+  attention: ['frame', 'base'],
+  denoise: ['base'],
+  gltf: ['base'],
+  world: ['gltf', 'base'],
+  light: ['world', 'frame', 'base'],
+  cache: ['light', 'world', 'frame', 'base'],
+  picture: ['cache', 'denoise', 'light', 'world', 'frame', 'base'],
+  avatar: ['gltf', 'base'],
+  show: ['picture', 'cache', 'denoise', 'light', 'world', 'gltf', 'attention', 'frame', 'avatar',
+    'wire', 'ledger', 'base'],
+  museum: ['show', 'wire', 'ledger', 'base'],
+  stream: ['wire', 'base'],
+  kiosk: ['wire', 'base'],
+};
+
+export const folder_of = (layer) =>
+  (['avatar', 'kiosk'].includes(layer) ? `${layer}/` : `server/${layer}/`);
