@@ -110,7 +110,7 @@ namespace scenes {
 using namespace program;
 }  // namespace scenes
 namespace fuzz {
-using namespace program;
+using namespace test;
 }  // namespace fuzz
 namespace mitsuba {
 using namespace program;

@@ -16,7 +16,7 @@ inline constexpr float plane_tolerance = 0.02f;  // of the depth: farther off is
 struct Color {
   Lanes r{}, g{}, b{};
 };
-inline Lanes luminance(const Color& c) { return wellspring::luminance(c.r, c.g, c.b); }
+inline Lanes luminance(const Color& c) { return cache::luminance(c.r, c.g, c.b); }
 template <class T>
 void add(Color& sum, const Lanes& weight, const T& r, const T& g, const T& b) {
   sum.r += weight * r, sum.g += weight * g, sum.b += weight * b;

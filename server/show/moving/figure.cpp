@@ -74,7 +74,7 @@ int add_file_materials(Scene& scene, const std::string& path) {
   gltf::File file = gltf::load_gltf(path, "", vrm_extensions());
   rewrite_vrm_materials(file);
   file.pictures_may_fail = true;
-  gltf::load_materials(file, own);
+  world::load_materials(file, own);
   for (const std::string& warning : file.warnings)
     if (warning.rfind("/images", 0) == 0 || warning.rfind("/textures", 0) == 0)
       scene.warnings.push_back(path + ": " + warning);

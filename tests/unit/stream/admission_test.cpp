@@ -64,10 +64,10 @@ TEST(Address, behind_proxies_the_last_hop_that_is_none_counts) {
 
 TEST(Frames, are_counted_whatever_they_are_and_however_they_come) {
   std::string bytes;
-  for (int i = 0; i < 1000; i++) bytes += RawClient::frame(0x00, "");
-  bytes += RawClient::frame(0x81, std::string(125, 'x')) +
-           RawClient::frame(0x81, std::string(126, 'x')) + RawClient::frame(0x89, "") +
-           RawClient::frame(0x82, std::string(70000, 'x')) + RawClient::frame(0x8a, "p", false);
+  for (int i = 0; i < 1000; i++) bytes += RawClient::frame_bytes(0x00, "");
+  bytes += RawClient::frame_bytes(0x81, std::string(125, 'x')) +
+           RawClient::frame_bytes(0x81, std::string(126, 'x')) + RawClient::frame_bytes(0x89, "") +
+           RawClient::frame_bytes(0x82, std::string(70000, 'x')) + RawClient::frame_bytes(0x8a, "p", false);
   const auto* begin = reinterpret_cast<const uint8_t*>(bytes.data());
   FrameCounter whole;
   EXPECT_EQ(whole.count({begin, bytes.size()}), 1005u);

@@ -79,7 +79,7 @@ struct House {
   }
 };
 
-inline std::shared_ptr<const Packet> picture(uint32_t number, size_t bytes = 1000) {
+inline std::shared_ptr<const Packet> picture_packet(uint32_t number, size_t bytes = 1000) {
   Packet packet(std::max(bytes, packet_header_bytes), 0x55);
   write_packet_header({.frame = number, .width = 16, .height = 16}, packet);
   return std::make_shared<const Packet>(std::move(packet));

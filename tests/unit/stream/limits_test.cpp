@@ -6,8 +6,8 @@ using namespace wellspring;
 
 using namespace wellspring::test;
 
-static std::string frame(int first, std::string_view payload) {
-  return RawClient::frame(first, payload);
+static std::string frame_bytes(int first, std::string_view payload) {
+  return RawClient::frame_bytes(first, payload);
 }
 
 // Loopback is a stranger.
@@ -39,12 +39,12 @@ TEST(Limits, a_foreign_host_gets_421_whatever_it_asks) {
 }
 
 TEST(Limits, empty_fragments_are_a_flood_like_others) {
-  for (const std::string& bytes : {frame(0x00, ""), frame(0x00, "x"), frame(0x89, "")}) {
+  for (const std::string& bytes : {frame_bytes(0x00, ""), frame_bytes(0x00, "x"), frame_bytes(0x89, "")}) {
     House house;
     RawClient client(house.port());
     client.join();
     ASSERT_TRUE(house.link());
-    std::string many = frame(0x01, "");
+    std::string many = frame_bytes(0x01, "");
     for (int i = 0; i < 100'000; i++) many += bytes;
     std::thread sending([&] { client.send(many); });  // until it is cut
     EXPECT_EQ(client.closed_with(), 1008);
@@ -63,9 +63,9 @@ TEST(Limits, a_peer_without_a_first_message_is_closed_and_never_joins) {
   RawClient silent(house.port()), pinging(house.port()), half(house.port()), good(house.port());
   for (RawClient* client : {&silent, &pinging, &half, &good})
     ASSERT_EQ(client->upgrade().status, 101);
-  pinging.send(frame(0x89, "here"));
-  half.send(frame(0x01, "never ends"));
-  good.send(frame(0x81, "hello"));
+  pinging.send(frame_bytes(0x89, "here"));
+  half.send(frame_bytes(0x01, "never ends"));
+  good.send(frame_bytes(0x81, "hello"));
   ASSERT_TRUE(house.link(0));
   EXPECT_EQ(silent.closed_with(), 1008);
   EXPECT_EQ(pinging.closed_with(), 1008);
@@ -121,7 +121,7 @@ TEST(Limits, what_all_addresses_together_may_have) {
   for (RawClient* client : {&first, &loud, &modest}) ASSERT_EQ(client->join().status, 101);
   ASSERT_TRUE(house.link(2));
   std::string many;
-  for (int i = 0; i < 200; i++) many += frame(0x81, "x");
+  for (int i = 0; i < 200; i++) many += frame_bytes(0x81, "x");
   size_t arrived = 0;
   auto arrive = [&] {
     for (size_t i = 0; i < 3; i++) arrived += house.link(i)->take_heard().size();
@@ -132,7 +132,7 @@ TEST(Limits, what_all_addresses_together_may_have) {
   RawClient late(house.port());
   EXPECT_EQ(late.join().status, 503);
   std::string more = many;
-  for (int i = 0; i < 590; i++) more += frame(0x81, "x");
+  for (int i = 0; i < 590; i++) more += frame_bytes(0x81, "x");
   loud.send(more);
   EXPECT_EQ(loud.closed_with(), 1008);
   arrive();  // what was taken of it before that
@@ -156,7 +156,7 @@ TEST(Limits, frames_of_all_visits_of_an_address) {
   first.join();
   second.join();
   std::string many;
-  for (int i = 0; i < 200; i++) many += frame(0x81, "x");
+  for (int i = 0; i < 200; i++) many += frame_bytes(0x81, "x");
   first.send(many);
   ASSERT_TRUE(house.link(0));
   size_t arrived = 0;

@@ -127,12 +127,12 @@ class RawClient {
   // The same, with a first message.
   Reply join(const std::string& path = "/api/v1/visit", const std::string& more_headers = "") {
     Reply reply = upgrade(path, more_headers);
-    if (reply.status == 101) send(frame(0x81, "first"));
+    if (reply.status == 101) send(frame_bytes(0x81, "first"));
     return reply;
   }
 
   // first: FIN, reserved bits and opcode, as on the wire (0x81: a whole text).
-  static std::string frame(int first, std::string_view payload, bool masked = true) {
+  static std::string frame_bytes(int first, std::string_view payload, bool masked = true) {
     std::string out(1, char(first));
     const int mask_bit = masked ? 0x80 : 0;
     if (payload.size() < 126) {

@@ -31,8 +31,8 @@ TEST(SlowReader, is_cut_although_it_pings_while_others_see_on) {
   ASSERT_TRUE(slow_link && good_link);
 
   const auto big =
-      picture(1, 400'000);  // of one allocation, so that memory seen to grow is the server's
-  const auto small = picture(2);
+      picture_packet(1, 400'000);  // of one allocation, so that memory seen to grow is the server's
+  const auto small = picture_packet(2);
   const long before = resident_kib();
   long most = 0;
   uint32_t sent = 0;
@@ -48,7 +48,7 @@ TEST(SlowReader, is_cut_although_it_pings_while_others_see_on) {
     sent++;
     seen += good.receive(message, patience) == WsClient::Got::message;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    if (sent % 10 == 0) slow.send(RawClient::frame(0x89, "still here"));
+    if (sent % 10 == 0) slow.send(RawClient::frame_bytes(0x89, "still here"));
     most = std::max(most, resident_kib());
   }
   const double seconds = passed();
@@ -76,11 +76,11 @@ TEST(SlowReader, that_is_sent_nothing_stays) {
   quiet.join();
   auto link = house.link();
   ASSERT_TRUE(link);
-  link->send_picture(picture(1));
+  link->send_picture(picture_packet(1));
   EXPECT_TRUE(eventually([&] { return link->pictures_sent == 1; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   EXPECT_FALSE(link->closed());
-  link->send_picture(picture(2));
+  link->send_picture(picture_packet(2));
   EXPECT_EQ(picture_number(quiet.next_frame()->payload), 1u);
   EXPECT_EQ(picture_number(quiet.next_frame()->payload), 2u);
 }
@@ -93,7 +93,7 @@ TEST(SlowReader, gets_the_newest_picture_when_it_reads_again) {
   ASSERT_TRUE(link);
   constexpr uint32_t count = 100;
   for (uint32_t i = 1; i <= count; i++) {
-    link->send_picture(picture(i, 100'000));
+    link->send_picture(picture_packet(i, 100'000));
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   link->send_text("text overtakes");
@@ -126,7 +126,7 @@ TEST(SlowReader, does_not_hold_up_the_stop) {
   auto link = house.link();
   ASSERT_TRUE(link);
   for (int i = 0; i < 3; i++) {
-    link->send_picture(picture(1, 2'000'000));
+    link->send_picture(picture_packet(1, 2'000'000));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   house.server.stop();

@@ -80,7 +80,7 @@ TEST(Upgrade, elsewhere_is_404_and_a_plain_get_is_426) {
       "GET /api/v1/visit HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: "
       "websocket\r\n"
       "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n" +
-      RawClient::frame(0x81, "x"));
+      RawClient::frame_bytes(0x81, "x"));
   EXPECT_EQ(early.reply().status, 400);
   EXPECT_EQ(house.server.counters().websockets, 0u);
 }
@@ -144,7 +144,7 @@ TEST(Upgrade, who_is_not_admitted_is_told_before_it) {
   const std::string by_proxy = "X-Forwarded-For: 10.0.0.7\r\n";
   EXPECT_EQ(proxied.upgrade("/api/v1/eye", by_proxy).body, "elsewhere");
   EXPECT_EQ(kiosk.upgrade("/api/v1/eye", by_proxy + "Authorization: Bearer right\r\n").status, 101);
-  kiosk.send(RawClient::frame(0x81, "{}"));
+  kiosk.send(RawClient::frame_bytes(0x81, "{}"));
   const auto said = kiosk.next_frame();
   ASSERT_TRUE(said);
   EXPECT_EQ(said->payload, "elsewhere hall");
@@ -177,7 +177,7 @@ TEST(Upgrade, a_link_that_the_show_closes_says_all_and_then_goodbye) {
   ASSERT_TRUE(close);
   EXPECT_EQ(close->close_code(), 1000);
   EXPECT_EQ(close->payload.substr(2), "the museum closes");
-  client.send(RawClient::frame(0x88, "\x03\xe8"));
+  client.send(RawClient::frame_bytes(0x88, "\x03\xe8"));
   EXPECT_TRUE(client.ends());
   EXPECT_TRUE(eventually([&] { return link->closed() && house.server.counters().open == 0; }));
 }
@@ -193,7 +193,7 @@ TEST(Upgrade, a_peer_that_leaves_closes_its_link) {
   RawClient polite(house.port());
   polite.join();
   ASSERT_TRUE(house.link(1));
-  polite.send(RawClient::frame(0x88, "\x03\xe8"));
+  polite.send(RawClient::frame_bytes(0x88, "\x03\xe8"));
   EXPECT_EQ(polite.closed_with(), 1000);
   EXPECT_TRUE(house.link(1)->closed());
   EXPECT_TRUE(polite.ends());
@@ -208,7 +208,7 @@ TEST(Upgrade, stop_closes_with_1001_even_those_that_do_not_answer) {
   ASSERT_TRUE(house.link(1));
   std::thread stopping([&] { house.server.stop(); });
   EXPECT_EQ(polite.closed_with(), 1001);
-  polite.send(RawClient::frame(0x88, "\x03\xe9"));
+  polite.send(RawClient::frame_bytes(0x88, "\x03\xe9"));
   EXPECT_EQ(mute.closed_with(), 1001);
   stopping.join();  // although `mute` never said goodbye
   EXPECT_TRUE(mute.ends());
@@ -233,7 +233,7 @@ TEST(Client, talks_both_ways_and_keeps_what_arrived_meanwhile) {
   ASSERT_EQ(client.receive(message, patience), WsClient::Got::message);
   EXPECT_FALSE(message.binary);
   EXPECT_EQ(message.text(), "hello");
-  link->send_picture(picture(7, 300'000));
+  link->send_picture(picture_packet(7, 300'000));
   ASSERT_EQ(client.receive(message, patience), WsClient::Got::message);
   EXPECT_TRUE(message.binary);
   EXPECT_EQ(message.bytes.size(), 300'000u);

@@ -21,11 +21,7 @@ namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
-using test::load_asset;
-using test::make_person;
-using test::person_bone;
 using test::PersonOptions;
-using test::says;
 using Kind = JointConstraint::Kind;
 
 struct Asked {

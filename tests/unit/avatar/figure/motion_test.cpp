@@ -14,7 +14,6 @@
 namespace wellspring::test {
 namespace {
 
-using test::make_person;
 
 Motion one_track(TrackKind kind, TrackCurve curve, std::vector<float> times,
                  std::vector<float> values) {

@@ -10,7 +10,6 @@
 namespace wellspring::test {
 namespace {
 
-using test::load_text;
 
 const std::string in_xml = test::x3d(R"(
 <Transform scale='2 2 2'><HAnimHumanoid DEF='H' name='Twin' loa='0'>

@@ -13,10 +13,7 @@ namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
-using test::load_asset;
-using test::make_person;
 using test::PersonOptions;
-using test::says;
 
 vec3 centre(const Character& c, const char* joint) {
   int j = find_joint(c, joint);

@@ -10,8 +10,6 @@
 namespace wellspring::test {
 namespace {
 
-using test::load_text;
-using test::x3d;
 
 bool warned(const Character& character, const std::string& part) {
   return std::any_of(character.warnings.begin(), character.warnings.end(),

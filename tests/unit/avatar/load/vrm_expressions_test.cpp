@@ -18,12 +18,6 @@ namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
-using test::change_of;
-using test::dressed_person;
-using test::load_asset;
-using test::make_person;
-using test::presets;
-using test::says;
 
 Pose with(const Character& c, std::initializer_list<std::pair<const char*, float>> weights) {
   Pose pose = make_rest_pose(c);

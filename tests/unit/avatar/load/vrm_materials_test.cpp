@@ -14,9 +14,6 @@ namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
-using test::dressed_person;
-using test::load_asset;
-using test::says;
 
 gltf::File rewritten(const Asset& asset) {
   test::TemporaryFile temporary(asset.glb(), ".glb");

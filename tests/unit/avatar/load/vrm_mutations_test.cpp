@@ -17,12 +17,8 @@ namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
-using test::change_of;
-using test::dressed_person;
 using test::full_person_0;
 using test::full_person_1;
-using test::load_asset;
-using test::presets;
 
 // Only some bones are required, and files lack even those.
 TEST(VrmMutations, FiguresWithoutSomeBonesStandAndBreathe) {

@@ -14,8 +14,6 @@ namespace wellspring::test {
 namespace {
 
 using test::Stage;
-using test::two_balls;
-using test::view_of_balls;
 
 constexpr float degree = pi / 180;
 

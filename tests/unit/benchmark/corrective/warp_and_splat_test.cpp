@@ -15,13 +15,8 @@
 namespace wellspring::test {
 namespace {
 
-using test::count_wrong;
-using test::number_words;
 using test::Picture;
-using test::splat;
 using test::Stage;
-using test::two_balls;
-using test::view_of_balls;
 
 // A store that has seen all of a view.
 SampleStore traced(const Stage& stage, const View& view, int levels = 4) {

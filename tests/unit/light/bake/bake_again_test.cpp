@@ -11,7 +11,6 @@ namespace {
 
 using namespace scenes;
 using test::Baked;
-using test::same_bits;
 
 // The Cornell box with a ball and two lamps: of more tiles than a step takes.
 Scene make_hall() {

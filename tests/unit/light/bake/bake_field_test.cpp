@@ -13,8 +13,6 @@ namespace wellspring::test {
 namespace {
 
 using namespace scenes;
-using test::add_fan;
-using test::node_place;
 
 // One surface, its charts, and a field of as many cells along each side of a tile.
 struct Field {

@@ -11,7 +11,6 @@ namespace wellspring::test {
 namespace {
 
 using namespace scenes;
-using test::same_bits;
 
 Scene make_lit_square() {
   Scene scene = empty_scene();

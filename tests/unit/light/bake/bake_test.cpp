@@ -11,10 +11,7 @@ namespace wellspring::test {
 namespace {
 
 using namespace scenes;
-using test::add_fan;
 using test::Baked;
-using test::node_place;
-using test::point_light;
 
 vec3 mean_of(const BakeField& field, size_t node) {
   vec3 sum(0);

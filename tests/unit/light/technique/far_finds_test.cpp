@@ -65,7 +65,7 @@ Difference difference(const Frame& a, const Frame& b) {
   return {d.mean / sum, d.most / brightest};
 }
 
-Frame picture(const Survey& survey, const char* technique, int spp) {
+Frame render(const Survey& survey, const char* technique, int spp) {
   World world(survey.scene);
   StillSettings settings;
   settings.spp = spp;
@@ -127,9 +127,9 @@ TEST(FarFinds, TheRasteriserSeesWhatRaysSee) {
 
 // What is left: light is gathered a fifth of a millimetre off the find, where rounding allows.
 TEST(FarFinds, LightOnThemIsAsAtTheOrigin) {
-  Difference d = difference(picture(far_find(), "direct", 4), picture(near_find(), "direct", 4));
+  Difference d = difference(render(far_find(), "direct", 4), render(near_find(), "direct", 4));
   EXPECT_LT(d.mean, 0.01);
-  d = difference(picture(far_find(), "path", 64), picture(near_find(), "path", 64));
+  d = difference(render(far_find(), "path", 64), render(near_find(), "path", 64));
   EXPECT_LT(d.mean, 0.02);
 }
 

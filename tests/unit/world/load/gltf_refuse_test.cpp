@@ -119,8 +119,8 @@ TEST(Refuse, DepthOfJsonAndOfNodes) {
   LoadError error = refused(bomb + std::string(1'000'000, '['));
   EXPECT_NE(error.what_.find("nested"), std::string::npos);
   std::string deep = bomb + std::string(90, '[') + std::string(90, ']') + "}";
-  EXPECT_EQ(triangle_count(load_text(deep)), 0u);
-  EXPECT_EQ(triangle_count(load_text(bomb + '"' + std::string(500, '[') + "\\\"\"}")), 0u);
+  EXPECT_EQ(triangle_count(load_scene_text(deep)), 0u);
+  EXPECT_EQ(triangle_count(load_scene_text(bomb + '"' + std::string(500, '[') + "\\\"\"}")), 0u);
 
   Asset asset = triangle_asset();  // a chain of nodes is no problem
   asset.root["nodes"] = json::array();

@@ -324,7 +324,7 @@ TEST(SceneLoad, ValuesThatAreNotFiniteNeverReachTheScene) {
 }
 
 TEST(SceneLoad, EmptyAndStrangeButReadable) {
-  Scene scene = load_text(R"({"asset":{"version":"2.0"}})");
+  Scene scene = load_scene_text(R"({"asset":{"version":"2.0"}})");
   EXPECT_EQ(triangle_count(scene), 0u);
   EXPECT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.objects.size(), 1u);
@@ -339,7 +339,7 @@ TEST(SceneLoad, EmptyAndStrangeButReadable) {
   EXPECT_TRUE(warns_of(scene, "something"));
   EXPECT_TRUE(warns_of(scene, "KHR_materials_iridescence"));
   EXPECT_TRUE(warns_of(scene, "no scene"));
-  EXPECT_EQ(triangle_count(load_text("\xef\xbb\xbf" + triangle_asset().gltf())), 1u);
+  EXPECT_EQ(triangle_count(load_scene_text("\xef\xbb\xbf" + triangle_asset().gltf())), 1u);
 }
 
 TEST(SceneLoad, GlbIsTheSame) {
