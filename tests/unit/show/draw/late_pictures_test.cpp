@@ -129,7 +129,10 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   const VisitorPicture& picture = visitor().picture;
   bool to_the_left = dot(picture.around.keyframe.view.forward, picture.keyframe.view.right) < 0;
   const View& seen = visitor().place.last_view;
-  for (int i = 0; i < 60 && unknown < 0.17f; i++) {
+  auto is_beyond = [&] {  // on the side of what lies around
+    return (dot(seen.forward, picture.keyframe.view.right) < 0) == to_the_left;
+  };
+  for (int i = 0; i < 60 && (unknown < 0.17f || !is_beyond()); i++) {
     turn(to_the_left ? 0.03 : -0.03);
     step_on();
     unknown = warp_picture(picture.keyframe, seen, 1, scratch, alone);
