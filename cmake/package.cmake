@@ -21,7 +21,7 @@ install(FILES deploy/nginx.conf deploy/haproxy.cfg docs/operation.md docs/kiosk.
 install(FILES LICENSE DESTINATION share/doc/wellspring RENAME copyright)
 install(FILES LICENSE DESTINATION share/doc/wellspring-kiosk RENAME copyright COMPONENT kiosk)
 
-# As installed_config() of server/base/installed.h has it.
+# As installed_config() of server/base/host.h has it.
 set(places [[
   set(prefix "${CMAKE_INSTALL_PREFIX}")
   if(prefix MATCHES "^(.*)/usr$")

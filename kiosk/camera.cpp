@@ -5,12 +5,15 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdlib>
 #include <filesystem>
+#include <mutex>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <optional>
 #include <thread>
 
 #include "base/clock.h"
@@ -289,6 +292,130 @@ std::unique_ptr<Camera> make_camera(const CameraSettings& settings) {
   std::error_code ec;
   if (std::filesystem::is_directory(source, ec)) return std::make_unique<FolderCamera>(settings);
   return std::make_unique<FileCamera>(settings);
+}
+
+namespace {
+
+constexpr int every = 4;         // pixel of both ways is looked at
+constexpr int darkest = 16;      // levels: black is what hardly any pixel exceeds
+constexpr double rate_over = 5;  // seconds
+
+}  // namespace
+
+CameraState CameraWatch::step(const GrayFrame& frame) {
+  now_.clear();
+  for (int y = 0; y < frame.height; y += every)
+    for (int x = 0; x < frame.width; x += every)
+      now_.push_back(frame.pixels[size_t(y) * size_t(frame.width) + size_t(x)]);
+  if (times_.empty() || frame.time < times_.back()) {
+    times_.clear();
+    begun_ = dark_since_ = same_since_ = frame.time;
+    before_.clear();
+  }
+  const auto bright =
+      std::count_if(now_.begin(), now_.end(), [](uint8_t level) { return level > darkest; });
+  if (bright * 200 > ptrdiff_t(now_.size())) dark_since_ = frame.time;
+  if (now_ != before_) same_since_ = frame.time;
+  std::swap(now_, before_);
+  times_.push_back(frame.time);
+  while (times_.front() < frame.time - rate_over) times_.pop_front();
+  if (frame.time - dark_since_ >= told_after) return CameraState::dark;
+  if (frame.time - same_since_ >= told_after) return CameraState::frozen;
+  const bool known = frame.time - begun_ >= rate_over;
+  if (known && double(times_.size()) < least_rate * rate_over) return CameraState::slow;
+  return CameraState::good;
+}
+
+CameraState CameraWatch::step_blind() {
+  times_.clear();
+  return CameraState::missing;
+}
+
+namespace {
+std::chrono::duration<double> seconds(double s) { return std::chrono::duration<double>(s); }
+}  // namespace
+
+struct Feed::Shared {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::unique_ptr<Camera> camera;
+  bool pace = false, stop = false, ended = false, finished = false;
+  std::optional<GrayFrame> slot;
+
+  // Sleeps; false when it is time to stop.
+  bool rest(double length) {
+    std::unique_lock lock(mutex);
+    return !changed.wait_for(lock, seconds(length), [&] { return stop; });
+  }
+
+  void deliver(GrayFrame frame) {
+    std::unique_lock lock(mutex);
+    // Paced and live cameras overwrite what nobody took; an unpaced one waits for its reader.
+    if (!camera->live() && !pace) changed.wait(lock, [&] { return stop || !slot; });
+    if (stop) return;
+    slot = std::move(frame);
+    changed.notify_all();
+  }
+
+  void run() {
+    const bool live = camera->live();
+    bool lost = false;
+    double begin = 0;
+    bool first = true;
+    for (;;) {
+      {
+        std::lock_guard lock(mutex);
+        if (stop) break;
+      }
+      GrayFrame frame;
+      Got got = camera->next(frame);
+      if (got == Got::end) break;
+      if (got == Got::lost) {
+        if (!lost) log::warn("{} gives no picture; trying again every second", camera->name());
+        lost = true;
+        if (!rest(1)) break;
+        continue;
+      }
+      if (lost) log::info("{} is back", camera->name());
+      lost = false;
+      if (!live && pace) {
+        if (first) begin = seconds_now() - frame.time;
+        double wait = begin + frame.time - seconds_now();
+        if (wait > 0 && !rest(wait)) break;
+      }
+      first = false;
+      deliver(std::move(frame));
+    }
+    std::lock_guard lock(mutex);
+    ended = finished = true;
+    changed.notify_all();
+  }
+};
+
+Feed::Feed(std::unique_ptr<Camera> camera, bool pace) : shared_(std::make_shared<Shared>()) {
+  shared_->camera = std::move(camera);
+  shared_->pace = pace;
+  std::thread([shared = shared_] { shared->run(); }).detach();
+}
+
+Feed::~Feed() {
+  std::unique_lock lock(shared_->mutex);
+  shared_->stop = true;
+  shared_->changed.notify_all();
+  shared_->changed.wait_for(lock, seconds(3), [&] { return shared_->finished; });
+}
+
+Fed Feed::take(GrayFrame& frame, double wait) {
+  std::unique_lock lock(shared_->mutex);
+  Shared& s = *shared_;
+  s.changed.wait_for(lock, seconds(wait), [&] { return s.slot || s.ended; });
+  if (s.slot) {
+    frame = std::move(*s.slot);
+    s.slot.reset();
+    s.changed.notify_all();
+    return Fed::frame;
+  }
+  return s.ended ? Fed::end : Fed::nothing;
 }
 
 }  // namespace wellspring::kiosk

@@ -2,11 +2,13 @@
 // Where frames come from: a webcam, a video file, a folder of pictures or the synthetic room,
 // behind one call.
 #pragma once
+#include <deque>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "kiosk/frame/gray_frame.h"
 #include "kiosk/frame/head.h"
+#include "wire/messages.h"
 
 namespace wellspring::kiosk {
 
@@ -43,5 +45,44 @@ struct CameraSettings {
 // read is logged and left out. Throws LoadError for a file that is missing or holds no picture, and
 // for a folder without any. A device that is not there is no error: next() says lost.
 std::unique_ptr<Camera> make_camera(const CameraSettings& settings);
+
+// What is wrong with a camera, told from its pictures alone, so that a technician need not guess.
+
+class CameraWatch {
+ public:
+  static constexpr double told_after = 3;  // seconds that a fault must last
+  static constexpr double least_rate = 8;  // pictures a second
+  // The next frame; its time may run backwards where a file begins again.
+  CameraState step(const GrayFrame& frame);
+  // No picture for long.
+  CameraState step_blind();
+
+ private:
+  std::vector<uint8_t> before_, now_;  // a pixel in 16
+  double dark_since_ = 0, same_since_ = 0, begun_ = 0;
+  std::deque<double> times_;  // of the last frames
+};
+
+// A camera read in a thread of its own, so that a device that hangs never hangs the kiosk. A live
+// camera: the newest frame wins and a lost one is tried again every second. Anything else: every
+// frame in order, at the pace of its times or as fast as they are taken.
+
+enum class Fed : uint8_t {
+  frame,
+  nothing,  // none within the wait
+  end,
+};
+
+class Feed {
+ public:
+  Feed(std::unique_ptr<Camera> camera, bool pace);
+  ~Feed();  // waits for the reading thread, but not for a driver that hangs
+  // Waits up to `seconds` for the next frame.
+  Fed take(GrayFrame& frame, double seconds);
+
+ private:
+  struct Shared;
+  std::shared_ptr<Shared> shared_;
+};
 
 }  // namespace wellspring::kiosk

@@ -9,9 +9,69 @@
 #include "base/log.h"
 #include "kiosk/face/face_finder.h"
 #include "kiosk/face/head_pose.h"
-#include "kiosk/person_gestures.h"
+#include "kiosk/gesture/hand.h"
+#include "kiosk/gesture/spot.h"
 
 namespace wellspring::kiosk {
+
+namespace {
+
+void gather(double& evidence, bool cue, double step, double enough) {
+  evidence = std::clamp(evidence + (cue ? step : -step), 0.0, enough);
+}
+
+}  // namespace
+
+Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
+                       bool moving, bool face) {
+  if (!std::isfinite(time)) return state.now;
+  if (!state.started) {
+    state.started = true;
+    state.since = state.last_time = time;
+  }
+  if (time < state.last_time) {  // the clock was set back: keep every age as it is
+    double shift = time - state.last_time;
+    state.since += shift;
+    state.last_motion += shift;
+    state.last_face += shift;
+    state.last_time = time;
+  }
+  double step = std::min(time - state.last_time, settings.longest_step);
+  state.last_time = time;
+  gather(state.motion_evidence, moving, step, settings.wake_after);
+  gather(state.face_evidence, face, step, settings.confirm_after);
+  if (moving) state.last_motion = time;
+  if (face) state.last_face = time;
+
+  // Sums of frame times carry rounding; a tick of the clock must not decide.
+  constexpr double rounding = 1e-6;
+  const bool woken = state.motion_evidence >= settings.wake_after - rounding;
+  const bool confirmed = state.face_evidence >= settings.confirm_after - rounding;
+  const bool quiet = time - std::max(state.last_motion, state.last_face) > settings.hold_motion;
+
+  Presence next = state.now;
+  switch (state.now) {
+    case Presence::absent:
+      if (confirmed) next = Presence::person;
+      else if (woken) next = Presence::motion;
+      break;
+    case Presence::motion:
+      if (confirmed) next = Presence::person;
+      else if (quiet) next = Presence::absent;
+      break;
+    case Presence::person:
+      if (time - state.last_face > settings.hold_person)
+        next = quiet ? Presence::absent : Presence::motion;
+      break;
+  }
+  if (next != state.now) {
+    state.now = next;
+    state.since = time;
+    if (next != Presence::person) state.face_evidence = 0;
+    if (next == Presence::absent) state.motion_evidence = 0;
+  }
+  return state.now;
+}
 
 namespace {
 
@@ -177,5 +237,46 @@ Observation Observer::step_blind(double time) {
   impl_->last_time = std::max(impl_->last_time, time);
   return impl_->finish(time, false, false);
 }
+
+namespace {
+
+constexpr double told_for = 0.5;  // seconds: observations may be thinned out
+
+struct Arm {
+  HandTracker hand;
+  GestureSpotter spotter;
+  std::string gesture;
+  double recognised = -1e9;
+  Arm(const GestureModels& models, bool mirrored) : hand(mirrored), spotter(models) {}
+};
+
+}  // namespace
+
+struct PersonGestures::Impl {
+  const GestureModels* models;
+  bool mirrored;
+  std::map<uint32_t, Arm> arms;
+};
+
+PersonGestures::PersonGestures(const GestureModels* models, bool mirrored)
+    : impl_(std::make_unique<Impl>(Impl{models, mirrored, {}})) {}
+PersonGestures::~PersonGestures() = default;
+
+std::string PersonGestures::step(const GrayFrame& frame, uint32_t id, const Box& face) {
+  if (!impl_->models || frame.bgr.empty() || frame.width < 1) return {};
+  Arm& arm = impl_->arms.try_emplace(id, *impl_->models, impl_->mirrored).first->second;
+  const float scale = float(frame.color_width) / float(frame.width);
+  const HeadInView head{vec2(face.center_x(), face.center_y()) * scale, face.width * scale};
+  const ColorView view{frame.color_width, frame.color_height, frame.bgr.data()};
+  const std::optional<HandSeen> hand = arm.hand.step(view, head, frame.time);
+  const std::optional<vec2> place = hand ? std::optional(hand->place) : std::nullopt;
+  if (const auto found = arm.spotter.step(frame.time, place)) {
+    arm.gesture = found->label;
+    arm.recognised = frame.time;
+  }
+  return frame.time - arm.recognised < told_for ? arm.gesture : std::string();
+}
+
+void PersonGestures::forget(uint32_t id) { impl_->arms.erase(id); }
 
 }  // namespace wellspring::kiosk

@@ -11,15 +11,13 @@
 
 #include "about/version.h"
 #include "base/clock.h"
+#include "base/host.h"
 #include "base/log.h"
-#include "base/log_output.h"
-#include "base/service_manager.h"
 #include "museum/front.h"
 #include "museum/museum.h"
 #include "options.h"
 #include "show/http/pages.h"
-#include "show/status/speeds.h"
-#include "show/status/sums.h"
+#include "show/status/status.h"
 #include "stream/stream.h"
 
 namespace {

@@ -6,21 +6,21 @@
 #include <iostream>
 
 #include "about/version.h"
-#include "avatar/figure/bone_surface.h"
-#include "avatar/load/character_load.h"
-#include "avatar/figure/describe.h"
 #include "avatar/face/expression_rules.h"
 #include "avatar/face/expression_sum.h"
+#include "avatar/figure/bone_surface.h"
+#include "avatar/figure/figure_check.h"
 #include "avatar/figure/joint_constraints.h"
 #include "avatar/figure/retarget.h"
-#include "avatar/speech/visemes.h"
+#include "avatar/load/character_load.h"
 #include "avatar/mind/storyteller.h"
+#include "avatar/speech/visemes.h"
 #include "base/load_error.h"
 #include "base/log.h"
-#include "base/near_name.h"
+#include "base/unicode.h"
 #include "frame/picture_file.h"
 #include "show/exhibit/exhibit_load.h"
-#include "show/storyteller/contact_sheet.h"
+#include "show/storyteller/story_clip.h"
 
 namespace wellspring::program {
 namespace {

@@ -14,13 +14,11 @@
 #include "about/version.h"
 #include "base/clock.h"
 #include "base/log.h"
-#include "base/progress.h"
 #include "light/bake/bake_file.h"
-#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 #include "show/exhibit/exhibit_load.h"
-#include "show/exhibit/eye_places.h"
+#include "show/exhibit/exhibit_objects.h"
 
 using namespace wellspring;
 using namespace wellspring::program;

@@ -7,13 +7,13 @@
 #include "about/version.h"
 #include "base/log.h"
 #include "show/check/check_scene.h"
-#include "show/exhibit/exhibit_animations.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "show/exhibit/exhibit_load.h"
-#include "show/house/house_file.h"
+#include "show/exhibit/exhibit_objects.h"
+#include "show/house/house.h"
 #include "show/storyteller/recordings.h"
 #include "show/visit/tour.h"
-#include "show/visit/walk.h"
+#include "show/visit/walk_map.h"
 
 int main(int argc, char** argv) {
   using namespace wellspring;

@@ -12,14 +12,12 @@
 #include "avatar/load/character_load.h"
 #include "avatar/speech/process.h"
 #include "avatar/speech/sound_file.h"
-#include "avatar/story/story_load.h"
 #include "avatar/story/story_speech.h"
+#include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
-#include "base/progress.h"
 #include "frame/picture_file.h"
 #include "show/storyteller/story_clip.h"
-#include "show/storyteller/portrait.h"
 
 extern char** environ;
 

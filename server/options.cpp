@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <iostream>
 
-#include "base/installed.h"
+#include "base/host.h"
 #include "base/log.h"
-#include "base/log_output.h"
 #include "config/config_file.h"
 
 namespace wellspring::program {

@@ -15,7 +15,7 @@ struct ServerOptions {
   AccessRules access;  // show/http/access.h
   StreamSettings stream;
   MuseumSettings museum;
-  std::string log, log_level = "info";          // file; empty: stderr. base/log_output.h
+  std::string log, log_level = "info";          // file; empty: stderr. base/log.h
   std::map<std::string, std::string> settings;  // all of them by key, as they were read
   int drain = 0;                                // seconds that it goes on serving after SIGTERM
 };

@@ -74,13 +74,14 @@ wellspring_unit_test(denoise denoise)
 wellspring_unit_test(world  world)
 wellspring_unit_test(light  light frame)
 wellspring_unit_test(reference light frame pugixml_any)
-wellspring_unit_test(cache  picture)  # whose pictures say what the cache knows
-wellspring_unit_test(picture picture)
+wellspring_unit_test(cache  picture judge)  # whose pictures say what the cache knows
+wellspring_unit_test(picture picture judge)
 wellspring_unit_test(avatar TOGETHER avatar)
 wellspring_unit_test(show TOGETHER show)
 wellspring_unit_test(museum museum)
-wellspring_unit_test(stream stream boost_any)
-wellspring_unit_test(kiosk kiosk)
+wellspring_unit_test(stream stream judge boost_any)
+wellspring_unit_test(kiosk kiosk judge)
+wellspring_unit_test(judge judge)
 wellspring_unit_test(benchmark benchmark)
 
 include(tests/fuzz/fuzz.cmake)

@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-#include "avatar/body/gesture_library.h"
+#include "avatar/body/gesture.h"
 #include "avatar/face/library_json.h"
 
 namespace wellspring::avatar {

@@ -4,9 +4,11 @@
 // thing, at `hold` it holds it up, and as long before the clip's end as `stroke` is after its
 // beginning the hand lets go of it.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "avatar/body/gesture.h"
+#include "avatar/figure/rig.h"
 
 namespace wellspring::avatar {
 
@@ -47,5 +49,12 @@ bool is_held_up(const HoldState& state, const GestureLibrary& library);
 
 // A gesture that only the busy arm would make is made by the other one.
 void keep_to_free_arm(GestureOrder& order, const GestureLibrary& library, const HoldState& state);
+
+// Where a closed hand holds a rod: the same frame for every figure, whatever its bones are like.
+
+// From the fist's frame to humanoid space, as posed. In the fist zero is the middle of what it
+// closes around, y leads out of it beside the thumb, z the way the straight hand points. Nothing
+// for a figure without that hand.
+std::optional<mat4> eval_grip(const Rig& rig, const Pose& pose, int side);
 
 }  // namespace wellspring::avatar

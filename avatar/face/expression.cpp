@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "avatar/face/library.h"
+#include "avatar/face/library_json.h"
 
 namespace wellspring::avatar {
 

@@ -3,7 +3,7 @@
 // blink, eyes turn or lips speak while they show (VRMC_vrm-1.0, expressions.md: isBinary and
 // procedural override).
 #pragma once
-#include "avatar/figure/pose.h"
+#include "avatar/figure/rig.h"
 
 namespace wellspring::avatar {
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/face/face.h"
 
+#include <cmath>
+
 #include "avatar/figure/noise.h"
+#include "avatar/figure/spring_bones.h"
 
 namespace wellspring::avatar {
 namespace {
@@ -111,6 +114,70 @@ void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& inpu
     add(sum, rig, rig.emotion[i], shown.value);
     work.expressions++;
   }
+}
+
+namespace {
+constexpr float down = 0.07f, held = 0.035f, up = 0.12f;
+}
+
+float tick_blink(BlinkState& state, Rng& rng, double now, bool humanlike) {
+  if (now >= state.next) {
+    // After a long pause between ticks there is nothing to make up for.
+    state.begun = now - state.next < 0.5 ? state.next : now;
+    state.count++;
+    if (!humanlike) {
+      state.next = state.begun + 4;
+      state.twice = false;
+    } else if (!state.twice && rng.uniform() < 0.12f) {
+      state.next = state.begun + 0.30;
+      state.twice = true;
+    } else {
+      state.next = state.begun + 2 + 3 * double(rng.uniform());
+      state.twice = false;
+    }
+  }
+  float t = float(std::min(now - state.begun, 1e3));
+  if (t < down) return smooth_step(0, down, t);
+  if (t < down + held) return 1;
+  return 1 - smooth_step(down + held, down + held + up, t);
+}
+
+void ask_blink(BlinkState& state, double now) {
+  if (now - state.begun > 0.8 && state.next - now > 0.25) state.next = now;
+}
+
+namespace {
+
+// [seen][shown]: joy, sadness, anger, fear, disgust, surprise.
+constexpr float answers[emotion_count][emotion_count] = {
+    {0.9f, 0, 0, 0, 0, 0},      // joy is shared
+    {0, 0.6f, 0, 0, 0, 0},      // sadness: concern
+    {0, 0.25f, 0, 0, 0, 0},     // anger is met with calm attention
+    {0, 0.3f, 0, 0, 0, 0.1f},   // fear: concern
+    {0, 0, 0, 0, 0, 0.25f},     // disgust: is something wrong?
+    {0.15f, 0, 0, 0, 0, 0.6f},  // surprise is shared, with pleasure
+};
+
+}  // namespace
+
+Emotions answer_to(const Emotions& seen) {
+  Emotions answer;
+  for (size_t s = 0; s < emotion_count; s++) {
+    float weight = seen.weight[s];
+    if (!(weight > 0)) continue;  // NaN too
+    weight = std::min(weight, 1.0f) * smooth_step(0.2f, 0.4f, weight);
+    for (size_t a = 0; a < emotion_count; a++) answer.weight[a] += weight * answers[s][a];
+  }
+  return answer;
+}
+
+Emotions tick_empathy(EmpathyState& state, const Emotions* seen, float dt) {
+  Emotions wanted = seen ? answer_to(*seen) : Emotions{}, felt;
+  for (size_t i = 0; i < emotion_count; i++) {
+    settle(state.felt[i], wanted.weight[i], empathy_rate, dt);
+    felt.weight[i] = state.felt[i].value;
+  }
+  return felt;
 }
 
 }  // namespace wellspring::avatar

@@ -5,13 +5,33 @@
 #pragma once
 #include <array>
 
-#include "avatar/face/empathy.h"
+#include "avatar/face/expression.h"
 #include "avatar/face/expression_sum.h"
-#include "avatar/figure/lod.h"
-#include "avatar/face/perlin_face.h"
-#include "avatar/figure/spring.h"
+#include "avatar/figure/character.h"
+#include "avatar/figure/spring_bones.h"
+#include "base/rng.h"
 
 namespace wellspring::avatar {
+
+// The visitor's layer of emotions: what the storyteller feels with the person in front of it. Not a
+// copy: joy is shared, sadness and fear are met with concern, anger and disgust are never given
+// back. Source: the storyteller and kiosk paper (guest's reactions, weighted); the answers and
+// times are ours.
+
+struct EmpathyState {
+  std::array<Spring, emotion_count> felt;
+};
+
+// Critically damped: 90 % of an answer after 3.9 / rate = 1.3 s.
+inline constexpr float empathy_rate = 3;
+// Weight of this layer near the storyteller; 0 in the other zones (lod.h).
+inline constexpr float empathy_weight = 0.6f;
+
+// The face that answers `seen` once it has settled. Weak signals (below 0.2) are prior variance,
+// not emotion.
+Emotions answer_to(const Emotions& seen);
+// `seen` null: nobody, or nothing known of the face; the feeling fades.
+Emotions tick_empathy(EmpathyState& state, const Emotions* seen, float dt);
 
 struct FaceState {
   PerlinFace perlin;                          // the situation's layer
@@ -42,5 +62,20 @@ Emotions layered(const Emotions& story, const Emotions& visitor, float weight,
 // Overwrites `sum` and `words` (all but words.closing). Counts what it does.
 void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& input, double now,
                float dt, ExpressionSum& sum, Protected& words, StorytellerWork& work);
+
+// Blinks: every 2 to 5 seconds, sometimes twice, 70 ms down and 120 ms up. State is a value.
+
+struct BlinkState {
+  double next = 1.5;     // when the coming blink starts
+  double begun = -1e30;  // when the last one did
+  bool twice = false;    // the coming blink is the second of a pair
+  long count = 0;
+};
+
+// How far the lids are closed, 0..1. `humanlike` false: one blink every 4 seconds.
+float tick_blink(BlinkState& state, Rng& rng, double now, bool humanlike);
+// A blink now unless one is under way or has just been: the eyes blink with a large turn of the
+// gaze.
+void ask_blink(BlinkState& state, double now);
 
 }  // namespace wellspring::avatar

@@ -6,10 +6,16 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "base/load_error.h"
 
 namespace wellspring::avatar {
+
+// The data in avatar/library/ as compiled into the program, so that no installation lacks it.
+
+std::string_view default_gestures_json();
+std::string_view default_expressions_json();
 
 struct LibraryReader {
   const std::string& file;

@@ -2,6 +2,9 @@
 #include "avatar/figure/bone_surface.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "avatar/figure/bone_names.h"
 
 namespace wellspring::avatar {
 namespace {
@@ -76,6 +79,154 @@ void add_bone_surface(Character& character) {
                0.03f * size);
   }
   character.parts.push_back(std::move(part));
+}
+
+// A person's skeleton known by its shape: two like legs that reach the floor, above them two like
+// arms and something between.
+
+namespace {
+
+struct Shape {
+  const std::vector<Bone>& bones;
+  std::vector<std::vector<int>> children;
+  std::vector<float> low, high;  // of what hangs below
+  std::vector<int> size, depth;  // bones below and the longest chain of them, itself included
+  float height = 0;
+
+  explicit Shape(const std::vector<Bone>& from) : bones(from), children(from.size()) {
+    size_t n = bones.size();
+    low.resize(n), high.resize(n), size.assign(n, 1), depth.assign(n, 1);
+    for (size_t i = 0; i < n; i++) low[i] = high[i] = bones[i].place.y;
+    float bottom = 1e30f, top = -1e30f;
+    for (size_t i = n; i-- > 0;) {
+      bottom = std::min(bottom, low[i]), top = std::max(top, high[i]);
+      int parent = bones[i].parent;
+      if (parent < 0) continue;
+      size_t p = size_t(parent);
+      children[p].insert(children[p].begin(), int(i));
+      low[p] = std::min(low[p], low[i]), high[p] = std::max(high[p], high[i]);
+      size[p] += size[i], depth[p] = std::max(depth[p], depth[i] + 1);
+    }
+    height = std::max(top - bottom, 0.0f);
+  }
+  vec3 place(int bone) const { return bones[size_t(bone)].place; }
+
+  // From a bone along the longest chain; ends where a hand spreads.
+  std::vector<int> chain(int bone) const {
+    std::vector<int> result;
+    while (bone >= 0) {
+      result.push_back(bone);
+      int next = -1;
+      if (children[size_t(bone)].size() < 3)
+        for (int child : children[size_t(bone)])
+          if (next < 0 || depth[size_t(child)] > depth[size_t(next)]) next = child;
+      bone = next;
+    }
+    return result;
+  }
+
+  struct Pair {
+    int parent = -1, a = -1, b = -1;
+  };
+  // Two children with as many bones each whose ends lie level and apart.
+  template <class Fits>
+  std::vector<Pair> like_pairs(int parent, const Fits& fits) const {
+    std::vector<Pair> pairs;
+    const std::vector<int>& list = children[size_t(parent)];
+    for (size_t i = 0; i < list.size() && i < 40; i++)
+      for (size_t k = i + 1; k < list.size() && k < 40; k++) {
+        std::vector<int> a = chain(list[i]), b = chain(list[k]);
+        if (a.size() != b.size()) continue;
+        vec3 end_a = place(a.back()), end_b = place(b.back());
+        float apart = glm::length(vec2(end_a.x - end_b.x, end_a.z - end_b.z));
+        bool level = std::abs(end_a.y - end_b.y) < 0.12f * height && apart > 0.04f * height;
+        if (level && fits(a, b)) pairs.push_back({parent, list[i], list[k]});
+      }
+    return pairs;
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> name_bones_by_shape(const std::vector<Bone>& bones) {
+  std::vector<std::string> names(bones.size());
+  Shape shape(bones);
+  if (!(shape.height > 1e-6f) || !std::isfinite(shape.height)) return names;
+
+  Shape::Pair legs;
+  float deepest = 0.25f * shape.height;
+  for (size_t i = 0; i < bones.size(); i++)
+    for (const Shape::Pair& pair :
+         shape.like_pairs(int(i), [&](auto&a, auto&) { return a.size() >= 3; })) {
+      float drop =
+          bones[i].place.y - std::max(shape.low[size_t(pair.a)], shape.low[size_t(pair.b)]);
+      if (drop > deepest) deepest = drop, legs = pair;
+    }
+  if (legs.parent < 0) return names;
+
+  // Up from the hips along what reaches highest, to where two arms part.
+  std::vector<int> spine;
+  Shape::Pair arms;
+  int at = legs.parent;
+  while (arms.parent < 0) {
+    int up = -1;
+    for (int child : shape.children[size_t(at)])
+      if (child != legs.a && child != legs.b &&
+          (up < 0 || shape.high[size_t(child)] > shape.high[size_t(up)]))
+        up = child;
+    if (up < 0) return names;
+    spine.push_back(at = up);
+    auto fits = [&](const std::vector<int>& a, const std::vector<int>&) { return a.size() >= 2; };
+    float widest = 0;
+    for (const Shape::Pair& pair : shape.like_pairs(at, fits)) {
+      vec3 a = shape.place(shape.chain(pair.a).back()), b = shape.place(shape.chain(pair.b).back());
+      float apart = glm::length(vec2(a.x - b.x, a.z - b.z));
+      if (apart > widest) widest = apart, arms = pair;
+    }
+  }
+
+  // Feet point ahead; so left is known.
+  std::vector<int> leg_a = shape.chain(legs.a), leg_b = shape.chain(legs.b);
+  vec3 ahead(0);
+  for (const auto& leg : {leg_a, leg_b})
+    if (leg.size() >= 4) ahead += shape.place(leg.back()) - shape.place(leg[2]);
+  ahead.y = 0;
+  if (!(glm::length(ahead) > 0.01f * shape.height)) ahead = vec3(0, 0, 1);
+  vec3 left = cross(vec3(0, 1, 0), ahead);
+  vec3 across = shape.place(legs.a) - shape.place(legs.b) +
+                (shape.place(leg_a.back()) - shape.place(leg_b.back()));
+  bool a_left = dot(across, left) > 0;
+  across = shape.place(shape.chain(arms.a).back()) - shape.place(shape.chain(arms.b).back());
+  bool arm_a_left = dot(across, left) > 0;
+
+  auto name_chain = [&](const std::vector<int>& chain, bool is_left,
+                        std::vector<const char*> joints) {
+    for (size_t k = 0; k < std::min(chain.size(), joints.size()); k++)
+      names[size_t(chain[k])] = (is_left ? "l_" : "r_") + std::string(joints[k]);
+  };
+  names[size_t(legs.parent)] = "humanoid_root";
+  for (auto [bone, is_left] : {std::pair(legs.a, a_left), std::pair(legs.b, !a_left)})
+    name_chain(shape.chain(bone), is_left, {"hip", "knee", "talocrural", "metatarsophalangeal_2"});
+  for (auto [bone, is_left] : {std::pair(arms.a, arm_a_left), std::pair(arms.b, !arm_a_left)}) {
+    std::vector<int> chain = shape.chain(bone);
+    if (chain.size() >= 4)
+      name_chain(chain, is_left, {"sternoclavicular", "shoulder", "elbow", "radiocarpal"});
+    else name_chain(chain, is_left, {"shoulder", "elbow", "radiocarpal"});
+  }
+  std::vector<std::string> vertebrae = spine_names(spine.size());
+  for (size_t k = 0; k < vertebrae.size(); k++) names[size_t(spine[k])] = vertebrae[k];
+  int neck_foot = -1;
+  for (int child : shape.children[size_t(arms.parent)])
+    if (child != arms.a && child != arms.b &&
+        (neck_foot < 0 || shape.high[size_t(child)] > shape.high[size_t(neck_foot)]))
+      neck_foot = child;
+  if (neck_foot < 0) return names;
+  std::vector<int> neck = shape.chain(neck_foot);
+  names[size_t(neck.back())] = "skullbase";
+  neck.pop_back();
+  vertebrae = neck_names(neck.size());
+  for (size_t k = 0; k < vertebrae.size(); k++) names[size_t(neck[k])] = vertebrae[k];
+  return names;
 }
 
 }  // namespace wellspring::avatar

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every figure is held to, whatever file it comes from.
 #pragma once
+#include <string>
+
 #include "avatar/figure/character.h"
 
 namespace wellspring::avatar {
@@ -8,5 +10,10 @@ namespace wellspring::avatar {
 // Puts the figure on y = 0 (motions along with it) and adds warnings: joints of the face that lie
 // where no face is, a size no person has. Called once, at the end of loading.
 void check_figure(Character& character);
+
+// What a character consists of, for people (text) and for programs (JSON).
+
+std::string describe_text(const Character& character);
+std::string describe_json(const Character& character);
 
 }  // namespace wellspring::avatar

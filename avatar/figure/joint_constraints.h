@@ -4,7 +4,7 @@
 // with axes of their own; a figure's joints have theirs along humanoid space, so what lies between
 // the two is kept in each constraint.
 #pragma once
-#include "avatar/figure/pose.h"
+#include "avatar/figure/rig.h"
 
 namespace wellspring::avatar {
 

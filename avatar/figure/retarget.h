@@ -4,7 +4,7 @@
 // many vertebrae there are. Made once for a motion and a figure; applied every tick without state.
 #pragma once
 #include "avatar/figure/motion.h"
-#include "avatar/figure/pose.h"
+#include "avatar/figure/rig.h"
 
 namespace wellspring::avatar {
 

@@ -7,9 +7,17 @@
 #pragma once
 #include "avatar/figure/character.h"
 #include "avatar/load/vrm_extension.h"
-#include "gltf/pose.h"
+#include "gltf/animation.h"
 
 namespace wellspring::avatar {
+
+// Small geometry of node trees.
+
+std::vector<size_t> gltf_parents_first(const std::vector<gltf::Node>& nodes);
+// The turn in a matrix that may also scale; a mirrored one loses its mirroring.
+glm::dquat gltf_rotation(const dmat4& matrix);
+// The one of the 24 turns of a cube that is most like this one.
+glm::dquat nearest_right_turn(glm::dquat turn);
 
 inline constexpr size_t most_displacements = 20'000'000;  // of a figure's vertices
 

@@ -6,7 +6,6 @@
 
 #include "avatar/figure/bone_names.h"
 #include "avatar/load/gltf_figure.h"
-#include "avatar/load/gltf_frames.h"
 #include "gltf/data.h"
 
 namespace wellspring::avatar {

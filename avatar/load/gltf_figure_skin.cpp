@@ -4,9 +4,7 @@
 #include <cmath>
 
 #include "avatar/load/gltf_figure.h"
-#include "gltf/attributes.h"
 #include "gltf/data.h"
-#include "gltf/instances.h"
 #include "gltf/primitive.h"
 
 namespace wellspring::avatar {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "avatar/load/gltf_figure.h"
-#include "avatar/load/gltf_frames.h"
 #include "gltf/animation.h"
 
 namespace wellspring::avatar {

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <map>
 
-#include "avatar/load/vrm_color.h"
 #include "avatar/load/vrm_extension.h"
 #include "avatar/load/vrm_json.h"
 

@@ -2,6 +2,8 @@
 // JSON of VRM's extensions, which is in no schema table: types are checked where it is read. What
 // is absent is empty; what is of another type is refused with its place.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "base/vec.h"
@@ -28,3 +30,22 @@ int index_in(const File& file, const json& object, const char* key, const char* 
              const std::string& where);
 
 }  // namespace wellspring::avatar::vrm_json
+
+namespace wellspring::avatar {
+
+// Colours as version 0 of VRM keeps them: as Unity's materials do.
+
+// IEC 61966-2-1 up to 1, beyond it, where colours glow, a power of 2.2. Below 0: 0.
+inline vec3 linear_of_unity(vec3 color) {
+  vec3 linear(0);
+  for (int c = 0; c < 3; c++) {
+    float v = std::min(color[c], 1e4f);
+    if (!(v > 0)) continue;
+    linear[c] = v <= 0.04045f ? v / 12.92f
+                : v < 1       ? std::pow((v + 0.055f) / 1.055f, 2.4f)
+                              : std::pow(v, 2.2f);
+  }
+  return linear;
+}
+
+}  // namespace wellspring::avatar

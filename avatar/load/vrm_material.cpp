@@ -3,7 +3,6 @@
 // version 0's "materialProperties", in terms of Unity's shaders "VRM/MToon" and "VRM/Unlit...".
 #include <algorithm>
 
-#include "avatar/load/vrm_color.h"
 #include "avatar/load/vrm_extension.h"
 #include "avatar/load/vrm_json.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "avatar/body/body.h"
-#include "avatar/body/grip.h"
+#include "avatar/body/hold.h"
 #include "avatar/face/expression_rules.h"
 #include "avatar/figure/joint_constraints.h"
 

@@ -7,17 +7,13 @@
 #include <memory>
 #include <vector>
 
-#include "avatar/face/blink.h"
-#include "avatar/mind/bow.h"
-#include "avatar/mind/body_language.h"
-#include "avatar/face/face.h"
-#include "avatar/mind/gaze.h"
 #include "avatar/body/gesture.h"
 #include "avatar/body/hold.h"
-#include "avatar/body/idle.h"
-#include "avatar/mind/mirror.h"
-#include "avatar/figure/spring_bones.h"
 #include "avatar/body/stance.h"
+#include "avatar/face/face.h"
+#include "avatar/figure/spring_bones.h"
+#include "avatar/mind/body_language.h"
+#include "avatar/mind/gaze.h"
 #include "avatar/mind/storyteller_io.h"
 
 namespace wellspring::avatar {
@@ -59,7 +55,7 @@ struct StorytellerState {
 void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
                       const StorytellerInput& input, Pose& pose, StorytellerEvents& events);
 
-// Where its hand holds what `state.hold` says: from the fist's frame (avatar/body/grip.h) to the
+// Where its hand holds what `state.hold` says: from the fist's frame (avatar/body/hold.h) to the
 // world, as posed now. Nothing while nothing is held, or for a figure without that hand.
 std::optional<mat4> eval_grip(const StorytellerState& state, const Storyteller& storyteller,
                               const Pose& pose);

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "avatar/face/emotion.h"
-#include "avatar/story/story_cue.h"
+#include "avatar/face/expression.h"
+#include "avatar/figure/spring_bones.h"
+#include "avatar/story/timeline.h"
 #include "base/vec.h"
 
 namespace wellspring::avatar {
@@ -55,5 +56,45 @@ struct StorytellerEvents {
   bool greeted = false, farewelled = false;
   uint64_t guest = 0;  // whom it concerns
 };
+
+// How the storyteller bends to a guest whose eyes are lower than its own, a child or somebody in a
+// wheelchair: knees and chest together, softly, and only to who stands near.
+
+struct BowState {
+  Spring share;  // 0: upright, 1: as far as it bends
+};
+
+// Metres: eyes that are so much lower are met by looking down alone, and from the second on by all.
+inline constexpr float bow_from = 0.15f, bow_all = 0.4f;
+// Metres to the guest's eyes, within which it bends wholly, and beyond which not at all: to bend to
+// somebody far off is a bow.
+inline constexpr float bow_near = 2, bow_far = 3.5f;
+// Of a whole one: metres that the pelvis sinks, radians that the chest leans.
+inline constexpr float bow_sink = 0.1f, bow_lean = 14.0_deg;
+
+// `guest`: the eyes of who is looked at, `eyes`: its own when it stands upright, in one space;
+// null: nobody.
+void tick_bow(BowState& state, std::optional<vec3> guest, vec3 eyes, float dt);
+
+// The lazy mirror: the guest's head rotation, halved, late and soft, to be added to the
+// storyteller's own. Source: storyteller and kiosk paper, "a delayed and lazy mirror"; its numbers
+// are ours.
+
+inline constexpr float mirror_share = 0.5f, mirror_delay = 0.35f, mirror_lag = 0.6f;
+
+struct MirrorState {
+  struct Heard {
+    double time = -1e30;
+    vec2 wanted{0};
+  };
+  std::array<Heard, 64> heard;  // ring of changes still on their way, oldest first from `first`
+  int first = 0, count = 0;
+  vec2 arrived{0};  // what the lag follows
+  vec2 angle{0};    // yaw to its own left (the guest's right), pitch up; radians
+};
+
+// `rotation` as Guest::rotation; `present` false: the wanted angle is 0. `now` is the clock after
+// `dt`.
+void tick_mirror(MirrorState& state, bool present, vec3 rotation, double now, float dt);
 
 }  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "avatar/speech/request.h"
+#include "avatar/speech/protocol.h"
 #include "avatar/speech/speech.h"
 
 namespace wellspring::avatar {

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "avatar/speech/speech_folder.h"
+#include "avatar/speech/speech_json.h"
 
 namespace wellspring::avatar {
 

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <set>
 
-#include "avatar/speech/make_visemes.h"
+#include "avatar/speech/visemes.h"
 #include "base/log.h"
 
 namespace wellspring::avatar {

@@ -15,9 +15,11 @@
 // phonemes of every word are stretched into it, pauses fill the rest, and the visemes are made
 // anew. "phonemes" may be edited within a word; "visemes" and what is not named here is ignored.
 #pragma once
+#include <memory>
 #include <string>
 #include <string_view>
 
+#include "avatar/speech/process.h"
 #include "avatar/speech/speech.h"
 
 namespace wellspring::avatar {
@@ -28,5 +30,28 @@ std::string write_speech_json(const Speech& speech);
 // Throws LoadError with a JSON pointer: no JSON, wrong types, times not finite, negative, out of
 // order or beyond the duration, characters outside the text, more than a million entries.
 Speech load_speech_marks(std::string_view json, const std::string& file);
+
+// Speech kept on disk from one start of an exhibit to the next, one file a request. A file that is
+// damaged, or of another request with the same name, counts as missing. Nothing here throws; a
+// folder that cannot be written is said once.
+
+// Everything that decides the sound of a request, as one string.
+std::string speech_key(const SpeechRequest& request);
+
+class SpeechFolder {
+ public:
+  // `path` empty: keeps nothing. Files beyond `most_bytes` are removed, the oldest first. What is
+  // older than the file `made_by`, the voice program, counts as missing: it may speak otherwise
+  // now.
+  SpeechFolder(std::string path, size_t most_bytes, std::string made_by = {});
+  std::shared_ptr<const Speech> load(const SpeechRequest& request) const;
+  void save(const SpeechRequest& request, const Speech& speech);
+
+ private:
+  std::string path_;
+  size_t most_bytes_ = 0;
+  std::string made_by_;
+  bool said_ = false;  // that it cannot be written
+};
 
 }  // namespace wellspring::avatar

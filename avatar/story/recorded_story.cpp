@@ -8,7 +8,6 @@
 
 #include "avatar/align/align.h"
 #include "avatar/align/features.h"
-#include "avatar/align/fit.h"
 #include "avatar/speech/speech_json.h"
 #include "avatar/story/story_speech.h"
 #include "base/load_error.h"

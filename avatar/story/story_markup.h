@@ -4,12 +4,20 @@
 // themselves; comments, declarations and processing instructions are passed over; prefixes of names
 // ("ssml:break") are left away. Every piece knows its line and column.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace wellspring::avatar {
+
+// Character references of HTML, as stories and subtitles may have them: &amp;, &eacute; and all
+// other names of HTML 4, &apos;, and numbers (&#8211;, &#x2013;).
+
+// Appends what the reference at the beginning of `text` stands for. Returns its bytes; 0 when none
+// begins there.
+size_t read_character_reference(std::string_view text, std::string& to);
 
 struct MarkupPlace {
   int line = 1, column = 1;  // from 1; columns are characters
@@ -35,5 +43,16 @@ inline constexpr size_t most_markup_bytes = 1 << 20, most_markup_depth = 64;
 std::vector<MarkupPiece> read_markup(std::string_view text, const std::string& file);
 // One piece of text, in which nothing is a tag or an entity.
 std::vector<MarkupPiece> read_plain_markup(std::string_view text, const std::string& file);
+
+// Values of attributes of a story's markup, as SSML 1.1 writes them. Empty: it is none.
+
+std::optional<float> read_seconds(const std::string& text);         // "500ms", "1.5s"; at most 10 s
+std::optional<float> read_break_strength(const std::string& text);  // seconds; none .. x-strong
+// As a factor of the speaker's own: "80%", "+10%", "-2st", "slow", "1.2"; cut to 0.3 .. 3.
+std::optional<float> read_rate(const std::string& text);
+std::optional<float> read_pitch(const std::string& text);
+std::optional<float> read_volume(const std::string& text);  // "+6dB", "loud", "80%"
+std::optional<float> read_weight(const std::string& text);  // 0 .. 1, or "60%"
+std::optional<int> read_emphasis(const std::string& text);  // -1 .. 2
 
 }  // namespace wellspring::avatar

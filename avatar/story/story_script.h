@@ -9,10 +9,21 @@
 #include <string_view>
 #include <vector>
 
-#include "avatar/speech/style.h"
+#include "avatar/speech/text.h"
 #include "avatar/story/story_markup.h"
 
 namespace wellspring::avatar {
+
+// Where the sentences of a paragraph end, in any language that ends them with . ! ? or an ellipsis.
+
+struct TextSpan {
+  uint32_t begin = 0, end = 0;  // bytes, without spaces around
+};
+
+// A full stop after a number of one or two digits ("13. Jahrhundert") or a single letter ("z. B.")
+// ends nothing, nor does one that a small letter follows; closing quotes and brackets belong to the
+// sentence.
+std::vector<TextSpan> find_sentences(std::string_view text);
 
 struct Speech;
 

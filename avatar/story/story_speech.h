@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "avatar/speech/speech.h"
 #include "avatar/speech/process.h"
+#include "avatar/speech/speech.h"
 #include "avatar/story/story_script.h"
 #include "avatar/story/subtitle.h"
 
@@ -22,7 +22,7 @@ struct StorySpeech {
 };
 
 // Every line in the voice of `request`, whose text and styles are the lines'. Throws LoadError with
-// the place in `file` of a line that cannot be spoken. May be cancelled (base/cancel.h).
+// the place in `file` of a line that cannot be spoken. May be cancelled (base/worker.h).
 std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
                                                        const std::vector<StoryLine>& lines,
                                                        SpeechRequest request,
@@ -32,5 +32,12 @@ std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
 // read.
 StorySpeech join_lines(const std::vector<StoryLine>& lines,
                        const std::vector<std::shared_ptr<const Speech>>& spoken);
+
+// Story files: .txt is plain text, .vtt are subtitles, all else is markup.
+
+// Throws LoadError naming the file: it cannot be read, it is larger than most_markup_bytes, and
+// what read_story, read_plain_story and
+// read_subtitle_story throw.
+StoryScript load_story(const std::string& file);
 
 }  // namespace wellspring::avatar

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "avatar/speech/text.h"
-#include "avatar/story/character_reference.h"
+#include "avatar/story/story_markup.h"
 #include "base/load_error.h"
 
 namespace wellspring::avatar {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "avatar/body/gesture_library.h"
+#include "avatar/body/gesture.h"
 #include "avatar/speech/text.h"
 
 namespace wellspring::avatar {

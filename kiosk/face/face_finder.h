@@ -1,12 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 // The detectors, and which of them runs.
 #pragma once
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "kiosk/face/face.h"
+#include "base/vec.h"
+#include "kiosk/frame/head.h"
+#include "kiosk/network/face_marks.h"
 
 namespace wellspring::kiosk {
+
+// Faces in a picture. All that the rest of the kiosk knows of detection is in this header: trained
+// networks find faces with their landmarks (face_network.cpp), cascades stand in for them where the
+// networks' weights are not installed (face_cascade.cpp).
+
+enum class FaceView : uint8_t {
+  frontal,
+  image_left,
+  image_right
+};  // a profile looks to that side of the image
+
+struct Face {
+  Box box;  // the frontal cascade's square, or nearly the same about the landmarks
+  FaceView view = FaceView::frontal;
+  float confidence = 0;                     // 0..1: how clearly the detector answered
+  std::optional<std::array<vec2, 2>> eyes;  // pixels: the eye at image left, then at image right
+  std::optional<FaceMarks> marks{};         // by networks only
+  // Of the detector's looks at landmarks that are followed: what it said last, how often it agreed,
+  // when it was asked last and when it last agreed.
+  float score = 0;
+  int agreed = 0;
+  double asked_time = -1e9, agreed_time = -1e9;
+};
+
+struct FaceSettings {
+  std::string cascades = "/usr/share/opencv4";
+  // Folder with the networks' weights; empty: WELLSPRING_WEIGHTS/face. Without them: cascades.
+  std::string weights;
+  int search_width = 320;     // cascades search whole frames at this width
+  float smallest = 1 / 13.f;  // box side over frame width that cascades look for
+};
+
+class FaceFinder {
+ public:
+  virtual ~FaceFinder() = default;
+  // Faces of the whole frame, or of the part of it whose turn it is. Largest first, at most 8.
+  virtual std::vector<Face> search(const GrayFrame& frame) = 0;
+  // The same within `zone`, slower and for smaller or less clear ones.
+  virtual std::vector<Face> search_thoroughly(const GrayFrame& frame, const Box& zone) = 0;
+  // The face near `last` (one frame to half a second later). `roll` is how far the head was tilted
+  // (positive: its top towards image left).
+  virtual std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll = 0) = 0;
+  // Whether faces come with landmarks, from which the head's pose follows.
+  virtual bool finds_landmarks() const = 0;
+};
 
 // Where the networks' weights should be; empty: nobody says.
 std::string weights_folder(const FaceSettings& settings);

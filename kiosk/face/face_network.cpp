@@ -9,7 +9,7 @@
 
 #include "kiosk/face/face_finder.h"
 #include "kiosk/face/head_pose.h"
-#include "kiosk/network/face_boxes.h"
+#include "kiosk/network/face_marks.h"
 
 namespace wellspring::kiosk {
 

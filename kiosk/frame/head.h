@@ -8,12 +8,43 @@
 // and the visitor's own left hand appears at image right. For a level camera, screen x = -camera x,
 // y = -camera y.
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "base/vec.h"
-#include "kiosk/frame/gray_frame.h"
 
 namespace wellspring::kiosk {
+
+// One picture of the camera: luminance, row by row, top row first, and a small one in colour. It
+// lives in this process for the time of one observation; nothing writes it to a file or a socket.
+
+struct GrayFrame {
+  double time = 0;  // seconds: a file's own time, or the monotonic clock of a live camera
+  int width = 0, height = 0;
+  std::vector<uint8_t> pixels{};
+  // The same picture at no more than 320 pixels across, for hands: blue, green, red. Empty where
+  // the camera has no colour.
+  int color_width = 0, color_height = 0;
+  std::vector<uint8_t> bgr{};
+};
+
+// A rectangle in pixels of the frame it belongs to; may be fractional. Empty when it has no width.
+struct Box {
+  float x = 0, y = 0, width = 0, height = 0;
+  float center_x() const { return x + width / 2; }
+  float center_y() const { return y + height / 2; }
+};
+
+// Area of the intersection over area of the union, 0 to 1.
+inline float overlap(const Box& a, const Box& b) {
+  float w = std::min(a.x + a.width, b.x + b.width) - std::max(a.x, b.x);
+  float h = std::min(a.y + a.height, b.y + b.height) - std::max(a.y, b.y);
+  if (!(w > 0 && h > 0)) return 0;
+  return w * h / (a.width * a.height + b.width * b.height - w * h);
+}
 
 // How the camera is fixed to the screen, and its lens.
 struct Mount {
@@ -56,5 +87,44 @@ mat3 rotation_as_seen(const Mount& mount, vec3 yaw_pitch_roll, vec3 camera);
 // The rotation, in screen axes, of a head at `position` (on the screen's visitor side) that faces
 // the screen's centre.
 vec3 rotation_to_center(vec3 position);
+
+// The one-euro filter (Casiez, Roussel, Vogel, CHI 2012, section 3): a low pass whose cut-off rises
+// with the speed of the signal, so a resting head rests and a quick one is not late. First lower
+// `min_cutoff` until rest is still, then raise `beta` until motion does not lag.
+
+struct OneEuroSettings {
+  float min_cutoff = 1;    // Hz
+  float beta = 0;          // Hz per (unit a second)
+  float speed_cutoff = 1;  // Hz, of the speed's own filter
+};
+
+struct OneEuro {
+  bool started = false;
+  double time = 0;
+  vec3 value{0}, speed{0};
+};
+
+inline float one_euro_alpha(float cutoff, float step) {
+  float tau = 1 / (2 * pi * cutoff);
+  return 1 / (1 + tau / step);
+}
+
+// Returns the filtered value of `raw` seen at `time` seconds. The first value passes as it is; a
+// value that is not finite, or not later than the last one, changes nothing.
+inline vec3 step_one_euro(OneEuro& filter, const OneEuroSettings& settings, double time, vec3 raw) {
+  if (!is_finite(raw)) return filter.value;
+  if (!filter.started) {
+    filter = {true, time, raw, vec3(0)};
+    return raw;
+  }
+  float step = float(time - filter.time);
+  if (!(step > 0)) return filter.value;
+  filter.time = time;
+  vec3 speed = (raw - filter.value) / step;
+  filter.speed += one_euro_alpha(settings.speed_cutoff, step) * (speed - filter.speed);
+  float cutoff = settings.min_cutoff + settings.beta * glm::length(filter.speed);
+  filter.value += one_euro_alpha(cutoff, step) * (raw - filter.value);
+  return filter.value;
+}
 
 }  // namespace wellspring::kiosk

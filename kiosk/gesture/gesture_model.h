@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "kiosk/gesture/hmm.h"
 #include "kiosk/gesture/trajectory.h"
 
 namespace wellspring::kiosk {

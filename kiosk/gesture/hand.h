@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "kiosk/gesture/mean_shift.h"
+#include "kiosk/gesture/skin.h"
 
 namespace wellspring::kiosk {
 

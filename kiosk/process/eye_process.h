@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two processes: the eye sees pictures and has no network (kiosk/process/sandbox.h); the one that
-// starts it has the network and sees lines of text alone, and tells the eye what is needed of it.
-// The eye is this program, started again with the same arguments and two more. Each camera has an
-// eye of its own.
+// Two processes: the eye sees pictures and has no network (kiosk/process/eye_process.h); the one
+// that starts it has the network and sees lines of text alone, and tells the eye what is needed of
+// it. The eye is this program, started again with the same arguments and two more. Each camera has
+// an eye of its own.
 #pragma once
 #include <optional>
 #include <string>
@@ -53,5 +53,17 @@ class EyeProcess {
   bool too_long_ = false;  // the line that text_ begins with
   int status_ = 0;
 };
+
+// What the process that sees pictures gives up, once its camera and its weights are open: it can
+// open no file to write, no network, no other program, and leaves no memory image behind. What it
+// has open already it keeps. Enforced by the kernel (seccomp), for all threads and for good.
+
+struct SandboxSettings {
+  // A camera device has to be opened to read and write; also again, when it was unplugged.
+  bool device = false;
+};
+
+// Throws std::runtime_error where the kernel does not do it.
+void enter_sandbox(const SandboxSettings& settings = {});
 
 }  // namespace wellspring::kiosk

@@ -9,10 +9,19 @@
 #include <optional>
 #include <string>
 
-#include "kiosk/process/server_address.h"
 #include "wire/messages.h"
 
 namespace wellspring::kiosk {
+
+// Where a kiosk's server is, as people write it.
+
+struct ServerAddress {
+  std::string host, port = "80", path;
+  bool tls = false;
+};
+// ws://HOST[:PORT][/PATH] or wss://, an IPv6 address in brackets; no path: /api/v1/eye; no port:
+// 80, or 443. Nothing for anything else.
+std::optional<ServerAddress> parse_address(const std::string& url);
 
 // Seconds to wait before attempt 1, 2, ...: first * 2^(attempt - 1), at most `longest`, times 0.5
 // to 1 by `jitter` (0..1).

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "about/version.h"
 
-#include <link.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <link.h>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
-
-#include "about/known_libraries.h"
 
 namespace wellspring::about {
 

@@ -33,4 +33,66 @@ bool answer_version(int argc, char** argv,
                     std::initializer_list<const char*> compiled_in = {"CLI11", "GLM",
                                                                       "nlohmann-json", "stb"});
 
+// Libraries that our programs use, by the beginning of their files' names: name, licence (SPDX) and
+// what for. One that is linked and not here fails tests/scripted/version.test.mjs.
+
+struct KnownLibrary {
+  const char *begins, *name, *licence, *purpose;
+};
+
+inline constexpr const char* gcc_runtime = "GPL-3.0-or-later WITH GCC-exception-3.1";
+
+inline constexpr KnownLibrary known_libraries[] = {
+    {"ld-linux", "GNU C Library", "LGPL-2.1-or-later", "loads programs"},
+    {"libc.", "GNU C Library", "LGPL-2.1-or-later", "C"},
+    {"libcrypto.", "OpenSSL", "Apache-2.0", "TLS"},
+    {"libdraco.", "Draco", "Apache-2.0", "compressed meshes"},
+    {"libdnnl.", "oneDNN", "Apache-2.0", "the network that cleans pictures at rest"},
+    {"libembree", "Embree", "Apache-2.0", "ray tracing"},
+    {"libespeak-ng.", "eSpeak NG", "GPL-3.0-or-later", "speech, in a program of its own"},
+    {"libFLAC.", "FLAC", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libfmt.", "{fmt}", "MIT", "texts"},
+    {"libgcc_s.", "GCC", gcc_runtime, "run-time support of C++"},
+    {"libgomp.", "GCC", gcc_runtime, "OpenMP, for oneDNN"},
+    {"libIex", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
+    {"libIlmThread", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
+    {"libImath", "Imath", "BSD-3-Clause", "OpenEXR pictures"},
+    {"libm.", "GNU C Library", "LGPL-2.1-or-later", "mathematics"},
+    {"libmeshoptimizer.", "meshoptimizer", "MIT", "compressed meshes"},
+    {"libmp3lame.", "LAME", "LGPL-2.0-or-later", "recordings, for libsndfile"},
+    {"libmpg123.", "mpg123", "LGPL-2.1-only", "recordings, for libsndfile"},
+    {"libogg.", "Ogg", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libOpenCL.", "OpenCL ICD loader", "BSD-2-Clause", "for oneDNN; not used"},
+    {"libopencv_", "OpenCV", "Apache-2.0", "cameras and faces, in the kiosk's program"},
+    {"libOpenEXR", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
+    {"libopus.", "Opus", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libpng16.", "libpng", "libpng-2.0", "PNG pictures"},
+    {"libpugixml.", "pugixml", "MIT", "X3D figures"},
+    {"libqrcodegen", "QR Code generator", "MIT", "codes for guests' phones"},
+    {"libseccomp.", "libseccomp", "LGPL-2.1-only", "what a process gives up"},
+    {"libsndfile.", "libsndfile", "LGPL-2.1-or-later", "recordings"},
+    {"libsodium.", "libsodium", "ISC", "seals of visits, tokens"},
+    {"libspdlog.", "spdlog", "MIT", "the log"},
+    {"libsqlite3.", "SQLite", "blessing", "daily sums"},
+    {"libssl.", "OpenSSL", "Apache-2.0", "TLS"},
+    {"libstdc++.", "GCC", gcc_runtime, "the C++ library"},
+    {"libSvtAv1Enc.", "SVT-AV1", "BSD-3-Clause-Clear", "video"},
+    {"libsystemd.", "systemd", "LGPL-2.1-or-later", "what a service tells its manager"},
+    {"libtbb.", "oneTBB", "Apache-2.0", "loops over cores"},
+    {"libtbbmalloc.", "oneTBB", "Apache-2.0", "memory of oneTBB itself"},
+    {"libturbojpeg.", "libjpeg-turbo", "IJG AND BSD-3-Clause AND Zlib", "JPEG pictures"},
+    {"libutf8proc.", "utf8proc", "MIT AND Unicode-DFS-2016", "names compared by Unicode"},
+    {"libvorbis", "Vorbis", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libvpx.", "libvpx", "BSD-3-Clause", "video"},
+    {"libwebp.", "WebP", "BSD-3-Clause", "WebP pictures"},
+    {"libz.", "zlib", "Zlib", "compression"},
+    {"libzstd.", "Zstandard", "BSD-3-Clause", "light that packages carry"},
+    // Headers that are compiled in.
+    {"Boost", "Boost (Asio, Beast)", "BSL-1.0", "HTTP and WebSocket"},
+    {"CLI11", "CLI11", "BSD-3-Clause", "options"},
+    {"GLM", "GLM", "MIT", "vectors"},
+    {"nlohmann-json", "JSON for Modern C++", "MIT", "JSON"},
+    {"stb", "stb", "MIT OR Unlicense", "HDR pictures, and PNG written"},
+};
+
 }  // namespace wellspring::about

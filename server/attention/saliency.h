@@ -14,11 +14,69 @@
 // Deterministic for any number of threads; a mirrored picture has the mirrored map.
 #pragma once
 #include <array>
+#include <vector>
 
-#include "attention/pyramid.h"
+#include "base/vec.h"
 #include "frame/frame.h"
 
 namespace wellspring::attention {
+
+// Intensity of a colour given as 8-bit codes, and the differences of its opponent colours.
+
+// `out`: intensity (r + g + b) / 3, 0 to 1, and the differences of the broadly tuned colours R, G,
+// B and Y, each colour over r + g + b, so that hue counts and brightness does not. Hue cannot be
+// seen in the dark: both differences are 0 where r + g + b <= `dark`. For numbers and for eight of
+// them. Y = (r + g) / 2 - |r - g| / 2 - b = min(r, g) - b.
+template <class T, class Least, class Positive, class Choose>
+void eval_channels(T r, T g, T b, T dark, const Least& least, const Positive& positive,
+                   const Choose& choose, T (&out)[3]) {
+  T sum = r + g + b;
+  T red = positive(r - 0.5f * (g + b)), green = positive(g - 0.5f * (r + b)),
+    blue = positive(b - 0.5f * (r + g)), yellow = positive(least(r, g) - b);
+  out[0] = sum * (1 / 765.0f);
+  out[1] = choose(sum > dark, (red - green) / sum);
+  out[2] = choose(sum > dark, (blue - yellow) / sum);
+}
+
+// Gaussian pyramids (Burt, Adelson 1983): each scale is the one before, low-pass filtered and of
+// half its size, odd sizes rounded up. A side of even length is filtered by the binomial
+// (1 5 10 10 5 1)/32, whose pixels lie between two finer ones; one of odd length by (1 4 6 4 1)/16,
+// whose pixels lie on every second finer one. So a mirrored plane has a mirrored pyramid, whatever
+// its size. Beyond its border a plane goes on as at the border.
+
+// One number a pixel, top row first.
+struct Plane {
+  int width = 0, height = 0;
+  std::vector<float> value;
+  float* row(int y) { return value.data() + size_t(y) * size_t(width); }
+  const float* row(int y) const { return value.data() + size_t(y) * size_t(width); }
+};
+// What the plane holds afterwards means nothing.
+inline void fit_plane(int width, int height, Plane& plane) {
+  plane.width = width;
+  plane.height = height;
+  plane.value.resize(size_t(width) * size_t(height));
+}
+
+inline int half_size(int size) { return (size + 1) / 2; }
+// Where pixel `x` of a side of that many pixels lies at the next coarser scale.
+inline float coarser_place(float x, int size) {
+  return size % 2 == 0 ? 0.5f * x - 0.25f : 0.5f * x;
+}
+
+// `count` neighbours of a filtered row, at most piece_size, of a side of `size` pixels. The first
+// lies at pixel 2 i of the finer row or just right of it, and `fine` holds that row from pixel
+// 2 i - 2 on, 2 * count + 4 of them.
+inline constexpr int piece_size = 128, fine_piece_size = 2 * piece_size + 4;
+void reduce_piece(const float* fine, int size, int count, float* coarse);
+// Rows that are filtered so become the next scale.
+void reduce_rows(const Plane& narrow, Plane& coarse);
+
+// The next coarser scale. `narrow` is scratch.
+void reduce(const Plane& fine, Plane& narrow, Plane& coarse);
+// The next finer scale of that size, interpolated linearly: what reduce() put where, from there.
+// `narrow` is scratch.
+void expand(const Plane& coarse, int width, int height, Plane& narrow, Plane& fine);
 
 // Of the pyramids, scale 0 is the picture. Centres are the scales 2, 3 and 4, surrounds are 3 and 4
 // scales coarser. The maps of all scales are added at scale 4, a sixteenth of the picture's size.

@@ -14,8 +14,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/log_output.h"
-
 namespace wellspring::log {
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loops over cores (oneTBB). Bodies must not throw and must not depend on the order of their calls.
-// Between pieces, threads work on what is of high priority (base/priority.h).
+// Between pieces, threads work on what is of high priority (base/worker.h).
 #pragma once
 #include <atomic>
 #include <oneapi/tbb/blocked_range.h>

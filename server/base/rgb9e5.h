@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "base/simd.h"
 #include "base/vec.h"
 
 namespace wellspring {
@@ -34,6 +35,15 @@ inline uint32_t pack_rgb9e5(vec3 c, uint32_t random = 0x808080u) {
 inline vec3 unpack_rgb9e5(uint32_t p) {
   float scale = std::bit_cast<float>(((p >> 27) + 127 - 24) << 23);
   return vec3(float(p & 511), float((p >> 9) & 511), float((p >> 18) & 511)) * scale;
+}
+
+// unpack_rgb9e5() of base/rgb9e5.h, of eight at a time.
+
+inline void unpack_rgb9e5(const LaneBits& p, Lanes& r, Lanes& g, Lanes& b) {
+  Lanes unit = lanes_as<Lanes>(((p >> 27) + (127 - 24)) << 23);
+  r = to_float(p & 511u) * unit;
+  g = to_float((p >> 9) & 511u) * unit;
+  b = to_float((p >> 18) & 511u) * unit;
 }
 
 }  // namespace wellspring

@@ -3,9 +3,12 @@
 // alone, never of the thread that drew it. Generator: PCG-XSH-RR 64/32, O'Neill 2014, sections 6.3
 // and 7.1.
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <numeric>
 
 #include "base/layers.h"
+#include "base/vec.h"
 
 namespace wellspring {
 
@@ -39,5 +42,23 @@ struct Rng {
   // Uniform in [0, 1): 24 bits, never 1.
   float uniform() { return float(next() >> 8) * 0x1p-24f; }
 };
+
+// Sequences of which any number in a row is spread evenly.
+
+// The i-th place within a pixel, 0 to 1: the additive recurrence of the plastic number's powers
+// (Roberts 2018). They repeat after 1024.
+inline vec2 spread_in_pixel(int i) {
+  uint32_t n = uint32_t(i % 1024);
+  auto part = [n](uint32_t step) { return float((0x80000000u + step * n) >> 8) * 0x1p-24f; };
+  return {part(3242174889u), part(2447445414u)};
+}
+
+// Steps of about the golden ratio, round and round, reach all of `count` places once: neighbours in
+// time lie far apart.
+inline uint64_t golden_step(uint64_t count) {
+  uint64_t step = std::max<uint64_t>(uint64_t(0.6180339887 * double(count)), 1);
+  while (std::gcd(step, count) != 1) step++;
+  return step;
+}
 
 }  // namespace wellspring

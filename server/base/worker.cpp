@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/worker.h"
 
+#include <algorithm>
 #include <chrono>
+#include <oneapi/tbb/task_arena.h>
+#include <thread>
+#include <utility>
 
 namespace wellspring {
+
+static thread_local std::stop_token of_thread;
+
+CancelScope::CancelScope(std::stop_token token)
+    : before_(std::exchange(of_thread, std::move(token))) {}
+CancelScope::~CancelScope() { of_thread = std::move(before_); }
+
+std::stop_token cancel_token() { return of_thread; }
+
+void check_cancelled() {
+  if (of_thread.stop_requested()) throw Cancelled{};
+}
 
 Worker::~Worker() {
   if (!thread_.joinable()) return;
@@ -52,6 +68,39 @@ void Worker::live() {
     work_ = nullptr;
     changed_.notify_all();
   }
+}
+
+namespace {
+std::atomic<PriorityLoop*> high_priority{nullptr};
+std::atomic<int> helpers{0};  // threads that have looked at it
+}  // namespace
+
+std::atomic<bool> loop_has_priority{false};
+
+void PriorityLoop::work() {
+  for (int begin; (begin = next.fetch_add(grain)) < count;)
+    run(body, begin, std::min(begin + grain, count));
+}
+
+void help_priority_loop() {
+  helpers++;
+  if (PriorityLoop* loop = high_priority.load()) loop->work();
+  helpers--;
+}
+
+void run_with_priority(PriorityLoop& loop) {
+  int pieces = (loop.count + loop.grain - 1) / loop.grain;
+  PriorityLoop* none = nullptr;
+  bool first = pieces > 1 && high_priority.compare_exchange_strong(none, &loop);
+  if (first) loop_has_priority.store(true, std::memory_order_relaxed);
+  // Threads without work come this way.
+  int threads = std::min(oneapi::tbb::this_task_arena::max_concurrency(), pieces);
+  if (threads > 1) parallel_for(threads, [&](int) { loop.work(); });
+  loop.work();
+  if (!first) return;
+  loop_has_priority.store(false, std::memory_order_relaxed);
+  high_priority = nullptr;
+  while (helpers > 0) std::this_thread::yield();
 }
 
 }  // namespace wellspring

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <span>
 #include <cmath>
+#include <span>
 
 #include "base/parallel.h"
 #include "cache/packing.h"

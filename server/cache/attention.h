@@ -4,12 +4,21 @@
 #include <cstdint>
 #include <span>
 
-#include "cache/cache_settings.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "world/view.h"
 
 namespace wellspring::cache {
+
+// What a render cache is told once, with the paper's words (Walter, Drettakis, Parker 1999).
+
+struct CacheSettings {
+  float points_per_pixel = 1.0625f;  // capacity over pixels (paper, section 4.3: slightly larger)
+  float depth_threshold = 0.1f;      // paper, section 3.1
+  float color_change = 0.25f;  // relative change of a resampled point that ages its neighbours
+  float budget_share_old = 1;  // weight of age against emptiness in the priority
+  bool attention = true;       // false: samples spread evenly
+};
 
 // Where the change samples of 3x3 tiles agree that the light has changed, by more than their noise
 // can explain, points of the tile get older by an eighth of the scale and forget their light as

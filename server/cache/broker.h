@@ -8,11 +8,13 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "cache/cache.h"
+#include "light/sample/lights.h"
 #include "light/technique/technique.h"
 
 namespace wellspring::cache {
@@ -97,5 +99,13 @@ void follow_meshes(const World& world, std::span<Sample> samples);
 // moves are put where their triangles are in `world`, whose pose is `pose`. Returns how many
 // samples.
 int land(std::span<const Answer> answers, const World& world, uint64_t pose, RenderCache& cache);
+
+// The worker that is always there: all cores, for as long as the caller has time. Others may take
+// pieces of the same brokers meanwhile only if they share its guard.
+
+// Traces what waits, a piece of each broker in turn, until nothing does or it is later than `until`
+// (as seconds_now(); a piece that was begun is finished). Returns how many samples were answered.
+size_t trace_waiting(std::span<Broker* const> brokers, const World& world, const Lights& lights,
+                     uint64_t pose, double until, std::mutex& guard);
 
 }  // namespace wellspring::cache

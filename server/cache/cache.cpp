@@ -13,11 +13,9 @@
 #include "cache/plan.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
-#include "cache/predict.h"
 #include "cache/project.h"
 #include "cache/reconstruct.h"
 #include "cache/remember.h"
-#include "cache/scratch.h"
 
 namespace wellspring::cache {
 namespace {

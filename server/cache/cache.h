@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "cache/cache_settings.h"
-#include "cache/cache_stats.h"
+#include "cache/attention.h"
+#include "cache/reconstruct.h"
 #include "frame/frame.h"
 #include "light/sample.h"
 #include "world/view.h"
@@ -54,7 +54,7 @@ class RenderCache {
   // Exactly `budget` (or fewer when there is nothing left to learn) requests by error diffusion;
   // resampled points are passed exactly. `seed` makes the choice and the samples repeatable.
   void plan(const View& view, int budget, uint64_t seed, std::vector<Request>& requests);
-  // Appends requests for what the view `ahead` will show and no point is near (cache/predict.h), at
+  // Appends requests for what the view `ahead` will show and no point is near (cache/plan.h), at
   // most `most`; their answers are to be remembered with the others.
   void predict(const View& ahead, int most, uint64_t seed, std::vector<Request>& requests);
   // Puts answers into the cache and into the current projection. Returns the point that each went

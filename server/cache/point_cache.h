@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "cache/big_pages.h"
+#include "cache/point_image.h"
 #include "light/sample.h"
 #include "world/world.h"
 

@@ -5,11 +5,49 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <new>
+#include <span>
+#include <type_traits>
 #include <vector>
 
-#include "cache/big_pages.h"
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 namespace wellspring::cache {
+
+// Memory for arrays that are read at random every frame: on pages of 2 MiB where the system has
+// them to give (Linux, "madvise" or "always"), because with small pages the look-up of the page
+// costs as much as that of the data. Elsewhere, for small arrays and for what does not fill the
+// last page, ordinary memory.
+
+template <class T>
+struct BigPages {
+  using value_type = T;
+  static constexpr size_t page = size_t(2) << 20, least = 3 * page / 2;
+  BigPages() = default;
+  template <class U>
+  BigPages(const BigPages<U>&) {}
+  // Throws std::bad_alloc, as ordinary memory does.
+  T* allocate(size_t count) {
+    size_t bytes = count * sizeof(T);
+    if (bytes < least) return static_cast<T*>(::operator new(bytes, std::align_val_t(64)));
+    void* memory = ::operator new(bytes, std::align_val_t(page));
+#if defined(__linux__)
+    madvise(memory, bytes / page * page,
+            MADV_HUGEPAGE);  // a wish: that it may fail does not matter
+#endif
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, size_t count) {
+    ::operator delete(memory, std::align_val_t(count * sizeof(T) < least ? 64 : page));
+  }
+  friend bool operator==(const BigPages&, const BigPages&) { return true; }
+};
+
+template <class T>
+using BigVector = std::vector<T, BigPages<T>>;
 
 inline constexpr uint32_t no_point = 0xffffffffu;
 inline constexpr float infinite_depth = 1e18f;  // of points at infinity; Frame::depth says infinity
@@ -90,5 +128,45 @@ inline void resize_image(PointImage& image, int width, int height) {
   image.weight.clear();
   image.changed.assign(size_t(image.changed_width) * size_t(image.changed_height), TileChange{});
 }
+
+// Memory that one stage of a frame borrows and the next may overwrite: the bins of the projection
+// and the cells of a picture share it.
+
+class Scratch {
+ public:
+  // Starts a stage that takes at most `bytes` (each taken array rounds up to 64).
+  void start(size_t bytes) {
+    if (memory_.size() * sizeof(Line) < bytes) {
+      memory_.clear();
+      memory_.shrink_to_fit();
+      memory_.resize((bytes + sizeof(Line) - 1) / sizeof(Line));
+    }
+    used_ = 0;
+  }
+  // Contents are whatever was there before. `start` must have asked for enough.
+  template <class T>
+  std::span<T> take(size_t count) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    T* first = reinterpret_cast<T*>(reinterpret_cast<std::byte*>(memory_.data()) + used_);
+    used_ += rounded<T>(count);
+    return {first, count};
+  }
+  template <class T>
+  static constexpr size_t rounded(size_t count) {
+    return (count * sizeof(T) + 63) / 64 * 64;
+  }
+  void release() {
+    memory_.clear();
+    memory_.shrink_to_fit();
+  }
+  size_t bytes() const { return memory_.capacity() * sizeof(Line); }
+
+ private:
+  struct alignas(64) Line {
+    std::byte bytes[64];
+  };
+  BigVector<Line> memory_;
+  size_t used_ = 0;
+};
 
 }  // namespace wellspring::cache

@@ -2,12 +2,28 @@
 // The picture of points alone as it was published (Walter, Drettakis, Parker 1999, section 3.1):
 // what others are compared with.
 #pragma once
-#include "cache/cache_stats.h"
+#include <cstdint>
+
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "frame/frame.h"
 
 namespace wellspring::cache {
+
+// What a picture of remembered points has shown, in numbers.
+
+// What the last frame looked like, in numbers (for /metrics, the status page and tests).
+struct CacheStats {
+  int points = 0;                                           // in use
+  float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
+  float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
+  float converged = 0;  // share of pixels whose point has reached its sample goal
+};
+// Of a picture's pixels: those with a point, and with one of `converged_samples` or more.
+inline constexpr uint32_t converged_samples = 32;
+struct ShownPoints {
+  int64_t points = 0, converged = 0;
+};
 
 // Each pixel becomes the mean of the points in its 3x3 neighbourhood: weights 4 for its own, 2 for
 // those beside it and 1 for those diagonally; where there are none it stays as it was. Depth and

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "base/near_name.h"
+#include "base/unicode.h"
 
 namespace wellspring::config {
 namespace {

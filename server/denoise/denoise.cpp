@@ -11,7 +11,7 @@
 #include "base/load_error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "denoise/transfer.h"
+#include "denoise/tile.h"
 
 namespace wellspring::denoise {
 namespace {

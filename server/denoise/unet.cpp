@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/unet.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <dnnl.hpp>
+#include <omp.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/task_arena.h>
 #include <set>
@@ -16,7 +15,6 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "denoise/tile.h"
-#include "denoise/unet_form.h"
 
 namespace wellspring::denoise {
 namespace {

@@ -1,15 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 // JPEG by libjpeg-turbo (TurboJPEG API), one handle per thread.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "frame/frame.h"
-#include "frame/tiles.h"
 
 namespace wellspring::frame {
+
+// A picture as tiles: which of them differ from those of another picture, and few rectangles that
+// cover some of them.
+
+struct ImagePart {
+  int x = 0, y = 0, width = 0, height = 0;  // pixels from the upper left
+  bool operator==(const ImagePart&) const = default;
+};
+
+inline constexpr int tile_side = 32;  // whole JPEG blocks, of subsampled pictures too
+
+struct TileGrid {
+  int width = 0, height = 0;  // of the picture, pixels
+  int columns() const { return (width + tile_side - 1) / tile_side; }
+  int rows() const { return (height + tile_side - 1) / tile_side; }
+  size_t size() const { return size_t(columns()) * size_t(rows()); }
+  ImagePart part(size_t tile) const;  // row by row; the last of a row or column may be smaller
+};
+
+// Whether any byte there differs by more than `tolerance`. Both pictures are of one size.
+bool differs(const Image8& a, const Image8& b, const ImagePart& part, int tolerance);
+// Rectangles of whole tiles, none over another, that cover all tiles of which `wanted` is not 0:
+// exactly these, or at most `most` with some of the others, where that makes fewer and is cheap.
+std::vector<ImagePart> cover(const TileGrid& grid, const std::vector<char>& wanted);
+std::vector<ImagePart> cover(const TileGrid& grid, const std::vector<char>& wanted, size_t most);
+// The tiles of such a rectangle.
+std::vector<size_t> tiles_in(const TileGrid& grid, const ImagePart& part);
+void copy_part(const Image8& from, const ImagePart& part, Image8& to);
+
+// A picture in fewer pixels: each is the mean of the area that it covers.
+
+// width and height: at least 1, at most the picture's. Bytes are averaged as they are, in sRGB:
+// what is shown small for a moment need not be exact.
+Image8 shrink(const Image8& image, int width, int height);
 
 // quality 1..100; full_chroma: 4:4:4 instead of 4:2:0. Overwrites what follows the first `skip`
 // bytes of `out`, which is grown to hold them; nothing but `out` is kept afterwards.

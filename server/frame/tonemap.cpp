@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
-#include "frame/tone_curve.h"
 
 namespace wellspring::frame {
 namespace {

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "gltf/unpack.h"
-#include "gltf/uri.h"
+#include "gltf/file.h"
 
 namespace wellspring::gltf {
 namespace {

@@ -27,6 +27,44 @@
 
 namespace wellspring::gltf {
 
+// This table says what one glTF file may cost; docs/operation.md tells users of it. Everything is
+// bounded by bytes or by totals, never by how a file divides its data: many accessors over the same
+// bytes, or over none, cannot make a small file take unbounded memory or time.
+
+constexpr int64_t file_bytes_limit = int64_t(2) << 30;      // of one file
+constexpr int64_t all_bytes_limit = int64_t(4) << 30;       // of all that one names, in all
+constexpr int64_t unpacked_bytes_limit = int64_t(4) << 30;  // of what it has compressed, in all
+constexpr int64_t json_bytes_limit = int64_t(256) << 20;
+constexpr int64_t numbers_limit = 800'000'000;           // decoded in all
+constexpr int64_t empty_numbers_limit = 12'000'000;      // of one accessor without bytes of its own
+constexpr int64_t vertices_limit = 48'000'000;           // kept in all
+constexpr int64_t triangles_limit = 32'000'000;          // kept in all
+constexpr int64_t instances_limit = 1'000'000;           // of EXT_mesh_gpu_instancing, in all
+constexpr int64_t key_numbers_limit = int64_t(1) << 26;  // of animations, in all
+
+// Messages of refusal end with what can be done about it.
+constexpr const char* fewer_triangles =
+    "simplify it (Blender: Decimate; gltfpack -si 0.5), or cut it into several files, which an "
+    "exhibit's \"scenes\" put together";
+constexpr const char* fewer_vertices =
+    "weld vertices (Blender: Merge by Distance; gltfpack), simplify it, or cut it into several "
+    "files, which an exhibit's \"scenes\" put together";
+
+// Files by the names that other files give them.
+
+// Finds what a relative path means below a folder: the names as they are, else those of which
+// Unicode says that they are the same (base/unicode.h). Returns nothing where there is no such file
+// or folder. Does not judge "..": callers resolve it first.
+std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                               const std::filesystem::path& relative);
+
+// Regular files below a folder, by their paths from there, in alphabetical order; the first `most`
+// that are met.
+std::vector<std::string> list_files(const std::filesystem::path& folder, size_t most = 2000);
+
+// Whether a canonical path is the canonical folder or lies below it.
+bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder);
+
 using json = nlohmann::json;
 using Bytes = std::vector<uint8_t>;
 
@@ -44,7 +82,7 @@ struct File {
   std::map<size_t, std::shared_ptr<const std::vector<float>>> decoded;
   int64_t decoded_numbers = 0;    // held in `decoded`
   std::vector<uint32_t> renamed;  // scratch of primitive.cpp: all unseen between primitives
-  // Bounds of what a file may cost (gltf/limits.h).
+  // Bounds of what a file may cost (gltf/file.h).
   int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0, keys_made = 0;
   int64_t bytes_read = 0;  // of buffers
   int64_t unpacked_bytes = 0, instances_made = 0;
@@ -60,7 +98,7 @@ File load_gltf(const std::string& path, const std::string& package,
                const std::set<std::string>& further = {});
 
 [[noreturn]] void refuse(const File& file, const std::string& where, const std::string& what);
-// Refuses what is more than a limit of gltf/limits.h, and says what can be done.
+// Refuses what is more than a limit of gltf/file.h, and says what can be done.
 [[noreturn]] void refuse_beyond(const File& file, const std::string& where, int64_t limit,
                                 const std::string& of_what, const std::string& remedy);
 // Adds a warning; the same `what` is said once, with its first place.
@@ -87,5 +125,19 @@ std::string at(const std::string& where, size_t index);            // where + "/
 std::string at(const std::string& where, const std::string& key);  // escaped as RFC 6901 says
 // A number as a float that is finite: what is too large becomes +-1e30.
 float to_float(double value);
+
+// URIs of a glTF file (glTF 2.0 section 2.8) are data themselves (RFC 2397), or they name files,
+// whose paths are resolved as RFC 3986 section 5.2 says and then judged: "../textures/a.png" is
+// right where it stays inside the package.
+
+bool is_data_uri(const std::string& uri);
+// The file that a URI means, canonical; nothing if the package has none. Names are compared by
+// Unicode (gltf/file.h). Throws LoadError for URIs that mean no file of the package.
+std::optional<std::filesystem::path> find_uri(const File& file, const std::string& where,
+                                              const std::string& uri);
+// Bytes of a data URI or of that file. Throws LoadError for all that is wrong but a missing file.
+std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri);
+// Says that there is no such file, what was tried, and which was perhaps meant.
+std::string no_such_file(const File& file, const std::string& where, const std::string& uri);
 
 }  // namespace wellspring::gltf

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/log.h"
-#include "ledger/sums_file.h"
+#include "ledger/sums.h"
 
 namespace wellspring::ledger {
 

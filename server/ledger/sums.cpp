@@ -4,7 +4,14 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <ctime>
+#include <filesystem>
 #include <fmt/core.h>
+#include <memory>
+#include <sqlite3.h>
+#include <stdexcept>
+
+#include "base/log.h"
 
 namespace wellspring::ledger {
 
@@ -57,6 +64,151 @@ std::string write_csv(const Sums& sums) {
     out += fmt::format("{},{},{},{}\r\n", day_text(key.day), field(key.what), field(key.key),
                        std::round(10 * value) / 10);
   return out;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FileError : std::runtime_error {
+  int code;
+  FileError(const std::string& file, int wrong, const std::string& what)
+      : std::runtime_error(file + ": " + what), code(wrong & 0xff) {}
+};
+
+class Database {
+ public:
+  Database(const std::string& file, bool writes, int patience) : file_(file) {
+    const int way = writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+    sqlite3* database = nullptr;
+    const int result = sqlite3_open_v2(file.c_str(), &database, way, nullptr);
+    database_.reset(database);
+    if (result != SQLITE_OK) fail(result);
+    sqlite3_busy_timeout(database, patience);
+  }
+  void run(const char* orders) {
+    const int result = sqlite3_exec(database_.get(), orders, nullptr, nullptr, nullptr);
+    if (result != SQLITE_OK) fail(result);
+  }
+  [[noreturn]] void fail(int result) const {
+    throw FileError(file_, result,
+                    database_ ? sqlite3_errmsg(database_.get()) : sqlite3_errstr(result));
+  }
+  sqlite3* get() const { return database_.get(); }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+  };
+  std::string file_;
+  std::unique_ptr<sqlite3, Close> database_;
+};
+
+class Statement {
+ public:
+  Statement(const Database& database, const char* text) : database_(database) {
+    const int result = sqlite3_prepare_v2(database.get(), text, -1, &statement_, nullptr);
+    if (result != SQLITE_OK) database.fail(result);
+  }
+  ~Statement() { sqlite3_finalize(statement_); }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+  void bind(int place, const std::string& text) {
+    sqlite3_bind_text(statement_, place, text.data(), int(text.size()), SQLITE_TRANSIENT);
+  }
+  void bind(int place, double value) { sqlite3_bind_double(statement_, place, value); }
+  bool step() {  // true: there is a row
+    const int result = sqlite3_step(statement_);
+    if (result != SQLITE_ROW && result != SQLITE_DONE) database_.fail(result);
+    return result == SQLITE_ROW;
+  }
+  void reset() { sqlite3_reset(statement_); }
+  std::string text(int column) const {
+    const auto* bytes = sqlite3_column_text(statement_, column);
+    return bytes ? reinterpret_cast<const char*>(bytes) : "";
+  }
+  double number(int column) const { return sqlite3_column_double(statement_, column); }
+
+ private:
+  const Database& database_;
+  sqlite3_stmt* statement_ = nullptr;
+};
+
+void add_rows(const std::string& file, const Sums& sums, int patience) {
+  Database database(file, true, patience);
+  database.run("BEGIN IMMEDIATE;");
+  database.run(
+      "CREATE TABLE IF NOT EXISTS sums (day TEXT NOT NULL, what TEXT NOT NULL, key TEXT NOT NULL,"
+      " value REAL NOT NULL, PRIMARY KEY (day, what, key)) WITHOUT ROWID");
+  Statement row(database,
+                "INSERT INTO sums VALUES (?, ?, ?, ?) ON CONFLICT (day, what, key)"
+                " DO UPDATE SET value = value + excluded.value");
+  for (const auto& [key, value] : sums) {
+    row.bind(1, day_text(key.day));
+    row.bind(2, key.what);
+    row.bind(3, key.key);
+    row.bind(4, value);
+    row.step();
+    row.reset();
+  }
+  database.run("COMMIT");
+}
+
+bool is_damage(const FileError& error) {
+  return error.code == SQLITE_CORRUPT || error.code == SQLITE_NOTADB;
+}
+
+// Another server may have begun it anew meanwhile.
+bool is_whole(const std::string& file, int patience) {
+  try {
+    Database database(file, false, patience);
+    Statement check(database, "PRAGMA quick_check(1)");
+    return check.step() && check.text(0) == "ok";
+  } catch (const FileError& error) {
+    return !is_damage(error);
+  }
+}
+
+void put_aside(const std::string& file) {
+  char when[32];
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  std::strftime(when, sizeof when, ".damaged-%Y%m%d-%H%M%S", &local);
+  const std::string aside = file + when;
+  fs::rename(file, aside);
+  std::error_code error;  // there may be none
+  for (const char* end : {"-wal", "-shm"}) fs::rename(file + end, aside + end, error);
+  log::warn("{}: is damaged; it is now {}, and sums begin anew", file, aside);
+}
+
+}  // namespace
+
+void add_to_file(const std::string& file, const Sums& sums, int patience) {
+  const fs::path folder = fs::path(file).parent_path();
+  if (!folder.empty()) fs::create_directories(folder);
+  try {
+    add_rows(file, sums, patience);
+  } catch (const FileError& error) {
+    if (!is_damage(error)) throw;
+    if (!is_whole(file, patience)) put_aside(file);
+    add_rows(file, sums, patience);
+  }
+}
+
+Sums read_from_file(const std::string& file, int64_t from, int64_t to, int patience) {
+  Sums sums;
+  if (!fs::exists(file)) return sums;
+  Database database(file, false, patience);
+  Statement is_there(database, "SELECT 1 FROM sqlite_master WHERE name = 'sums'");
+  if (!is_there.step()) return sums;
+  Statement rows(database, "SELECT day, what, key, value FROM sums WHERE day >= ? AND day <= ?");
+  rows.bind(1, day_text(from));
+  rows.bind(2, day_text(to));
+  while (rows.step())
+    if (auto day = parse_day(rows.text(0)))
+      sums[{*day, rows.text(1), rows.text(2)}] += rows.number(3);
+  return sums;
 }
 
 }  // namespace wellspring::ledger

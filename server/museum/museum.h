@@ -55,7 +55,7 @@ class Museum {
   void take_over();
   // Looks once whether files of an exhibit or of the house have changed. From within `ended`.
   void reload();
-  // Whether all shows have gone on since it last said so (museum/heartbeat.h). From within `ended`.
+  // Whether all shows have gone on since it last said so (museum/upkeep.h). From within `ended`.
   bool has_gone_on();
 
  private:

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "cache/packing_simd.h"
+#include "cache/packing.h"
 #include "picture/cells.h"
 
 namespace wellspring::picture {

@@ -4,7 +4,7 @@
 #pragma once
 #include "frame/tonemap.h"
 #include "light/visible/visibility.h"
-#include "picture/moving_picture.h"
+#include "picture/keyframe.h"
 
 namespace wellspring::light {
 struct DynamicImage;     // light/dynamic/dynamic_image.h

@@ -8,18 +8,43 @@
 #include <vector>
 
 #include "cache/cache.h"
+#include "cache/reconstruct.h"
 #include "frame/tonemap.h"
+#include "light/dynamic/backdrop_surfaces.h"
 #include "light/visible/visibility.h"
 #include "picture/cells.h"
 #include "picture/compose_drawn.h"
-#include "picture/still/still_image.h"
+#include "picture/keyframe.h"
 #include "picture/still/still_samples.h"
+#include "picture/surface_image.h"
 
 namespace wellspring::picture {
 
-struct BackdropLight;  // picture/relight.h
+// From the points that a picture shows to its cells and its packed surface, once a picture.
+
+// Reads every visible point once: builds the cells, fills holes from their neighbours and leaves
+// the surface packed in the frame's planes. Pixels far from any point stay unknown.
+ShownPoints read_surface(const WindowView& view, const PointCache& points, const PointImage& image,
+                         Cells& cells, Frame& frame);
+
+// A picture at rest shows the light that stays; what lights that move or change add is put over it
+// as often as what moves is drawn: their light times the reflectance of what each pixel shows,
+// added before the tone curve.
+
+// What stands still of a picture, and what falls there.
+struct BackdropLight {
+  const BackdropSurfaces& surfaces;
+  const LightPlanes& light;
+};
+// Overwrites `picture` by what the keyframe, of the view of those surfaces, shows with that light,
+// and `peaks` by the light beyond white (frame/tonemap.h). What emits light by itself stays as
+// it is.
+void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tonemap& tonemap,
+             Image8& picture, std::vector<uint8_t>& peaks);
+
+struct BackdropLight;  // picture/compositor.h
 struct Keyframe;       // picture/keyframe.h
-struct MovingPicture;  // picture/moving_picture.h: what moves in a picture at rest
+struct MovingPicture;  // picture/keyframe.h: what moves in a picture at rest
 struct MovingLight;
 enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn of a run of pixels (light/visible/describe_run.h), eight at a time, as
+// What is drawn of a run of pixels (light/visible/surface_buffer.h), eight at a time, as
 // picture/compose_drawn.h puts light on it.
 #pragma once
 #include <bit>
@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "light/dynamic/dynamic_image.h"
-#include "light/visible/describe_run.h"
+#include "light/visible/surface_buffer.h"
 #include "picture/drawn_planes.h"
 #include "world/raster/raster.h"
 

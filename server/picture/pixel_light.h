@@ -3,11 +3,14 @@
 // the four cells around say of the same surface.
 #pragma once
 #include <algorithm>
+#include <cstring>
 #include <vector>
 
 #include "cache/packing.h"
-#include "cache/packing_simd.h"
+#include "frame/frame.h"
 #include "picture/cells.h"
+#include "world/raster/raster.h"
+#include "world/view.h"
 
 namespace wellspring::picture {
 
@@ -203,5 +206,98 @@ inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& prior_var
   Lanes kept = own_detail * cut_to(own_rest, most_rest);
   p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);
 }
+
+// Rows of cells (picture/cells.h) as groups of pixels read them, for picture/compose_drawn.cpp.
+
+// Pixels are lit in groups that lie between two columns of cell centres: four pixels, which are
+// packed together, and four cells around. Groups begin half a cell before a tile, and two lie side
+// by side in the lanes.
+constexpr int half_cell = cell_size / 2;
+constexpr int cells_together = lane_count / cell_size;
+static_assert(cell_size == packed_four && cells_together == 2);
+
+// What the lanes of two groups side by side have to the same side of them.
+struct WideCell : CellLightOf<Lanes, LaneBits> {
+  Lanes albedo[3];
+};
+inline void spread_cells(const PaintedCell& left, const PaintedCell& right, WideCell& to) {
+  constexpr size_t count = sizeof(PaintedCell) / sizeof(float);
+  static_assert(sizeof(WideCell) == count * sizeof(Lanes));
+  float a[count], b[count];
+  std::memcpy(a, &left, sizeof a), std::memcpy(b, &right, sizeof b);
+  Lanes both[count];
+  for (size_t i = 0; i < count; i++)
+    both[i] = Lanes{a[i], a[i], a[i], a[i], b[i], b[i], b[i], b[i]};
+  std::memcpy(static_cast<void*>(&to), both, sizeof both);
+}
+
+// Two rows of cells around a tile's blocks, each beside the one that the next group needs.
+struct CellRows {
+  static constexpr int most = RasterRun::most / cell_size + 3;
+  uint64_t picture = 0;
+  int first = 0, row = 0, count = 0;
+  int above = 0;  // which of the rows
+  WideCell cell[2][most];
+  LaneMask
+      flat[most];  // lanes of each group and those beside it that lie between cells in one plane
+
+  const WideCell& at(int r, int k) const { return cell[above ^ r][k]; }
+  void read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y, int columns);
+
+ private:
+  void read_row(const Cells& cells, int y, WideCell* to) const;
+};
+
+inline void CellRows::read_row(const Cells& cells, int y, WideCell* to) const {
+  PaintedCell before{}, here;
+  for (int k = 0; k < count; k++, before = here) {
+    read_cell(cells, first + k, y, here);
+    size_t i = nearest_cell(cells, first + k, y);
+    for (size_t n = 0; n < 3; n++) here.albedo[n] = cells.albedo[n][i];
+    if (k > 0) spread_cells(before, here, to[k - 1]);
+  }
+}
+
+inline void CellRows::read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y,
+                           int columns) {
+  bool below = picture == of && first == x && row + 1 == y && count == columns;
+  picture = of, first = x, row = y, count = columns;
+  above = below ? above ^ 1 : 0;
+  if (!below) read_row(cells, y, cell[above]);
+  read_row(cells, y + 1, cell[above ^ 1]);
+  int32_t one_plane[most + 2 * lane_count] = {};  // by groups
+  for (int g = 0; g < count; g += lane_count)
+    store_lanes(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
+  for (int g = 0; g < count; g++)
+    for (int k = 0; k < lane_count; k++) flat[g][k] = one_plane[g + k / cell_size];
+}
+
+// The light of a place on a surface so narrow that no cell stands for it: told by the points around
+// that lie on the same surface.
+
+// What is seen at one place of a picture.
+struct SeenPlace {
+  int x = 0, y = 0;           // the light's pixel that it falls in
+  vec2 ray{0};                // to it, in view coordinates (right, up; forward is 1)
+  float depth = 0;            // along the viewing axis
+  vec3 normal{0}, albedo{0};  // the normal need not be unit
+  uint32_t object = 0;
+};
+struct NearbyLight {
+  vec3 smooth{0}, rest{0};  // rest for the place's own reflectance
+  // Behind that mean (Kish: as many as if they weighed alike), the fewer the farther off they are
+  // or the less their surface is the place's; 0: none.
+  float samples = 0;
+  float deviation = 0;
+};
+
+// Looks at the pixels around the place's own in rings, and no farther than where some know it.
+// `light`: the packed planes of a picture with these `rays`.
+NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Frame& light,
+                              const SeenPlace& place);
+// Returns the light of the nearest cells in eight directions that know the place's object,
+// whichever way their surfaces face, within 64 pixels: for places that no pixel around tells of.
+// `samples`: theirs.
+NearbyLight find_light_far(const Cells& cells, const SeenPlace& place);
 
 }  // namespace wellspring::picture

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "frame/tone_curve.h"
+#include "frame/tonemap.h"
 #include "world/texture.h"
 
 namespace wellspring::picture {

@@ -13,7 +13,7 @@ namespace wellspring::picture {
 // `edges`: Raster::edges() of the picture. Where several cut a pixel, such as both of a bar,
 // their shares add up, to all of it at most.
 void soften_edges(std::span<const std::vector<EdgeShare>> edges, std::vector<vec3>& color);
-// Of a picture that has been through the tone curve (frame/tone_curve.h): its light is mixed as it
+// Of a picture that has been through the tone curve (frame/tonemap.h): its light is mixed as it
 // was before, since half a pixel of bright sky is white already. `peaks`: of each pixel the code of
 // its light, which it changes with it.
 void soften_edges(std::span<const std::vector<EdgeShare>> edges, Image8& image,

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/simd.h"
-#include "cache/cache_stats.h"
 #include "cache/packing.h"
+#include "cache/reconstruct.h"
 
 namespace wellspring::picture {
 int read_points(const PointCache& points, const PointImage& image, int y, SurfaceRows& rows) {

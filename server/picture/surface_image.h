@@ -10,8 +10,7 @@
 
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
-#include "cache/scratch.h"
-#include "cache/window_view.h"
+#include "cache/project.h"
 #include "frame/frame.h"
 
 namespace wellspring::picture {

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/memory.h"
-#include "base/priority.h"
+#include "base/worker.h"
 #include "picture/warp_source.h"
 
 namespace wellspring::picture {

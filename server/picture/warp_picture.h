@@ -6,7 +6,7 @@
 // (bounds of blocks, carried forward), for the first surface that it would see; where that is a
 // short piece, as nearly everywhere, a step of fixed-point iteration finds it (Bowles, Mitchell,
 // Sumner, Moore, Gross 2012, "Iterative Image Warping"), or none where places differ by less than
-// what bilinear samples tell apart. Cores that draw meanwhile take part (base/priority.h). What a
+// what bilinear samples tell apart. Cores that draw meanwhile take part (base/worker.h). What a
 // keyframe does not show is taken from the next, and what none shows goes on as the first has it:
 // with the farthest surface on the pixel's line, so never with what stands in front, or with what
 // lies at the border. Colours are bilinear within a surface. web/display/shaders.js does the same.

@@ -10,14 +10,10 @@
 #include "show/answer/cameras.h"
 #include "show/answer/come_back.h"
 #include "show/answer/events.h"
-#include "show/answer/follow_house.h"
 #include "show/answer/groups.h"
 #include "show/answer/idle.h"
-#include "show/answer/kiosk_window.h"
-#include "show/answer/kiosks.h"
 #include "show/answer/orders.h"
 #include "show/answer/sound.h"
-#include "show/answer/storyteller_orders.h"
 #include "show/count/count.h"
 #include "show/draw/carry_out.h"
 #include "show/draw/make_picture_job.h"
@@ -27,7 +23,7 @@
 #include "show/draw/still_pass.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
-#include "show/storyteller/story_marks.h"
+#include "show/storyteller/held_prop.h"
 #include "wire/json.h"
 
 namespace wellspring::show {

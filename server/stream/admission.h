@@ -19,7 +19,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "base/rate.h"
+#include "base/clock.h"
 #include "stream/address.h"
 
 namespace wellspring::stream {

@@ -8,10 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "base/rate.h"
+#include "base/clock.h"
 #include "stream/asio.h"
 #include "stream/core.h"
-#include "stream/frames.h"
 #include "stream/transport.h"
 #include "wire/http.h"
 #include "wire/link.h"

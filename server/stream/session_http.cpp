@@ -9,8 +9,6 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "stream/encoding.h"
-#include "stream/origin.h"
 #include "stream/reply.h"
 #include "stream/session.h"
 #include "stream/target.h"

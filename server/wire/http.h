@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace wellspring::wire {
@@ -19,7 +20,7 @@ struct HttpQuestion {
   // Headers of those names.
   std::string if_none_match, range, if_range, accept, accept_encoding, authorization;
   std::string body;     // of a POST: what was posted
-  bool local = false;   // from this machine itself, and through no proxy (stream/origin.h)
+  bool local = false;   // from this machine itself, and through no proxy (stream/target.h)
   std::string address;  // of who asks, without its port
 };
 
@@ -58,5 +59,13 @@ class HttpAsker {
   const std::function<void(HttpReply)> take_;
   std::atomic<bool> answered_{false}, gone_{false};
 };
+
+// Text as gzip (RFC 1952), as it goes over HTTP.
+
+// Whether gzip makes a body of this Content-Type smaller: pictures, sound and films are packed.
+bool is_text(std::string_view content_type);
+
+// The same text gives the same bytes. Empty where they would not be fewer than the text's.
+std::string gzip(std::string_view text);
 
 }  // namespace wellspring::wire

@@ -6,6 +6,7 @@
 // sending does nothing; texts that had arrived by then can still be taken.
 #pragma once
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -13,14 +14,42 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "base/latest.h"
-#include "wire/delivery.h"
-#include "wire/heard.h"
+#include "base/worker.h"
+#include "wire/json.h"
 #include "wire/packet.h"
 
 namespace wellspring::wire {
+
+// Something was written to a peer and has arrived there: the answer to a ping behind it came.
+
+struct Delivery {
+  size_t bytes = 0;
+  double began = 0, ended = 0;  // writing it, and the answer; seconds of one clock
+  bool alone = false;           // nothing was under way when writing it began
+  bool picture = false;
+};
+
+// A text of a peer and what it says. It is read where it comes in, on the thread of its socket, so
+// that who carries it out has no more to do with it.
+
+struct Heard {
+  std::string text;  // as it came
+  std::variant<WireError, BrowserMessage, Observation> said;
+  size_t values = 0;  // of JSON that were read for it
+};
+
+Heard hear_visitor(std::string text);
+Heard hear_camera(std::string text);
+
+// Returns what it says, where it is such a thing; else null.
+template <class Message>
+const Message* said_as(const Heard& heard) {
+  const BrowserMessage* message = std::get_if<BrowserMessage>(&heard.said);
+  return message ? std::get_if<Message>(message) : nullptr;
+}
 
 enum class LinkKind : uint8_t { visit, eye };  // /api/v1/visit, /api/v1/eye
 

@@ -89,7 +89,7 @@ struct EyeNeeds {
 };
 
 struct EyeOrder {
-  std::string stage;  // of the kiosk (show/kiosk/stage.h)
+  std::string stage;  // of the kiosk (show/kiosk/kiosk.h)
   EyeNeeds needs;
   bool idle = false;  // the house is closed: a look now and then is enough
   bool operator==(const EyeOrder&) const = default;

@@ -19,6 +19,9 @@
 // moves, to be laid over keyframes with the flag `still` until the next one: where its disparity is
 // 0 there is nothing.
 #pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -27,6 +30,41 @@
 #include "base/vec.h"
 
 namespace wellspring::wire {
+
+// Whole numbers in binary messages, byte by byte, so that the layout is little-endian on every
+// machine and no pointer need be aligned; and what every binary message has in common: four bytes
+// that name its kind, and the length of its header.
+
+template <class T>
+void put(std::span<uint8_t> bytes, size_t at, T value) {
+  for (size_t i = 0; i < sizeof(T); i++) bytes[at + i] = uint8_t(uint64_t(value) >> (8 * i));
+}
+
+template <class T>
+T get(std::span<const uint8_t> bytes, size_t at) {
+  uint64_t value = 0;
+  for (size_t i = 0; i < sizeof(T); i++) value |= uint64_t(bytes[at + i]) << (8 * i);
+  return T(value);
+}
+
+using Magic = std::array<uint8_t, 4>;
+inline constexpr size_t header_length_at = 26;  // u16
+
+inline void put_envelope(std::span<uint8_t> bytes, const Magic& magic, size_t header_bytes) {
+  std::copy(magic.begin(), magic.end(), bytes.begin());
+  put(bytes, header_length_at, uint16_t(header_bytes));
+}
+
+// What follows the header of a message of that kind, whose header is at least as long as `least`
+// (longer: a later version's, whose additions are skipped); none: it is no such message.
+inline std::optional<std::span<const uint8_t>> get_payload(std::span<const uint8_t> bytes,
+                                                           const Magic& magic, size_t least) {
+  if (bytes.size() < least || !std::equal(magic.begin(), magic.end(), bytes.begin()))
+    return std::nullopt;
+  const size_t header_bytes = get<uint16_t>(bytes, header_length_at);
+  if (header_bytes < least || header_bytes > bytes.size()) return std::nullopt;
+  return bytes.subspan(header_bytes);
+}
 
 inline constexpr uint8_t packet_still =
     1;  // the visitor stands still and this is the refined picture
@@ -87,5 +125,23 @@ struct PacketView {
   std::span<const uint8_t> payload;
 };
 std::optional<PacketView> read_packet(std::span<const uint8_t> bytes);
+
+// A piece of an utterance's sound as a binary message, little-endian: 0 magic WSA1, 4 u32
+// utterance, 8 u32 first sample of this piece within the utterance, 12 u64 server time in
+// microseconds at which that sample is to sound (the clock of pictures: it goes with the picture of
+// the same time), 20 u32 samples of the whole utterance, 24 u8 channels (1), 25 u8 flags (1: heard
+// the same everywhere, as a narrator is), 26 u16 header length, 28 u32 samples a second, 32 3 x f64
+// world position of the mouth, then 16-bit samples.
+
+struct SoundHeader {
+  uint32_t utterance = 0, start = 0;
+  uint64_t time_us = 0;
+  uint32_t total = 0, rate = 22050;
+  uint8_t channels = 1, flags = 0;
+  dvec3 mouth{0};
+};
+inline constexpr size_t sound_header_bytes = 56;
+
+Packet make_sound_packet(const SoundHeader& header, std::span<const int16_t> samples);
 
 }  // namespace wellspring::wire

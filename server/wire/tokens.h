@@ -2,6 +2,9 @@
 // Secrets that an operator hands out: whoever shows one is trusted. They come from files or from
 // the environment, never from a command line, which every user of a machine can read.
 #pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,5 +34,23 @@ const Token* find_token(const std::vector<Token>& tokens, std::string_view shown
 
 // What an Authorization header carries by "Bearer"; empty: nothing.
 std::string_view bearer_of(std::string_view authorization);
+
+// Texts that are handed out and come back unchanged: sealed with a key (HMAC-SHA-512/256, by
+// libsodium), not secret. Letters of a sealed text need no escapes in JSON or an address.
+
+class Seal {
+ public:
+  // The key of that file, which is made, for its owner alone, where there is none: of those who
+  // make it at the same time, on other machines, too, all have the key of the first. An empty name,
+  // or a file that cannot be used (which is logged): a key that ends with the process.
+  // `is_own`: nobody else put the file there, so one that is cut off is made anew.
+  explicit Seal(const std::string& file = "", bool is_own = false);
+  std::string close(const std::string& text) const;
+  // The text; empty where the seal is not by this key, or broken.
+  std::optional<std::string> open(const std::string& sealed) const;
+
+ private:
+  std::array<uint8_t, 32> key_;
+};
 
 }  // namespace wellspring::wire

@@ -3,15 +3,134 @@
 // not pointers. Positions are relative to `origin`, so that a scene far from zero keeps its
 // precision.
 #pragma once
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "world/emitter.h"
-#include "world/material.h"
+#include "base/vec.h"
+#include "world/texture.h"
 
 namespace wellspring::world {
+
+// Light that is no surface: KHR_lights_punctual and the environment. Emissive surfaces are found by
+// their material (light/sample/lights.h gathers them).
+
+enum class PunctualType : uint8_t { point, spot, directional };
+
+// Photometric units are taken as radiometric one to one: 1 candela is 1 W/sr, 1 lux is 1 W/m^2 per
+// channel.
+struct PunctualLight {
+  std::string name;
+  PunctualType type = PunctualType::point;
+  vec3 position{0};          // point, spot
+  vec3 direction{0, 0, -1};  // the way the light travels: spot, directional; unit length
+  vec3 intensity{1};         // point, spot: W/sr; directional: W/m^2 on a facing surface
+  float range = std::numeric_limits<float>::infinity();
+  float inner_cone = 0, outer_cone = pi / 4;  // radians from the axis
+};
+
+// What is switched together: a chandelier with all its candles, the spots of a show-case. Nothing
+// belongs to two lamps. How one comes into a scene: world/load/lamp.h.
+struct Lamp {
+  std::string name;
+  std::vector<int> lights;     // of Scene::lights
+  std::vector<int> materials;  // of Scene::materials: what these emit; nothing else is made of them
+};
+
+// A disc at infinity, equally bright all over: the sun. No radiance: none.
+struct SunDisc {
+  vec3 direction{0, 1, 0};  // towards it, unit
+  vec3 radiance{0};
+  float angular_radius = 0;  // radians, at most pi / 2
+};
+
+// Light from infinity. No image: `radiance` from everywhere. With an image: latitude-longitude, +Y
+// up, its middle column towards -Z, times `radiance`.
+struct Environment {
+  vec3 radiance{0};
+  int image = -1;
+  SunDisc sun{};  // on top of the rest
+};
+
+// What a surface is made of: glTF 2.0 metallic-roughness (appendix B) with
+// KHR_materials_transmission, ior, volume, emissive_strength, specular, clearcoat, sheen,
+// anisotropy, dispersion and unlit. Factors are linear. Ambient occlusion maps are not used: a path
+// tracer finds occlusion itself.
+
+enum class AlphaMode : uint8_t { opaque, mask, blend };
+
+struct Material {
+  std::string name;
+  vec4 base_color{1};
+  TextureRef base_color_texture;
+  float metallic = 1, roughness = 1;      // perceptual roughness; alpha = roughness^2
+  TextureRef metallic_roughness_texture;  // G roughness, B metallic
+  TextureRef normal_texture;
+  float normal_scale = 1;
+  vec3 emission{0};  // radiance: emissiveFactor * emissiveStrength
+  TextureRef emission_texture;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = false;
+  bool unlit = false;
+  float ior = 1.5f;
+  float transmission = 0;
+  TextureRef transmission_texture;  // R
+  float thickness = 0;              // 0: thin-walled
+  TextureRef thickness_texture;     // G
+  vec3 attenuation_color{1};
+  float attenuation_distance = std::numeric_limits<float>::infinity();
+  float dispersion = 0;  // 20 over the Abbe number
+  float specular = 1;    // strength of the dielectric reflection; 0: a perfectly Lambertian surface
+  TextureRef specular_texture;  // A
+  vec3 specular_color{1};       // tints it at normal incidence
+  TextureRef specular_color_texture;
+  float clearcoat = 0, clearcoat_roughness = 0;
+  TextureRef clearcoat_texture;            // R
+  TextureRef clearcoat_roughness_texture;  // G
+  TextureRef clearcoat_normal_texture;     // none: the coat is smooth, whatever lies beneath
+  float clearcoat_normal_scale = 1;
+  vec3 sheen_color{0};
+  float sheen_roughness = 0;
+  TextureRef sheen_color_texture;
+  TextureRef sheen_roughness_texture;             // A
+  float anisotropy = 0, anisotropy_rotation = 0;  // 0..1; radians from the tangent
+  TextureRef anisotropy_texture;                  // RG: direction, B: strength
+  // World::repaint() may change its colours and how its pictures lie: nothing may be concluded from
+  // those.
+  bool repaints = false;
+};
+
+// Whether its surfaces enclose a medium in which light is bent and tinted: it is met from both
+// sides.
+inline bool encloses_medium(const Material& m) {
+  return m.transmission > 0 && m.thickness > 0 && m.metallic < 1;
+}
+
+// How a material looks for a while, told by what is added to it.
+struct Repaint {
+  vec4 base_color{0};
+  vec3 emission{0};
+  mat3 uv{0.0f};  // to the matrices of all its pictures' coordinates
+  bool operator==(const Repaint&) const = default;
+};
+
+// Calls body(TextureRef&) for every picture a material may have.
+template <class M, class Body>
+void each_texture(M& m, Body&& body) {
+  for (auto* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.emission_texture,
+                    &m.transmission_texture, &m.thickness_texture, &m.specular_texture,
+                    &m.specular_color_texture, &m.clearcoat_texture, &m.clearcoat_roughness_texture,
+                    &m.sheen_color_texture, &m.sheen_roughness_texture, &m.anisotropy_texture,
+                    &m.normal_texture, &m.clearcoat_normal_texture})
+    body(*use);
+}
+// `m` changed so: colours stay within their ranges, what is not finite changes nothing.
+Material repainted(const Material& m, const Repaint& change);
+// The same with its own light times `brightness`.
+Material dimmed(const Material& m, float brightness);
 
 // Indexed triangles of one material. `normals` is never empty (made from the faces if the file had
 // none); uv, colors and tangents are empty or as long as positions.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hit made into a place with a material: interpolated, textured, ready for a BSDF. No randomness.
 #pragma once
+#include "base/simd.h"
 #include "world/world.h"
 
 namespace wellspring::world {
@@ -68,5 +69,25 @@ Face make_face(const PlacedMesh& placed, uint32_t triangle);
 // (Waechter and Binder, Ray Tracing Gems chapter 6), widened where a large triangle's corners make
 // its places less exact than their own coordinates.
 vec3 offset_origin(const SurfacePlace& place, vec3 direction);
+
+// What surface.h says of Lambertian surfaces, of eight hits side by side. Each lane's answer is its
+// own: what the other lanes hold does not matter.
+
+struct LambertSurfaceLanes {
+  Lanes3 position, geometric_normal, normal, base_color;
+  Lanes extent{};
+  unsigned bent = 0;  // bit i: the normal of lane i may be another than the geometric one
+  SurfacePlace place(int lane) const {
+    SurfacePlace one;
+    one.position = position.at(lane);
+    one.geometric_normal = geometric_normal.at(lane);
+    one.extent = extent[lane];
+    return one;
+  }
+};
+// eval_lambert_surface of hits[i] for the bits of `active`, met by rays of those unit directions.
+LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& direction,
+                                          const Hit* hits, unsigned active);
+Lanes3 offset_origins(const LambertSurfaceLanes& surface, const Lanes3& direction);
 
 }  // namespace wellspring::world

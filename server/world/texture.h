@@ -1,14 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures on surfaces. glTF 2.0 section 3.8 (samplers, sRGB) and KHR_texture_transform.
 #pragma once
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "base/simd.h"
 #include "base/vec.h"
-#include "world/texture_taps.h"
 
 namespace wellspring::world {
+
+// Where a texture coordinate falls between texels (glTF 2.0 section 3.8.4).
+
+enum class Wrap : uint8_t { repeat, mirror, clamp };
+
+// The two texels on one axis and the weight of the second.
+struct Taps {
+  int first, second;
+  float weight;
+};
+
+// Where `coordinate` (texture space, any finite value) falls on an axis of `size` texels, in [0,
+// size].
+inline float wrapped(float coordinate, int size, Wrap wrap) {
+  switch (wrap) {
+    case Wrap::repeat: coordinate -= std::floor(coordinate); break;
+    case Wrap::mirror:
+      coordinate -= 2 * std::floor(0.5f * coordinate);
+      if (coordinate > 1) coordinate = 2 - coordinate;
+      break;
+    case Wrap::clamp: coordinate = glm::clamp(coordinate, 0.0f, 1.0f); break;
+  }
+  return coordinate * float(size);
+}
+
+inline Taps linear_taps(float coordinate, int size, Wrap wrap) {
+  float x = wrapped(coordinate, size, wrap) - 0.5f;
+  float low = std::floor(x);
+  int first = int(low), second = first + 1;
+  if (wrap == Wrap::repeat) {
+    if (first < 0) first += size;
+    if (second >= size) second -= size;
+  }
+  // Mirrored and clamped pictures meet their own edge texel there.
+  return {glm::clamp(first, 0, size - 1), glm::clamp(second, 0, size - 1), x - low};
+}
 
 // A decoded image. Exactly one of `texels8` (RGBA, 4 bytes a texel) and `texels` (float RGBA,
 // linear) is filled; top row first.
@@ -39,5 +77,41 @@ struct TextureRef {
 vec4 eval_texture(const Image& image, const Texture& texture, vec2 uv);
 // The linear value of an 8-bit sRGB code (IEC 61966-2-1).
 float decode_srgb(uint8_t code);
+
+// Pictures made smaller beforehand (Williams, "Pyramidal Parametrics", 1983), for those who look
+// once a pixel: what is far away neither sparkles nor costs a cache miss a texel.
+
+// Half the size, a quarter, and so on down to one texel; the picture itself is not repeated. Texels
+// are the roots of linear RGB in [0, 1], 8 bits each.
+struct TexturePyramid {
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<uint32_t> texels;
+  };
+  std::vector<Level> levels;
+};
+
+// Averages of linear light; a third of the picture's memory. Without levels for pictures of floats,
+// which may exceed 1, and for those read by the nearest texel, where edges are meant.
+TexturePyramid make_pyramid(const Image& image);
+
+// Which of the levels is read by a pixel that is `texels` texels of the picture wide; 0: the
+// picture itself.
+inline int pyramid_level(float texels) {
+  // The logarithm of the width to base 2, rounded: the exponent of the width over the root of one
+  // half.
+  int level = int(std::bit_cast<uint32_t>(texels * 1.41421356f) >> 23 & 255) - 127;
+  return texels > 1 ? level : 0;
+}
+
+// Linear RGB at (u, v) as seen by a pixel that is `texels` texels of the picture wide. As
+// eval_texture() where that is less than about one and a half.
+vec3 eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Texture& texture,
+                  vec2 uv, float texels);
+
+// The same for eight places at once, bilinear in the roots of light where it is made smaller.
+// False: not done, because the picture is of floats, or read by the nearest texel.
+bool eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Texture& texture,
+                  Lanes u, Lanes v, float texels, Lanes (&rgb)[3]);
 
 }  // namespace wellspring::world

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A camera for one picture: where, which way, how wide. A value; made afresh each tick.
 #pragma once
+#include "base/vec.h"
 #include "world/world.h"
 
 namespace wellspring::world {
@@ -51,5 +52,11 @@ inline Projected project_point(const View& view, vec3 p) {
   vec2 axis = axis_place(view);
   return {dot(d, view.right) * scale + axis.x, axis.y - dot(d, view.up) * scale, depth};
 }
+
+// How far from a box an eye sees all of it.
+
+// From the box's middle along the unit direction `back`, for a picture whose half sides at a depth
+// of 1 are `tan_x` and `tan_y`; `half` are half the box's sides. At least a millimetre.
+float distance_to_fit(vec3 half, vec3 back, float tan_x, float tan_y);
 
 }  // namespace wellspring::world

@@ -2,16 +2,34 @@
 // Where rays end: a thin wrapper of Embree (3 or 4; world/embree.h hides the difference). The
 // static scene is built once; moving meshes (the storyteller) are refitted each tick.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "world/lamp_level.h"
 #include "world/scene.h"
 
 namespace wellspring::world {
+
+// How bright a lamp of the scene is: 0 off, lamp_full as the scene has it.
+
+using LampLevel = uint8_t;
+using LampLevels = std::vector<LampLevel>;  // of each of the scene's lamps
+inline constexpr LampLevel lamp_full = 255;
+
+// Times the scene's own light; exactly 0 and 1 at the ends. The square of the level, so that steps
+// in the dark are small, too.
+inline float brightness_of(LampLevel level) {
+  const float share = float(level) / float(lamp_full);
+  return share * share;
+}
+
+// The level of that brightness, 0 to 1.
+inline LampLevel level_of(float brightness) {
+  return LampLevel(std::lround(float(lamp_full) * std::sqrt(brightness)));
+}
 
 struct Ray {
   vec3 origin{0};
@@ -77,7 +95,7 @@ struct PlacedMesh {
   uint32_t paints = 0;          // how often its material was repainted
   bool one_sided = false;       // the eye does not see its back faces (Scene::cull_back_faces)
   // Its triangles are so small where it is that world coordinates are too coarse for them: the tree
-  // and faces have them relative to its place, to_world[3] (world/far_instances.h).
+  // and faces have them relative to its place, to_world[3] (world/world_build.h).
   bool apart = false;
   float steps = 0;  // not 0: SurfacePlace::extent counts so many steps of a coordinate
 };

@@ -1,20 +1,129 @@
 // SPDX-License-Identifier: Apache-2.0
 // From meshes to Embree scenes.
+#include "world/world_build.h"
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "base/cancel.h"
 #include "base/log.h"
-#include "gltf/node.h"
-#include "world/far_instances.h"
+#include "base/rng.h"
+#include "base/worker.h"
+#include "gltf/animation.h"
 #include "world/mesh_finish.h"
 #include "world/surface.h"
-#include "world/world_alpha.h"
 #include "world/world_impl.h"
 
 namespace wellspring::world {
+namespace {
+
+float uniform_of(const Ray& ray, uint32_t instance, uint32_t triangle) {
+  auto pair = [](float a, float b) {
+    return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b);
+  };
+  uint64_t hash = mix64(uint64_t(instance) << 32 | triangle);
+  hash = mix64(hash ^ pair(ray.origin.x, ray.origin.y));
+  hash = mix64(hash ^ pair(ray.origin.z, ray.direction.x));
+  hash = mix64(hash ^ pair(ray.direction.y, ray.direction.z));
+  return float(hash >> 40) * 0x1p-24f;
+}
+
+}  // namespace
+
+bool may_pass(const Mesh& mesh, const Material& material) {
+  if (material.alpha_mode == AlphaMode::opaque) return false;
+  if (material.repaints) return true;
+  float threshold = material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 1.0f;
+  if (material.base_color_texture.texture >= 0 || material.base_color.w < threshold) return true;
+  for (const vec4& color : mesh.colors)
+    if (material.base_color.w * color.w < threshold) return true;
+  return false;
+}
+
+bool may_be_pane(const Material& material) {
+  return material.transmission > 0 && !(material.thickness > 0) && material.metallic < 1;
+}
+
+bool passes(const Scene& scene, const PlacedMesh& placed, uint32_t instance, uint32_t triangle,
+            vec2 barycentric, const Ray& ray) {
+  const Mesh& mesh = *placed.mesh;
+  const Material& material = *placed.material;
+  uvec3 corner = mesh.triangles[triangle];
+  vec3 weight{1 - barycentric.x - barycentric.y, barycentric.x, barycentric.y};
+  float alpha = material.base_color.w;
+  if (!mesh.colors.empty())
+    alpha *= mesh.colors[corner.x].w * weight.x + mesh.colors[corner.y].w * weight.y +
+             mesh.colors[corner.z].w * weight.z;
+  const TextureRef& reference = material.base_color_texture;
+  if (reference.texture >= 0) {
+    const std::vector<vec2>& set = mesh.uv[reference.uv_set];
+    vec2 uv{0};
+    if (!set.empty())
+      uv = set[corner.x] * weight.x + set[corner.y] * weight.y + set[corner.z] * weight.z;
+    const Texture& texture = scene.textures[size_t(reference.texture)];
+    if (texture.image >= 0)
+      alpha *= eval_texture(scene.images[size_t(texture.image)], texture,
+                            vec2(reference.uv_transform * vec3(uv, 1)))
+                   .w;
+  }
+  if (material.alpha_mode == AlphaMode::mask) return alpha < material.alpha_cutoff;
+  return uniform_of(ray, instance, triangle) >= alpha;
+}
+
+namespace {
+
+// Nearer to the origin a float's step is below a thirtieth of a millimetre.
+constexpr float near_enough = 256;
+// Triangles that are so many steps (2^-23 of the largest coordinate) across show none of them. Rays
+// would start as far as 256 steps off them otherwise (offset_origin).
+constexpr float fine_steps = 1024;
+// An instance that reaches as far as a fourth of its distance gains too little.
+constexpr float compact = 0.25f;
+// A position's error in steps. Its corner is rounded, and so are sum and the next ray's origin, by
+// half a step in each of three directions: twice 0.87. What is not apart is as inexact as its
+// corners.
+constexpr float apart_steps = 3, usual_steps = 8;
+
+// Smallest across of the mesh's triangles, were they all alike: from their number and its size.
+bool is_apart(const Mesh& mesh, const Bounds& box, const mat4& to_world) {
+  if (mesh.triangles.empty() || !(box.low.x <= box.high.x)) return false;
+  const vec3 half = 0.5f * (box.high - box.low), middle = 0.5f * (box.high + box.low);
+  vec3 reach(0);  // of the box in the world
+  for (int i = 0; i < 3; i++) reach += glm::abs(vec3(to_world[i])) * half[i];
+  const float radius = glm::length(reach);
+  const vec3 turned = mat3(to_world) * middle;
+  const float largest = max_component(glm::abs(turned + vec3(to_world[3])) + reach);
+  const float off = glm::length(turned) + radius;  // its farthest point from its own origin
+  if (!(largest > near_enough) || !std::isfinite(largest) || off > compact * largest) return false;
+  const float across = 2 * radius / std::sqrt(float(mesh.triangles.size()));
+  return across < fine_steps * 0x1p-23f * largest;
+}
+
+}  // namespace
+
+void mark_far(const Scene& scene, std::vector<PlacedMesh>& placed) {
+  std::vector<Bounds> boxes(scene.meshes.size());
+  std::vector<char> known(scene.meshes.size(), 0);
+  bool any = false;
+  for (size_t i = 0; i < scene.instances.size(); i++) {
+    const Instance& instance = scene.instances[i];
+    if (!(max_component(glm::abs(vec3(instance.to_world[3]))) > near_enough * 0.5f)) continue;
+    const size_t mesh = size_t(instance.mesh);
+    if (!known[mesh]) {
+      for (const vec3& p : scene.meshes[mesh].positions)
+        boxes[mesh].low = glm::min(boxes[mesh].low, p),
+        boxes[mesh].high = glm::max(boxes[mesh].high, p);
+      known[mesh] = 1;
+    }
+    placed[i].apart = is_apart(scene.meshes[mesh], boxes[mesh], instance.to_world);
+    any |= placed[i].apart;
+  }
+  if (!any) return;
+  for (PlacedMesh& one : placed) one.steps = one.apart ? apart_steps : usual_steps;
+}
+
 namespace {
 
 // Repeated meshes are copied into world space while all copies together stay below this many

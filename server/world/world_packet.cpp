@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays side by side. Each lane's answer is its own: what the other lanes hold does not matter.
+#include "world/world_packet.h"
+
 #include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "base/simd.h"
-#include "world/slab.h"
 #include "world/world_impl.h"
 
 namespace wellspring::world {

@@ -6,7 +6,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 
-#include "attention/attended.h"
+#include "attention/task.h"
 #include "base/clock.h"
 #include "base/rng.h"
 #include "report.h"

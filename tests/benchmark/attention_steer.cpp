@@ -8,10 +8,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "attention/attended.h"
+#include "attention/task.h"
 #include "base/rng.h"
 #include "cache_visit_truth.h"
-#include "frame/flip.h"
+#include "judge/flip.h"
 #include "light_scenes.h"
 #include "picture/compositor.h"
 #include "report.h"

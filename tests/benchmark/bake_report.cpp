@@ -6,14 +6,13 @@
 #include "bake_particles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "light/material/bsdf.h"
 #include "light/walk/known_light.h"
 #include "light_scenes.h"
 #include "report.h"
 #include "show/exhibit/exhibit_load.h"
-#include "show/exhibit/eye_places.h"
+#include "show/exhibit/exhibit_objects.h"
 #include "world/surface.h"
 
 namespace wellspring::test {

@@ -14,12 +14,12 @@
 #include "cache_visit_judge.h"
 #include "cache_visit_method.h"
 #include "cache_visit_truth.h"
-#include "frame/flip.h"
 #include "frame/picture_file.h"
+#include "judge/flip.h"
 #include "light_scenes.h"
 #include "report.h"
+#include "show/draw/decide.h"
 #include "show/exhibit/exhibit_load.h"
-#include "show/draw/sample_budget.h"
 
 namespace wellspring::test {
 namespace {

@@ -10,11 +10,11 @@
 #include "base/rng.h"
 #include "cache_visit_stage.h"
 #include "drawn_picture.h"
-#include "frame/flip.h"
 #include "frame/picture_file.h"
+#include "judge/flip.h"
 #include "picture/warp_picture.h"
 #include "report.h"
-#include "show/visit/heading.h"
+#include "show/visit/place.h"
 
 namespace wellspring::test {
 namespace {

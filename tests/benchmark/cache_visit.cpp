@@ -15,10 +15,10 @@
 #include "cache_visit_judge.h"
 #include "cache_visit_stage.h"
 #include "cache_visit_truth.h"
-#include "frame/flip.h"
 #include "frame/jpeg.h"
 #include "frame/picture_file.h"
 #include "frame/tonemap.h"
+#include "judge/flip.h"
 
 namespace wellspring::test {
 namespace {

@@ -5,16 +5,14 @@
 
 #include "base/rng.h"
 #include "cache/broker.h"
-#include "cache/predict.h"
+#include "cache/plan.h"
 #include "cache_visit_method.h"
 #include "picture/compose_drawn.h"
 #include "picture/compositor.h"
-#include "picture/still/plan_still.h"
 #include "picture/still/reconstruct_still.h"
-#include "picture/still/still_guides.h"
 #include "show/draw/steer.h"
 #include "show/state/lamps.h"
-#include "show/state/picture_job.h"
+#include "show/state/renderer.h"
 
 namespace wellspring::test {
 namespace {

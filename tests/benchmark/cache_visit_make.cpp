@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "cache_visit_trace.h"
-#include "show/visit/tour.h"
 #include "show/visit/place.h"
-#include "show/visit/walk.h"
+#include "show/visit/tour.h"
+#include "show/visit/walk_map.h"
 
 namespace wellspring::test {
 namespace {

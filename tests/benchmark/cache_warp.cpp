@@ -9,8 +9,8 @@
 #include "base/clock.h"
 #include "cache_visit_stage.h"
 #include "drawn_picture.h"
-#include "frame/flip.h"
 #include "frame/picture_file.h"
+#include "judge/flip.h"
 #include "picture/warp_picture.h"
 #include "report.h"
 

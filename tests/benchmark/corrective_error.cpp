@@ -9,7 +9,7 @@
 #include "cache_visit_trace.h"
 #include "cache_visit_truth.h"
 #include "corrective/corrected_visit.h"
-#include "frame/flip.h"
+#include "judge/flip.h"
 #include "report.h"
 #include "show/exhibit/exhibit_load.h"
 

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <map>
 
-#include "avatar/face/emotion.h"
+#include "avatar/face/expression.h"
 #include "kiosk_visitors.h"
 
 namespace wellspring::test {
 
 namespace {
 
-constexpr float least = 0.2f;  // weaker is no emotion (avatar/face/empathy.h)
+constexpr float least = 0.2f;  // weaker is no emotion (avatar/face/face.h)
 const std::string neutral = "neutral";
 
 // The neutral face for as long as the eye learns it, then each expression and back.

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "base/clock.h"
-#include "kiosk/gesture/score.h"
+#include "judge/score.h"
 #include "kiosk/gesture/train.h"
 #include "report.h"
 #include "wire/json.h"

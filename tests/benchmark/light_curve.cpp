@@ -5,8 +5,8 @@
 #include <ctime>
 
 #include "base/clock.h"
-#include "frame/compare.h"
-#include "frame/flip.h"
+#include "judge/compare.h"
+#include "judge/flip.h"
 #include "report.h"
 
 namespace wellspring::test {

@@ -5,11 +5,11 @@
 #include <functional>
 
 #include "base/clock.h"
-#include "frame/flip.h"
-#include "light/dynamic/settled_bounce.h"
+#include "judge/flip.h"
+#include "light/dynamic/dynamic_image.h"
 #include "light/technique/technique.h"
 #include "light_scenes.h"
-#include "picture/relight.h"
+#include "picture/compositor.h"
 #include "tests/scenes/dynamic_picture.h"
 
 namespace wellspring::test {

@@ -3,8 +3,8 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
-#include "frame/compare.h"
-#include "frame/flip.h"
+#include "judge/compare.h"
+#include "judge/flip.h"
 
 namespace wellspring::test {
 

@@ -6,10 +6,10 @@
 
 #include "base/load_error.h"
 #include "frame/disparity_code.h"
-#include "frame/flip.h"
 #include "frame/jpeg.h"
 #include "frame/picture_file.h"
 #include "gltf/file.h"
+#include "judge/flip.h"
 #include "screen.h"
 #include "wire/packet.h"
 

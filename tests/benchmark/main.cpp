@@ -12,7 +12,6 @@
 #include "about/version.h"
 #include "base/clock.h"
 #include "base/log.h"
-#include "base/progress.h"
 #include "cache_visit_trace.h"
 #include "local_display.h"
 #include "report.h"

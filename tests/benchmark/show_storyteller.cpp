@@ -14,13 +14,12 @@
 #include "base/rng.h"
 #include "cache_visit_stage.h"
 #include "cache_visit_truth.h"
-#include "frame/flip.h"
 #include "frame/picture_file.h"
 #include "frame/tonemap.h"
+#include "judge/flip.h"
 #include "light/known/skin_light.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
-#include "picture/moving_picture.h"
 #include "report.h"
 
 namespace wellspring::test {

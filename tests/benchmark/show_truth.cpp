@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "frame/flip.h"
+#include "judge/flip.h"
 #include "light/visible/guides.h"
-#include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "show/exhibit/exhibit_load.h"
 
 namespace wellspring::test {

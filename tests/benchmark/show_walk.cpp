@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "base/clock.h"
-#include "frame/flip.h"
 #include "frame/picture_file.h"
+#include "judge/flip.h"
 #include "light/bake/map_file.h"
 #include "shaped_line.h"
 #include "show_visit.h"

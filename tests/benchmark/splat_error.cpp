@@ -3,10 +3,10 @@
 // lights does, and what is seen of it while a light moves.
 #include <cmath>
 
-#include "frame/flip.h"
+#include "judge/flip.h"
+#include "light/sample/light_tables.h"
 #include "light_reference.h"
 #include "light_scenes.h"
-#include "light/sample/light_tables.h"
 #include "splat_bench.h"
 
 namespace wellspring::test {

@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "light/sample/light_tables.h"
-#include "light/visible/see_through.h"
+#include "light/visible/guides.h"
 #include "light_scenes.h"
 #include "plot.h"
 #include "splat_bench.h"

@@ -7,9 +7,9 @@
 #include <sys/types.h>
 
 #include "base/layers.h"
+#include "judge/ws_client.h"
 #include "own_folder.h"
 #include "report.h"
-#include "stream/ws_client.h"
 
 namespace wellspring::test {
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "stream/ws_client.h"
+#include "judge/ws_client.h"
 #include "stream_server.h"
 #include "wire/json.h"
 #include "wire/packet.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that a server keeps (base/keyed_file.h) with foreign bytes in them: their format is that of
+// Files that a server keeps (base/write_file.h) with foreign bytes in them: their format is that of
 // a file which was saved, and their checksum is right, so that readers look at the rest.
 #pragma once
 #include <cstring>
 
-#include "base/keyed_file.h"
+#include "base/write_file.h"
 #include "fuzz/fuzz.h"
 
 namespace wellspring::fuzz {

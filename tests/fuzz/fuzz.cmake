@@ -9,8 +9,8 @@ if(WELLSPRING_FUZZ)
   # What is left out are coroutines, which Clang 14 cannot make of GCC's library.
   set_source_files_properties(kiosk/process/link.cpp PROPERTIES HEADER_FILE_ONLY ON)
   add_library(fuzz_requests STATIC EXCLUDE_FROM_ALL
-    server/stream/address.cpp server/stream/origin.cpp server/stream/range.cpp server/stream/reply.cpp
-    server/stream/target.cpp server/stream/tls.cpp)
+    server/stream/address.cpp server/stream/target.cpp server/stream/reply.cpp server/stream/reply.cpp
+    server/stream/target.cpp server/stream/transport.cpp)
   target_link_libraries(fuzz_requests PUBLIC wire boost_tls)
   set(requests fuzz_requests)
 endif()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Words of the house, posted.
 #include "fuzz/fuzz.h"
-#include "show/http/announce.h"
+#include "show/http/access.h"
 
 namespace wellspring::fuzz {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A report of measurements, which the technician's page shows.
 #include "fuzz/fuzz.h"
-#include "show/status/speeds.h"
+#include "show/status/status.h"
 
 namespace wellspring::fuzz {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of gestures and expressions in place of the built-in ones.
-#include "avatar/body/gesture_library.h"
+#include "avatar/body/gesture.h"
 #include "avatar/face/expression.h"
 #include "fuzz/fuzz.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of WebSockets.
 #include "fuzz/fuzz.h"
-#include "stream/frames.h"
+#include "stream/core.h"
 
 namespace wellspring::fuzz {
 

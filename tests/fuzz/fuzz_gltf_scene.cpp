@@ -4,8 +4,7 @@
 
 #include "fuzz/fuzz.h"
 #include "light/technique/technique.h"
-#include "world/load/credit.h"
-#include "world/load/scene_files.h"
+#include "world/load/scene_join.h"
 #include "world/load/scene_load.h"
 #include "world/world.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hours and kiosks of a house.
 #include "fuzz/fuzz.h"
-#include "show/house/house_file.h"
+#include "show/house/house.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring::fuzz {

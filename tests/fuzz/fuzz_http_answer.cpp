@@ -4,7 +4,7 @@
 
 #include "fuzz/fuzz.h"
 #include "show/http/answer.h"
-#include "show/status/sums.h"
+#include "show/status/status.h"
 #include "stream/target.h"
 #include "unit/show/tiny_exhibit.h"
 

@@ -2,9 +2,7 @@
 // Target of a request, then Host, Origin, Sec-WebSocket-Protocol, Range and Accept-Encoding, a line
 // each.
 #include "fuzz/fuzz.h"
-#include "stream/encoding.h"
-#include "stream/origin.h"
-#include "stream/range.h"
+#include "stream/reply.h"
 #include "stream/target.h"
 
 namespace wellspring::fuzz {

@@ -2,7 +2,7 @@
 // Speech that is kept on disk.
 #include <cmath>
 
-#include "avatar/speech/speech_folder.h"
+#include "avatar/speech/speech_json.h"
 #include "fuzz/fuzz.h"
 #include "fuzz/spoken.h"
 

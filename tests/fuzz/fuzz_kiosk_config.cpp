@@ -2,7 +2,7 @@
 // A kiosk's configuration, and addresses of servers.
 #include "fuzz/fuzz.h"
 #include "kiosk/config.h"
-#include "kiosk/process/server_address.h"
+#include "kiosk/process/link.h"
 
 namespace wellspring::fuzz {
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures and sound as a browser, or a program that measures, gets them.
 #include "fuzz/fuzz.h"
-#include "wire/packet.h"
 #include "unit/wire/sound_view.h"
-#include "wire/sound_packet.h"
+#include "wire/packet.h"
 
 namespace wellspring::fuzz {
 

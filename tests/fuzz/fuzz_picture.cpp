@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "frame/jpeg.h"
-#include "frame/linear_picture.h"
+#include "frame/picture_file.h"
 #include "fuzz/fuzz.h"
 #include "world/load/gltf_image.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A text that claims to be sealed by this server.
 #include "fuzz/fuzz.h"
-#include "wire/seal.h"
+#include "wire/tokens.h"
 
 namespace wellspring::fuzz {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The query of a still.
 #include "fuzz/fuzz.h"
-#include "show/http/still_question.h"
+#include "show/http/still.h"
 #include "stream/target.h"
 #include "unit/show/tiny_exhibit.h"
 

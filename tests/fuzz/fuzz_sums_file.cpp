@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "fuzz/fuzz.h"
-#include "ledger/sums_file.h"
+#include "ledger/sums.h"
 
 namespace wellspring::fuzz {
 

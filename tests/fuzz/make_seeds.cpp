@@ -4,11 +4,10 @@
 #include <sndfile.h>
 
 #include "frame/jpeg.h"
-#include "frame/linear_picture.h"
 #include "frame/picture_file.h"
 #include "fuzz/lit_square.h"
 #include "fuzz/spoken.h"
-#include "ledger/sums_file.h"
+#include "ledger/sums.h"
 #include "light/bake/map_file.h"
 #include "unit/avatar/load/vrm_person.h"
 #include "unit/denoise/tza.h"

@@ -3,7 +3,7 @@
 #pragma once
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "avatar/figure/describe.h"
+#include "avatar/figure/figure_check.h"
 #include "avatar/figure/retarget.h"
 #include "avatar/figure/skin.h"
 #include "avatar/mind/storyteller.h"

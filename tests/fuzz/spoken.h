@@ -3,7 +3,7 @@
 #pragma once
 #include <filesystem>
 
-#include "avatar/speech/speech_folder.h"
+#include "avatar/speech/speech_json.h"
 #include "base/layers.h"
 
 namespace wellspring::fuzz {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "light/dynamic/dynamic_image.h"
-#include "light/visible/describe_run.h"
+#include "light/visible/surface_buffer.h"
 
 namespace wellspring::scenes {
 

@@ -46,7 +46,7 @@ test('all that is linked is listed, with licence, version and purpose', async ()
   const needed = [...output('readelf', ['-d', server]).matchAll(/\(NEEDED\).*\[(.+)\]/g)];
   for (const [, name] of needed) assert.ok(listed.includes(name), name);
   for (const one of components) {
-    assert.ok(one.description, `${file_of(one) ?? one.name}: add it to about/known_libraries.h`);
+    assert.ok(one.description, `${file_of(one) ?? one.name}: add it to about/version.h`);
     assert.match(one.licenses[0].expression, /^[A-Za-z]/);
     assert.match(one.version, /\d/, `${one.name} has a version`);
   }

@@ -25,9 +25,9 @@ function* spaced_lines({ text }) {
   const open = [];
   let declares = false;  // the line before names a type of elsewhere
   for (const line of text.split('\n')) {
-    const begins = /^namespace ([\w:]*) ?\{$/.exec(line);
+    const begins = /^namespace ([\w:]*) ?[{]$/.exec(line);
     if (begins) open.push(begins[1]);
-    else if (/^\}  \/\/ namespace/.test(line) || (line === '}' && declares)) open.pop();
+    else if (/^\} {2}\/\/ namespace/.test(line) || (line === '}' && declares)) open.pop();
     declares = /^(class|struct) \w+;/.test(line);
     yield { line, space: open.join('::') };
   }

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/cancel.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "light/bake/lit_place.h"
+#include "base/worker.h"
+#include "light/bake/held_out.h"
 #include "light/walk/known_light.h"
 
 namespace wellspring::light {

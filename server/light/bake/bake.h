@@ -2,7 +2,7 @@
 // Baking: the light of illumination maps, found sample by sample for as long as there is time.
 //
 // Two fields of nodes. Light that has scattered before is smooth: few nodes gather it, each sample
-// a ray over the cosine that ends in coarse light (light/bake/coarse_light.h), or goes on as a
+// a ray over the cosine that ends in coarse light (light/bake/finish_bake.h), or goes on as a
 // path. Light straight from its sources has shadows with edges: its nodes become finer where
 // neighbours differ, which a few samples with the same random numbers at all nodes of a tile tell.
 // Each of their samples is next-event estimation and a ray over the cosine, weighed against each
@@ -45,8 +45,8 @@ struct Bake {
   HeldOut held_out;
   std::vector<int> shards_done;  // whose tiles are here: those merged, and its own
   float tile = 0;                // as of make_charts()
-  std::vector<uint8_t> direct_sight, gather_sight;  // NodeSight (light/bake/unseen.h), as far as
-                                                    // it was asked for; not kept on disk
+  std::vector<uint8_t> direct_sight, gather_sight;  // NodeSight (light/bake/filter_nodes.h), as far
+                                                    // as it was asked for; not kept on disk
   int refined = 0;                                  // rounds of finer direct nodes so far
   uint64_t passes = 0;                              // of all tiles
   uint32_t cursor = 0;                              // the next tile of the pass under way
@@ -54,7 +54,7 @@ struct Bake {
 };
 size_t memory_bytes(const Bake& bake);
 
-// Seconds for a large scene; may be cancelled (base/cancel.h).
+// Seconds for a large scene; may be cancelled (base/worker.h).
 Bake begin_bake(const World& world, std::span<const vec3> places,
                 const BakeSettings& settings = {});
 // Goes on, on all cores, until `stop` says so, which is asked every few milliseconds; at least one

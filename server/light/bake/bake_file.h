@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "base/keyed_file.h"
+#include "base/write_file.h"
 #include "light/bake/bake.h"
 
 namespace wellspring::light {

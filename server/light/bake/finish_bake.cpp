@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "light/bake/beside.h"
-#include "light/bake/unseen.h"
+#include "base/worker.h"
+#include "light/bake/bake.h"
+#include "light/bake/filter_nodes.h"
 
 namespace wellspring::light {
 namespace {
@@ -309,6 +310,31 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
                              gather = find_leaks(world, bake.charts, bake.places, eyes, bake.gather,
                                                  bake.gather_sight);
   return finish(bake, direct, gather, true);
+}
+
+static constexpr float least_bounce = 0.002f;  // of the mean light: a bounce that adds less ends it
+
+BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
+                          const CoarseLightSettings& settings) {
+  BakeScene scene = make_bake_scene_of_paths(world);
+  BakeSettings coarse;
+  coarse.gather_nodes = coarse.direct_nodes = settings.nodes;
+  Bake bake = begin_bake(scene.world, places, coarse);
+  if (bake.charts.tiles == 0) return scene;
+  sample_fields(scene, bake, settings.direct_samples, 0);
+  scene.known = finish_fields(bake, false);
+  for (int bounce = 1; bounce < settings.most_bounces; bounce++) {
+    check_cancelled();
+    clear_samples(bake.gather);
+    sample_fields(scene, bake, 0, 1);
+    const float before = scene.known->mean;
+    scene.known = finish_fields(bake, false);
+    if (!(scene.known->mean - before > least_bounce * scene.known->mean)) break;
+  }
+  clear_samples(bake.gather);
+  sample_fields(scene, bake, 0, settings.gather_samples);
+  scene.known = finish_fields(bake, true);
+  return scene;
 }
 
 }  // namespace wellspring::light

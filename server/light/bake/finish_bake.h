@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "light/bake/bake.h"
+#include "light/bake/bake_scene.h"
 #include "light/bake/filter_nodes.h"
 
 namespace wellspring::light {
@@ -51,5 +52,22 @@ std::vector<vec3> unpack_normals(const BakeCharts& charts, std::span<const Illum
                                  std::span<const uint32_t> packed);
 // IlluminationMap::normals of those.
 std::shared_ptr<const std::vector<uint32_t>> pack_normals(std::span<const vec3> normals);
+
+// Light of few nodes, found in a second or two: on it gathering walks of a bake end, and it is what
+// an exhibit shows that has nothing better yet.
+
+struct CoarseLightSettings {
+  size_t nodes = 40000;                        // at most, about
+  int direct_samples = 6, gather_samples = 6;  // of each node; those of the last bounce
+  int most_bounces = 40;
+};
+
+// A scene of which coarse light is known, null where nothing is diffuse: light straight from its
+// sources, then bounce by bounce what surfaces send each other of what is known so far (as
+// progressive radiosity: Cohen et al. 1988). Eyes are near `places` (scene coordinates). `world` as
+// for make_bake_scene_of_paths(). All cores; the same bits whatever the number of threads. May be
+// cancelled.
+BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
+                          const CoarseLightSettings& settings = {});
 
 }  // namespace wellspring::light

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 
-#include "base/cancel.h"
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "base/worker.h"
 #include "light/bake/bake_field.h"
 #include "light/bake/finish_bake.h"
 

@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "base/keyed_file.h"
+#include "base/write_file.h"
 #include "light/sample/illumination_map.h"
 #include "world/world.h"
 

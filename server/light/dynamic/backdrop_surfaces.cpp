@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/memory.h"
-#include "light/dynamic/light_taps.h"
-#include "light/visible/describe_run.h"
+#include "light/dynamic/direct_light.h"
+#include "light/visible/surface_buffer.h"
 
 namespace wellspring::light {
 namespace {

@@ -2,14 +2,84 @@
 // The light that reaches a picture's surfaces straight from lights that move or change, by a shadow
 // ray a pixel and light, sixteen neighbours at once.
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <span>
+#include <vector>
 
-#include "base/raw_vector.h"
-#include "light/dynamic/dynamic_light.h"
+#include "base/memory.h"
 #include "light/sample/lights.h"
 #include "light/visible/surface_buffer.h"
+#include "world/scene.h"
 
 namespace wellspring::light {
+
+// Lights that move or change while an exhibit runs: a torch that is carried, a fire that flickers,
+// the sun over a day. They are no part of Lights: nothing that is kept or baked knows them. Light
+// adds up, so theirs is computed for each picture and added to that of what stands still.
+
+struct DynamicLight {
+  PunctualLight light;  // as it is at the moment, relative to Scene::origin
+  uint32_t id = 0;      // the same from picture to picture, of no other
+  float radius = 0;     // metres around it in which nothing casts a shadow: its flame does not
+};
+
+// Those that a visitor sees by, black ones left out.
+using DynamicLights = std::vector<DynamicLight>;
+
+// Light of half of a picture's resolution is read between four of its pixels, which count as far as
+// they show the same surface.
+
+// Pictures of more pixels get light of half their resolution: those that stay, and those that are
+// soon followed by the next.
+inline constexpr size_t fine_dynamic_pixels = 320 * 1024, passing_dynamic_pixels = 64 * 1024;
+inline constexpr int light_scale = 2;  // pixels of such a picture a side of one pixel of its light
+// The view in which light for pictures of `view` is computed.
+inline View dynamic_light_view(const View& view, size_t fine = fine_dynamic_pixels) {
+  if (size_t(view.width) * size_t(view.height) <= fine) return view;
+  View light = view;
+  light.width = (view.width + light_scale - 1) / light_scale;
+  light.height = (view.height + light_scale - 1) / light_scale;
+  light.tan_half_fov = view.tan_half_fov * float(light.height * light_scale) / float(view.height);
+  return light;
+}
+
+// The two pixels of the light around the middle of pixel `at` of a picture's row or column, and how
+// far that is from the first to the second.
+struct TapPair {
+  int first, second;
+  float share;
+};
+inline TapPair tap_pair(int at, int size) {
+  static_assert(light_scale == 2);
+  const int left = (at + 1) / 2 - 1;
+  return {std::max(left, 0), std::min(left + 1, size - 1), at % 2 ? 0.25f : 0.75f};
+}
+
+// What a pixel of the picture shows.
+struct SeenPoint {
+  vec3 place{0}, normal{0};  // relative to the eye; unit, or 0
+  float depth = 0;
+  uint32_t object = 0;
+};
+// `way`: from the eye to the pixel, at depth 1.
+inline SeenPoint seen_point(float depth, uint32_t object, const RunSurface& surface, int i,
+                            vec3 way) {
+  SeenPoint seen{depth * way, {surface.nx[i], surface.ny[i], surface.nz[i]}, depth, object};
+  const float length2 = dot(seen.normal, seen.normal);
+  if (length2 > 0) seen.normal /= std::sqrt(length2);
+  if (!(depth < std::numeric_limits<float>::infinity())) seen.place = vec3(0);
+  return seen;
+}
+// Of the four pixels of the light around it, row by row: bilinear weights times how much each shows
+// the same surface; where none does, the most alike alone counts. They add up to 1; 0: nothing is
+// there.
+struct TapWeights {
+  float of[4] = {};
+};
+TapWeights weigh_taps(const SurfaceBuffer& light, const PixelGrid& grid, const TapPair& x,
+                      const TapPair& y, const SeenPoint& seen);
 
 // Of each pixel of a SurfaceBuffer the radiance of a white diffuse surface: irradiance over pi; and
 // that of its highlights, which are empty where nothing has any.

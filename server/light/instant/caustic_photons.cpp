@@ -5,10 +5,10 @@
 #include <bit>
 #include <cmath>
 
-#include "light/material/bsdf_simd.h"
+#include "light/material/bsdf.h"
+#include "light/random/warp.h"
 #include "light/sample/caustic_casters.h"
 #include "light/sample/emission.h"
-#include "light/random/warp.h"
 
 namespace wellspring::light {
 namespace {

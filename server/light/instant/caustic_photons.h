@@ -4,7 +4,7 @@
 // what scatters sharply; what they hit is kept in a PhotonGrid and asked with a fixed radius.
 // Biased: light is spread over the radius, and lost or won where surfaces bend or end within it.
 #pragma once
-#include "light/instant/photon_grid.h"
+#include "light/instant/instant_pass.h"
 #include "light/instant/point_light_shading.h"
 #include "light/sample/light_tables.h"
 

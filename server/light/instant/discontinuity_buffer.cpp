@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "base/simd3.h"
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "base/raw_vector.h"
+#include "base/simd.h"
 
 namespace wellspring::light {
 namespace {

@@ -10,7 +10,7 @@
 #include "light/instant/discontinuity_buffer.h"
 #include "light/sample.h"
 #include "light/sample/lights.h"
-#include "light/transport_settings.h"
+#include "light/transport_plan.h"
 #include "world/view.h"
 
 namespace wellspring::light {
@@ -21,5 +21,13 @@ void refine_edges(const World& world, const Lights& lights, const TransportSetti
                   const View& view, const DiscontinuitySettings& continuity, int rays,
                   uint64_t seed, uint32_t index, std::span<const uint8_t> edges,
                   std::span<Sample> samples);
+
+// Samples by the point lights and photons of a pass that has begun (light/instant/instant_pass.h):
+// the trace functions of technique `instant_radiosity` (light/technique/technique.h).
+
+Sample trace_instant(const World& world, const Lights& lights, const TransportSettings& settings,
+                     const Request& request);
+void trace_many_instant(const World& world, const Lights& lights, const TransportSettings& settings,
+                        std::span<const Request> requests, std::span<Sample> samples);
 
 }  // namespace wellspring::light

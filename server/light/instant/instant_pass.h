@@ -2,14 +2,107 @@
 // What instant radiosity draws for one pass over a picture: sets of point lights, which of them
 // each region asks, and photons.
 #pragma once
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "light/instant/photon_grid.h"
-#include "light/transport_settings.h"
+#include "base/simd.h"
+#include "base/vec.h"
+#include "light/transport_plan.h"
 #include "light/walk/light_walk.h"
 
 namespace wellspring::light {
+
+// Photons found by place: a grid of cells twice the query's radius wide, hashed, so that a query
+// looks at 8 cells and nothing is stored for empty ones (Wald et al. 2002, section 4.1). The radius
+// is fixed when the grid is made. Photons lie side by side, cell by cell, and are looked at eight
+// at a time.
+
+struct Photon {
+  vec3 position{0};
+  uint32_t depth = 1;  // edges from the source, without what solid glass did
+  vec3 flux{0};
+  vec3 direction{0};     // to where it came from
+  vec3 normal{0, 1, 0};  // geometric, of the surface it hit
+  float hue = -1;        // hue_of its walk; `flux` has that colour
+};
+
+// One number of every photon, and eight more that may be read.
+struct PhotonColumn {
+  std::vector<float> values;
+  Lanes at(size_t i) const { return load_lanes(&values[i]); }
+};
+struct PhotonColumns3 {
+  PhotonColumn x, y, z;
+  vec3 at(size_t i) const { return {x.values[i], y.values[i], z.values[i]}; }
+};
+
+struct PhotonGrid {
+  float radius = 0;
+  double per_metre = 0;         // cells
+  uint32_t mask = 0;            // buckets - 1
+  std::vector<uint32_t> first;  // of each bucket, and the end
+  // Bucket by bucket.
+  PhotonColumns3 position, flux, direction, normal;
+  PhotonColumn depth;
+  PhotonColumn hue;  // empty: none has any
+  size_t size() const { return first.empty() ? 0 : first.back(); }
+  Photon photon(size_t i) const {
+    return {position.at(i), uint32_t(depth.values[i]),
+            flux.at(i),     direction.at(i),
+            normal.at(i),   hue.values.empty() ? -1.0f : hue.values[i]};
+  }
+};
+
+// Photons that are nowhere (not finite) are left out. `radius` > 0.
+PhotonGrid make_photon_grid(const std::vector<Photon>& photons, float radius);
+
+// Where a place is, counted in cells.
+inline dvec3 in_photon_cells(const PhotonGrid& grid, vec3 place) {
+  return dvec3(place) * grid.per_metre;
+}
+inline uint32_t photon_bucket(const PhotonGrid& grid, int64_t x, int64_t y, int64_t z) {
+  uint64_t hash = uint64_t(x) * 0x9e3779b97f4a7c15ull ^ uint64_t(y) * 0xc2b2ae3d27d4eb4full ^
+                  uint64_t(z) * 0x165667b19e3779f9ull;
+  return uint32_t((hash ^ hash >> 32) * 0xd6e8feb86659fd93ull >> 32) & grid.mask;
+}
+
+// The photons around places between the same eight cells' middles. Neighbouring places mostly have
+// the same, so whoever asks for many in a row keeps this.
+struct PhotonCells {
+  double x, y, z;  // number of the first cell
+  int count = -1;  // runs of photons; -1: none asked for yet
+  uint32_t begin[8], end[8];
+};
+// Makes `cells` those around a finite place.
+void find_photon_cells(const PhotonGrid& grid, vec3 place, PhotonCells& cells);
+
+// visit(at, within) for eights of photons from number `at` on, among them each within the radius of
+// `place` once: those whose lane of `within` is not 0.
+template <class Visit>
+void for_each_photons(const PhotonGrid& grid, vec3 place, PhotonCells& cells, const Visit& visit) {
+  if (grid.size() == 0 || !is_finite(place)) return;
+  find_photon_cells(grid, place, cells);
+  float radius2 = grid.radius * grid.radius;
+  const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
+  for (int i = 0; i < cells.count; i++)
+    for (uint32_t p = cells.begin[i], end = cells.end[i]; p < end; p += lane_count) {
+      Lanes dx = grid.position.x.at(p) - place.x, dy = grid.position.y.at(p) - place.y,
+            dz = grid.position.z.at(p) - place.z;
+      LaneMask within = (dx * dx + dy * dy + dz * dz <= radius2) & (lane < int(end - p));
+      if (negative_lanes(within)) visit(size_t(p), within);
+    }
+}
+
+// visit(photon) for each within the radius of `place`, each once.
+template <class Visit>
+void for_each_photon(const PhotonGrid& grid, vec3 place, PhotonCells& cells, const Visit& visit) {
+  for_each_photons(grid, place, cells, [&](size_t at, LaneMask within) {
+    for (int i = 0; i < lane_count; i++)
+      if (within[i]) visit(grid.photon(at + size_t(i)));
+  });
+}
 
 enum class PointLightKind : uint8_t {
   lambertian,  // as seen by Lambert: area light, or light scattered by a Lambertian surface

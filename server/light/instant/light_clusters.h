@@ -4,12 +4,23 @@
 // al., "Lightcuts: A Scalable Approach to Illumination" (2005), with one level; what comes out is a
 // chance to be chosen, never light.
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "light/instant/instant_pass.h"
 #include "light/instant/point_lights_simd.h"
 
 namespace wellspring::light {
+
+// An order of a pass's point lights in which neighbours do much the same to a picture: on one
+// surface and near each other. Every so many-th of them then stands for all, as systematic sampling
+// wants it.
+
+// Numbers of all lights of `pass` that are not exact: those from infinity, those without a side and
+// those that face each of six ways apart from each other, and each of these along the curve of
+// Morton (1966) through the box around them.
+std::vector<uint32_t> order_lights(const InstantPass& pass);
 
 // Of eight clusters what takes the place of their lights, as LightLanes has it.
 struct ClusterRow {

@@ -3,13 +3,35 @@
 // once with all of them full, lamp by lamp where it is light itself, and each state is a sum of
 // that: milliseconds.
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "light/known/lamp_cells.h"
+#include "light/sample/illumination_map.h"
 #include "light/sample/lights.h"
 
 namespace wellspring::light {
+
+// Light of each lamp alone, averaged over cells of space and of a surface's main direction. Maps
+// tell it at their own surfaces; cells tell it at any place that lies near some of them.
+
+struct LampCells {
+  float cell = 1;  // metres a side
+  // place_key of each cell where find_place_slot() says, 0: free; and its number.
+  std::vector<uint64_t> keys;
+  std::vector<uint32_t> number_of;
+  // Each cell has its key, the area of surface in it, and the light of what belongs to no lamp,
+  // then of each lamp alone.
+  std::vector<uint64_t> cells;
+  std::vector<float> weight;
+  std::vector<std::vector<vec3>> light;
+};
+inline constexpr uint32_t no_lamp_cell = 0xffffffffu;
+
+// The light that `map` keeps of the world's still surfaces. Tenths of a second at most.
+LampCells make_lamp_cells(const World& world, const IlluminationMap& map);
+// The number of the cell of a surface there, or no_lamp_cell.
+uint32_t find_lamp_cell(const LampCells& cells, vec3 place, vec3 normal);
 
 // The lights of `world` as its lamps are now. `all`: of the same world, made and prepared for all
 // techniques in use while all lamps were full. A technique of passes has to begin one before the

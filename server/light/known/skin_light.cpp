@@ -6,10 +6,9 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "base/spread.h"
 #include "light/material/light_slope.h"
-#include "light/walk/first_surface.h"
 #include "light/sample/lamps_seen.h"
+#include "light/walk/first_surface.h"
 
 namespace wellspring::light {
 namespace {

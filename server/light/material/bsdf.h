@@ -15,6 +15,7 @@
 // have no density and are found by sampling only. Directions point away from the surface, world
 // space.
 #pragma once
+#include "base/simd.h"
 #include "light/material/bsdf_types.h"
 #include "light/random/sampler.h"
 #include "world/surface.h"
@@ -46,5 +47,33 @@ BsdfSample eval_mirror(const Bsdf& bsdf);
 // A thin smooth pane lets straight light through: shadow rays and paths agree on how much by this.
 bool is_pane(const Surface& surface, const Material& material);
 vec3 pane_transmittance(const Surface& surface, const Material& material, vec3 direction);
+
+// eval_bsdf eight at a time, for surfaces that most of a scene consists of: opaque, a diffuse layer
+// and GGX facets over it, without coats (bsdf.h). Eight surfaces, or one against eight directions.
+
+struct BsdfLanes {
+  Lanes3 tangent, bitangent, normal, face, view;
+  Lanes alpha_x, alpha_y, root_alpha;
+  Lanes masked, scale;  // 1 + Smith's function of the view; what the distribution is multiplied by
+  Lanes eta, metallic, dielectric_share;
+  Lanes3 facet_base, facet_slope, metal, again;
+  Lanes glossy;  // 1 or 0: there are facets
+  Lanes coat_loss, coat_mirror, coat_fresnel, coat_scale, coated;
+  Lanes loss_weight, fresnel_weight;
+  const float* loss[2][lane_count];  // rows of the albedo tables, the smoother and the rougher
+  const float* fresnel[2][lane_count];
+};
+
+// Whether lanes can hold it.
+bool fits_lanes(const Bsdf& bsdf);
+void set_lane(BsdfLanes& lanes, int lane, const Bsdf& bsdf);
+BsdfLanes make_bsdf_lanes(const Bsdf& bsdf);  // in all of them
+
+// As BsdfValue has it, but for the diffuse reflectance: that is left to multiply with.
+struct BsdfLanesValue {
+  Lanes diffuse;
+  Lanes3 specular;
+};
+BsdfLanesValue eval_bsdf_lanes(const BsdfLanes& lanes, const Lanes3& direction);
 
 }  // namespace wellspring::light

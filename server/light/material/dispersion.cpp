@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "light/material/bsdf_gloss.h"
-#include "light/material/bsdf_layers.h"
 
 namespace wellspring::light {
 namespace {

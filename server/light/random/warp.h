@@ -3,8 +3,12 @@
 // live in.
 #pragma once
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "base/rng.h"
 #include "base/vec.h"
 
 namespace wellspring::light {
@@ -52,6 +56,66 @@ inline float mis_weight(float own, float other) {
   if (other <= 0) return 1;
   float ratio = other / own;
   return 1 / (1 + ratio * ratio);
+}
+
+// Cells of space and of a surface's main direction, by which light at places is remembered in hash
+// tables (Binder, Fricke, Keller 2019, "Massively Parallel Path Space Filtering", section 3).
+
+// `cell` metres a side; the key is never 0.
+inline uint64_t place_key(vec3 position, vec3 normal, float cell) {
+  vec3 a = glm::abs(normal);
+  int axis = a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
+  uint64_t side = uint64_t(axis * 2 + (normal[axis] < 0));
+  auto part = [&](float x) {
+    return uint64_t(int64_t(std::floor(x / cell)) + (1 << 19)) & 0xfffff;
+  };
+  return ((side << 60 | part(position.x) << 40 | part(position.y) << 20 | part(position.z)) << 1) |
+         1;
+}
+
+// The cell lies between `cell` times this and `cell` times one more.
+inline glm::ivec3 place_of_key(uint64_t key) {
+  auto part = [&](int shift) { return int(key >> (shift + 1) & 0xfffff) - (1 << 19); };
+  return {part(40), part(20), part(0)};
+}
+
+// The slot of `key` in an open-addressed table with linear probing: the one that holds it, or the
+// free one (0) where it would be put. As many `keys` as a power of two, at least one of them free.
+inline uint32_t find_place_slot(std::span<const uint64_t> keys, uint64_t key) {
+  const uint32_t mask = uint32_t(keys.size()) - 1;
+  uint32_t slot = uint32_t(mix64(key)) & mask;
+  while (keys[slot] != 0 && keys[slot] != key) slot = (slot + 1) & mask;
+  return slot;
+}
+
+// Picks an index with probability proportional to its weight in constant time (Walker 1977, built
+// as Vose 1991). Weights that are negative or not finite count as 0.
+
+struct AliasTable {
+  struct Cell {
+    float keep = 1;         // chance that this cell stands for itself
+    uint32_t other = 0;     // otherwise
+    float probability = 0;  // of this index, over the whole table
+  };
+  std::vector<Cell> cells;  // empty: all weights are 0
+  double total = 0;         // sum of the weights
+};
+
+AliasTable make_alias_table(std::span<const float> weights);
+
+struct AliasPick {
+  uint32_t index;
+  float u;  // what is left of the number: uniform again
+};
+// The table must not be empty. u in [0, 1).
+inline AliasPick sample_alias(const AliasTable& table, float u) {
+  float scaled = u * float(table.cells.size());
+  uint32_t i = uint32_t(scaled);
+  if (i >= table.cells.size()) i = uint32_t(table.cells.size() - 1);
+  float rest = scaled - float(i);
+  const AliasTable::Cell& cell = table.cells[i];
+  if (rest < cell.keep) return {i, rest / cell.keep};
+  return {cell.other, (rest - cell.keep) / (1 - cell.keep)};
 }
 
 }  // namespace wellspring::light

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "light/random/sampler.h"
-#include "light/sample/emission_choice.h"
 #include "light/sample/environment_light.h"
+#include "light/sample/light_tables.h"
 #include "world/surface.h"
 
 namespace wellspring::light {

@@ -3,8 +3,11 @@
 // brightness (a grid over the latitude-longitude picture, uniform in solid angle within a cell).
 // The sun's disc is chosen apart, uniform in solid angle.
 #pragma once
-#include "light/random/alias_table.h"
+#include <functional>
+
+#include "base/vec.h"
 #include "light/random/sampler.h"
+#include "light/random/warp.h"
 #include "world/scene.h"
 
 namespace wellspring::light {
@@ -37,5 +40,28 @@ struct EnvironmentSample {
 EnvironmentSample sample_environment(const EnvironmentLight& light, vec2 u);
 EnvironmentSample sample_environment(const EnvironmentLight& light, Sampler& sampler);
 float sample_environment_pdf(const EnvironmentLight& light, vec3 direction);
+
+// Where on a triangle its picture emits light: the triangle cut into n * n equal ones by its
+// barycentric weights, each with its chance by mean brightness. Made only where the picture varies
+// enough over the triangle to pay for the look-up.
+
+struct EmissionPicture {
+  int n = 0;
+  AliasTable cells;  // empty: brightness varies too little
+};
+
+inline constexpr int most_emission_rows = 64;
+
+// `eval(barycentric)`: luminance there, weights of the second and third corner. `texels`: of the
+// picture on the triangle, as many as matter. Every cell keeps a chance, since a few look-ups may
+// miss a bright texel.
+EmissionPicture make_emission_picture(float texels, const std::function<float(vec2)>& eval);
+
+struct PicturePlace {
+  vec2 barycentric{0};
+  float density = 0;  // over the triangle, its area taken as 1
+};
+PicturePlace sample_emission_picture(const EmissionPicture& picture, vec2 u);
+float sample_emission_picture_pdf(const EmissionPicture& picture, vec2 barycentric);
 
 }  // namespace wellspring::light

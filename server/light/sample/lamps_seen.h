@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "light/sample/few_lights.h"
+#include "light/sample/light_tables.h"
 
 namespace wellspring::light {
 

@@ -3,18 +3,75 @@
 // uses: every emitting triangle in world space with its chance of being picked, punctual lights,
 // the environment, and what the shading loop wants to know of each material.
 #pragma once
+#include <span>
 #include <vector>
 
-#include "light/sample/emission_choice.h"
-#include "light/sample/emission_picture.h"
+#include "base/simd.h"
+#include "base/vec.h"
+#include "light/random/warp.h"
 #include "light/sample/environment_light.h"
-#include "light/sample/few_lights.h"
 #include "light/sample/light_tree.h"
-#include "light/sample/material_traits.h"
 #include "light/sample/pane_boxes.h"
-#include "light/sample/solid_bounds.h"
 #include "light/transport_plan.h"
+#include "world/scene.h"
 #include "world/world.h"
+
+namespace wellspring::light {
+
+// Which source a ray of light leaves (light/sample/emission.h), chosen by power.
+
+// Sources are numbered: emitting triangles, then punctual lights, then the environment.
+struct EmissionChoice {
+  AliasTable rays;  // all of them, by power
+  AliasTable
+      places;  // those that light only a share of a picture's pixels each: see exact_punctual
+  AliasTable caustics;         // sources of photons: without a sky that is the same all over
+  bool exact_punctual = true;  // few punctual lights: every pixel asks each of them
+  vec3 centre{0};              // of a sphere around the scene
+  float radius = 1;
+};
+inline constexpr size_t most_exact_punctual = 4;
+
+// Few punctual lights, side by side as vector units want them: what each does to a place is asked
+// of all at once. glTF KHR_lights_punctual.
+
+// A spot light's fall-off: clamp((cosine - outer) * scale), squared.
+struct SpotCone {
+  float outer = 0, scale = 1;
+};
+SpotCone make_spot_cone(const PunctualLight& light);
+
+struct FewLights {
+  static constexpr int most = 16, groups = most / lane_count;
+  // Of a near light its place; of a distant one the direction towards it, and `near` is 0.
+  Lanes x[groups], y[groups], z[groups], near[groups];
+  Lanes axis_x[groups], axis_y[groups], axis_z[groups];
+  Lanes outer[groups], scale[groups];  // all directions are in the cone of what is no spot
+  Lanes range2_inverse[groups];        // 0: it reaches everywhere
+  Lanes strength[groups];              // luminance; 0 beyond the last light
+  bool is_near[most];
+  int count = 0;  // 0: there are none, or more than `most`
+};
+FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const SpotCone> cones);
+
+// What they do to a surface there, but for shadows; sums over near and distant ones. The floor
+// keeps a chance for glossy lobes at grazing angles.
+struct LightEffects {
+  alignas(Lanes) float effect[FewLights::most];
+  float near_sum = 0, distant_sum = 0;
+};
+// What a surface does with light, as far as the choice among lights asks: a Lambertian part and a
+// GGX lobe of reflection. A highlight whose lamp is rarely chosen is a firefly.
+struct LobeHint {
+  float diffuse = 1, specular = 0;  // reflectances; specular 0: the rest is not set
+  vec3 view{0};                     // towards the viewer, unit
+  float alpha = 1;                  // squared perceptual roughness, > 0
+};
+// `through`: light from behind the surface counts too.
+void eval_effects(const FewLights& lights, vec3 place, vec3 normal, bool through,
+                  const LobeHint& lobe, LightEffects& effects);
+
+}  // namespace wellspring::light
 
 namespace wellspring::world {
 struct Surface;

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "light/random/alias_table.h"
+#include "light/random/warp.h"
 #include "world/scene.h"
 
 namespace wellspring::light {

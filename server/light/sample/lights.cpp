@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/memory.h"
 #include "light/sample/caustic_casters.h"
 #include "light/sample/emission.h"
-#include "light/sample/light_bounds.h"
 #include "light/sample/light_tables.h"
 #include "light/sample/medium.h"
 #include "light/sample/pane_boxes.h"
-#include "light/sample/shining.h"
 #include "world/surface.h"
 
 namespace wellspring::light {
@@ -253,6 +252,109 @@ std::vector<uint8_t> find_lamp_parts(const Scene& scene) {
   for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++)
     for (int material : scene.lamps[lamp].materials) parts[size_t(material)] = uint8_t(lamp + 1);
   return parts;
+}
+
+namespace {
+
+constexpr size_t most_picture_cells = size_t(1) << 20;  // of all emitters together
+
+LightBounds bounds_of(const PunctualLight& light) {
+  LightBounds b;
+  b.low = b.high = light.position;
+  b.strength = luminance(light.intensity);
+  b.cos_spread = -1;
+  if (light.type == PunctualType::spot) {
+    b.axis = light.direction;
+    b.cos_spread = std::cos(light.inner_cone);
+    b.cos_reach = std::cos(std::max(light.outer_cone - light.inner_cone, 0.0f) + 1e-3f);
+  }
+  if (std::isfinite(light.range) && light.range > 0) b.range = light.range;
+  return b;
+}
+
+}  // namespace
+
+LightTree make_emitter_tree(std::span<const EmitterTriangle> emitters, std::span<const float> power,
+                            LightChoice choice) {
+  std::vector<LightBounds> bounds;
+  bounds.reserve(emitters.size());
+  for (size_t i = 0; i < emitters.size(); i++) {
+    const EmitterTriangle& e = emitters[i];
+    LightBounds b;
+    vec3 second = e.corner + e.edge1, third = e.corner + e.edge2;
+    b.low = glm::min(e.corner, glm::min(second, third));
+    b.high = glm::max(e.corner, glm::max(second, third));
+    b.axis = e.normal;
+    b.two_sided = e.double_sided;
+    b.strength = power[i] / (pi * (e.double_sided ? 2.0f : 1.0f));
+    bounds.push_back(b);
+  }
+  return make_light_tree(bounds, choice);
+}
+
+void add_punctual_choice(LightTables& tables) {
+  tables.few_punctual = {}, tables.near_choice = {}, tables.distant_choice = {};
+  if (tables.punctual.size() <= size_t(FewLights::most)) {
+    tables.few_punctual = make_few_lights(tables.punctual, tables.cones);
+    return;
+  }
+  std::vector<LightBounds> near, distant;
+  for (const PunctualLight& light : tables.punctual) {
+    LightBounds b = bounds_of(light), dark;
+    bool is_distant = light.type == PunctualType::directional;
+    near.push_back(is_distant ? dark : b);
+    distant.push_back(is_distant ? b : dark);
+  }
+  tables.near_choice = make_light_tree(near, LightChoice::by_place);
+  tables.distant_choice = make_light_tree(distant, LightChoice::by_strength);
+}
+
+void add_emission_picture(const World& world, float texels, EmitterTriangle& emitter,
+                          LightTables& tables) {
+  if (tables.picture_cells >= most_picture_cells) return;
+  const Material& material = world.material_of(emitter.instance);
+  Ray ray;
+  ray.origin = emitter.corner + emitter.normal;
+  ray.direction = -emitter.normal;
+  Hit hit;
+  hit.t = 1;
+  hit.instance = emitter.instance;
+  hit.triangle = emitter.triangle;
+  EmissionPicture picture = make_emission_picture(texels, [&](vec2 barycentric) {
+    hit.barycentric = barycentric;
+    Surface surface = eval_surface(world, ray, hit);
+    return luminance(surface_emission(surface, material)) * surface.alpha;
+  });
+  if (picture.cells.cells.empty()) return;
+  tables.picture_cells += picture.cells.cells.size();
+  emitter.picture = int(tables.pictures.size());
+  tables.pictures.push_back(std::move(picture));
+}
+
+namespace {
+
+EmittingSources emitting(const Scene& scene, float others,
+                         const std::function<float(size_t lamp)>& brightness) {
+  EmittingSources emitting{std::vector<float>(scene.materials.size(), others),
+                           std::vector<float>(scene.lights.size(), others), others > 0};
+  for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++) {
+    for (int material : scene.lamps[lamp].materials)
+      emitting.materials[size_t(material)] = brightness(lamp);
+    for (int light : scene.lamps[lamp].lights) emitting.lights[size_t(light)] = brightness(lamp);
+  }
+  return emitting;
+}
+
+}  // namespace
+
+EmittingSources find_emitting(const World& world) {
+  const LampLevels& levels = world.lamp_levels();
+  return emitting(world.scene(), 1, [&](size_t lamp) { return brightness_of(levels[lamp]); });
+}
+
+EmittingSources find_emitting_of(const Scene& scene, int lamp) {
+  return emitting(scene, lamp < 0 ? 1 : 0,
+                  [&](size_t other) { return int(other) == lamp ? 1.0f : 0.0f; });
 }
 
 }  // namespace wellspring::light

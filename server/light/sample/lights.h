@@ -5,7 +5,9 @@
 #include <atomic>
 #include <memory>
 #include <span>
+#include <vector>
 
+#include "light/sample/light_tables.h"
 #include "world/world.h"
 
 namespace wellspring::light {
@@ -14,7 +16,7 @@ struct IlluminationMap;  // light/sample/illumination_map.h
 struct InstantPass;      // light/instant/instant_pass.h
 struct LampsSeen;        // light/sample/lamps_seen.h
 struct LightTables;      // light/sample/light_tables.h
-struct SplatPass;        // light/splat/splat_technique.h
+struct SplatPass;        // light/splat/splatter.h
 struct EmittingSources;  // light/sample/emitting.h
 struct TransportPlan;    // light/transport_plan.h
 
@@ -51,5 +53,30 @@ std::vector<std::shared_ptr<const LightTables>> make_lamp_tables(const LightTabl
                                                                  const Scene& scene);
 // Of each of the scene's materials, which of those its own light belongs to.
 std::vector<uint8_t> find_lamp_parts(const Scene& scene);
+
+// What a choice among lights needs to know of emitting triangles and punctual lights.
+
+// `power[i]` of emitters[i], both sides counted; those without are never picked.
+LightTree make_emitter_tree(std::span<const EmitterTriangle> emitters, std::span<const float> power,
+                            LightChoice choice);
+
+// Few punctual lights are asked one by one for what they send to a place, which knows each better
+// than a tree does; more are chosen from near_choice and distant_choice.
+void add_punctual_choice(LightTables& tables);
+
+// Makes `emitter.picture` where its emission varies much; `texels`: of the picture on the triangle.
+void add_emission_picture(const World& world, float texels, EmitterTriangle& emitter,
+                          LightTables& tables);
+
+// How brightly the sources of a scene emit light while its lamps are switched or dimmed.
+
+// How brightly it does, times the scene's own light: 0 to 1.
+struct EmittingSources {
+  std::vector<float> materials, lights;  // of each of the scene's
+  bool sky = true;
+};
+EmittingSources find_emitting(const World& world);  // as its lamps are
+// That lamp alone; -1: all that belongs to no lamp.
+EmittingSources find_emitting_of(const Scene& scene, int lamp);
 
 }  // namespace wellspring::light

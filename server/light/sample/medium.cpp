@@ -7,7 +7,7 @@
 
 #include "light/material/bsdf.h"
 #include "light/sample/light_tables.h"
-#include "light/sample/solid_bounds.h"
+#include "light/sample/pane_boxes.h"
 #include "light/sample/transport.h"
 
 namespace wellspring::light {

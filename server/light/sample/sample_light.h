@@ -3,9 +3,14 @@
 // first can also be met by a scattered ray: area light (emitting triangles, environment pictures)
 // and punctual.
 #pragma once
+#include <span>
+
 #include "light/material/bsdf.h"
+#include "light/sample.h"
 #include "light/sample/light_tables.h"
+#include "light/sample/lights.h"
 #include "light/sample/transport.h"
+#include "light/transport_plan.h"
 
 namespace wellspring::light {
 
@@ -61,5 +66,17 @@ inline constexpr int most_panes = 64;  // straight through so many in a row, the
 // `most_glass` is lost.
 inline constexpr int sure_glass = 48, most_glass = 256;
 inline constexpr float glass_survival = 0.95f;
+
+// The gate that every sample passes.
+
+// Makes samples fit for a Frame: light that is NaN, infinite or negative is dropped (black) and
+// counted; settings.clamp is applied.
+void finish_samples(const Lights& lights, const TransportSettings& settings,
+                    std::span<Sample> samples);
+inline Sample finish_sample(const Lights& lights, const TransportSettings& settings,
+                            Sample sample) {
+  finish_samples(lights, settings, std::span(&sample, 1));
+  return sample;
+}
 
 }  // namespace wellspring::light

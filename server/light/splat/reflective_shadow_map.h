@@ -8,11 +8,75 @@
 #include <span>
 #include <vector>
 
-#include "light/splat/aim_source.h"
-#include "light/transport_settings.h"
+#include "light/random/sampler.h"
+#include "light/sample/transport.h"
+#include "light/transport_plan.h"
+#include "world/scene.h"
 #include "world/world.h"
 
 namespace wellspring::light {
+
+// Sources of light whose bounce is wanted: all of a scene, or those that move. A punctual light is
+// held by value, so that one that is carried about need not be in the scene's tables.
+
+enum class SplatSourceKind : uint8_t {
+  punctual,  // `light`
+  emitters,  // triangles [first, first + count) of LightTables::emitters
+  sky,       // LightTables::environment, its sun included
+  sun,       // its sun alone
+};
+
+struct SplatSource {
+  SplatSourceKind kind = SplatSourceKind::punctual;
+  PunctualLight light;
+  float radius = 0;  // metres around a point or spot in which its rays meet nothing
+  uint32_t first = 0, count = 0;
+  // Names its random numbers: a source that moves keeps the rays that it sends, as long as its id
+  // and the settings stay.
+  uint64_t id = 0;
+};
+
+SplatSource make_splat_source(const PunctualLight& light, uint64_t id);
+// Every source of the tables, each once: punctual lights, runs of emitting triangles of one
+// instance, the sky. Sources without power are left out.
+std::vector<SplatSource> make_all_splat_sources(const Transport& transport);
+
+// Flux that leaves a source, luminance, in watts; parallel light: what enters the scene. 0 of what
+// is black, not finite or without extent.
+float eval_source_power(const Transport& transport, const SplatSource& source);
+
+// Rays from a source through the cells of its reflective shadow map. Cells of a map partition what
+// the source emits: the ray goes anywhere within its cell, and the flux divided by the number of
+// cells is an unbiased estimate of the cell's.
+
+// A source with what its rays have in common.
+struct SourceAim {
+  const Transport& transport;
+  const SplatSource& source;
+  vec3 along{0}, across{0}, axis{0, 0, -1};  // right-handed frame around its direction
+  float outer = -1, scale = 1;               // of a spot: cosine, and fall-off as SpotCone has it
+  vec3 corner{0}, width{0}, height{0};       // window of parallel light
+  double power = 0;                          // of emitting triangles
+  // Emitting triangles are chosen in their order by ascending numbers: where the last choice was.
+  mutable uint32_t next = 0;
+  mutable double passed = 0;
+};
+struct SourceRay {
+  Ray ray;
+  vec3 flux{0};
+  float range = 0, spread = 0;  // spread: steradians, or square metres of parallel light
+  bool parallel = false;
+};
+struct MapCell {
+  int face, row, column, rows, columns, faces;
+};
+
+SourceAim aim_source(const Transport& transport, const SplatSource& source);
+// Width over height of the window or cap.
+float window_aspect(const Transport& transport, const SplatSource& source);
+// Cells of one row must be asked for in ascending order. `to.flux` and `to.spread`: as if the map
+// were this cell alone.
+void aim_at_cell(const SourceAim& aim, const MapCell& cell, Sampler& sampler, SourceRay& to);
 
 struct ReflectiveTexel {
   vec3 position{0};

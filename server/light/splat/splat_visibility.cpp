@@ -7,9 +7,59 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "light/splat/shadow_packet.h"
+#include "light/sample/light_tables.h"
+#include "light/sample/sample_light.h"
+#include "light/splat/splat_lights.h"
 
 namespace wellspring::light {
+
+namespace {
+constexpr float lift = 3e-4f;                 // off the surface, as a share of its depth
+constexpr float apart_share = -4 * 0x1p-23f;  // so many steps of a coordinate, in metres
+}  // namespace
+
+ShadowOrigin shadow_origin(vec3 place, vec3 normal, float depth, bool apart) {
+  SurfacePlace surface;
+  surface.position = place + normal * (lift * depth);
+  surface.geometric_normal = normal;
+  surface.extent = max_component(glm::abs(place));
+  if (apart) surface.extent *= apart_share;
+  return {offset_origin(surface, normal), normal};
+}
+
+void ShadowPacket::add(const ShadowOrigin& from, vec3 target, uint32_t item) {
+  const int i = count_++;
+  vec3 way = target - from.position;
+  rays_.origin_x[i] = from.position.x, rays_.origin_y[i] = from.position.y;
+  rays_.origin_z[i] = from.position.z;
+  rays_.direction_x[i] = way.x, rays_.direction_y[i] = way.y, rays_.direction_z[i] = way.z;
+  rays_.t_max[i] = 1;
+  from_[i] = from, target_[i] = target, item_[i] = item;
+}
+
+uint32_t ShadowPacket::find_blocked() const {
+  return transport_.world.occluded_each(rays_, uint32_t((1u << count_) - 1));
+}
+
+// What of the light arrives where something is in between.
+vec3 ShadowPacket::through_panes(int i) const {
+  if (!transport_.tables.any_pane) return vec3(0);
+  vec3 way = target_[i] - from_[i].position;
+  Ray ray;
+  ray.origin = from_[i].position;
+  ray.direction = way;
+  ray.t_max = 1;
+  float distance = length(way);
+  if (!(distance > 0) || !may_cross_pane(transport_.tables.pane_boxes, ray)) return vec3(0);
+  SurfacePlace place;
+  place.position = from_[i].position, place.geometric_normal = from_[i].normal;
+  LightSample sample;
+  sample.direction = way / distance;
+  sample.distance = distance;
+  sample.target = target_[i];
+  return eval_visibility(transport_, place, sample);
+}
+
 namespace {
 
 constexpr uint32_t none = 0xffffffffu;
@@ -308,6 +358,65 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
     }
   });
   return all_rays;
+}
+
+namespace {
+
+// Of light `i`; 1 where no probe would have any.
+vec3 find_share(const Transport& transport, std::span<const LitProbe> probes,
+                std::span<const ShadowOrigin> origins, int rays, const VirtualLights& lights,
+                size_t i, std::vector<float>& effect) {
+  float sum = 0;
+  for (size_t k = 0; k < probes.size(); k++)
+    sum += effect[k] = luminance(
+        bounded_light(eval_virtual_light(lights, i, probes[k].position, probes[k].normal)));
+  if (!(sum > 0) || !std::isfinite(sum)) return vec3(1);
+  // Evenly spaced numbers along the running sum, of each light others.
+  constexpr double golden = 0.6180339887498949;
+  double next = std::fmod(double(i) * golden, 1.0), passed = 0;
+  const double step = double(sum) / rays;
+  vec3 share(0);
+  ShadowPacket packet(transport);
+  auto arrive = [&](uint32_t, vec3 tint) { share += tint; };
+  for (size_t k = 0; k < probes.size(); k++)
+    for (passed += double(effect[k]) / step; next < passed; next++) {
+      packet.add(origins[k], lights.target[i], uint32_t(k));
+      if (packet.full()) packet.cast(arrive);
+    }
+  packet.cast(arrive);
+  return share / float(rays);
+}
+
+void move_light(VirtualLights& lights, size_t from, size_t to, vec3 share) {
+  for (RawVector<float>* column :
+       {&lights.x, &lights.y, &lights.z, &lights.nx, &lights.ny, &lights.nz, &lights.red,
+        &lights.green, &lights.blue, &lights.radius2})
+    (*column)[to] = (*column)[from];
+  lights.target[to] = lights.target[from];
+  lights.red[to] *= share.x, lights.green[to] *= share.y, lights.blue[to] *= share.z;
+}
+
+}  // namespace
+
+void dim_hidden_lights(const Transport& transport, std::span<const LitProbe> probes, int rays,
+                       VirtualLights& lights) {
+  if (probes.empty() || rays < 1) return;
+  std::vector<ShadowOrigin> origins;
+  const bool apart = transport.world.any_apart();
+  for (const LitProbe& probe : probes)
+    origins.push_back(shadow_origin(probe.position, probe.normal, probe.depth, apart));
+  std::vector<vec3> shares(static_cast<size_t>(lights.count));
+  parallel_ranges(lights.count, 16, [&](int begin, int end) {
+    std::vector<float> effect(probes.size());
+    for (int i = begin; i < end; i++)
+      shares[size_t(i)] = find_share(transport, probes, origins, rays, lights, size_t(i), effect);
+  });
+  int kept = 0;
+  for (int i = 0; i < lights.count; i++)
+    if (max_component(shares[size_t(i)]) > 0)
+      move_light(lights, size_t(i), size_t(kept++), shares[size_t(i)]);
+  lights.count = kept;
+  fill_up(lights);
 }
 
 }  // namespace wellspring::light

@@ -6,10 +6,54 @@
 // refined first. Those rays do not count for the light itself: a choice by what was measured would
 // bias it.
 #pragma once
+#include <span>
+
 #include "light/sample/transport.h"
+#include "light/splat/min_max_pyramid.h"
 #include "light/splat/splat_lights.h"
+#include "light/splat/virtual_lights.h"
+#include "world/world.h"
 
 namespace wellspring::light {
+
+// Shadow rays from what pixels see to virtual lights, collected until a packet is full.
+
+// Where rays leave a pixel's surface. Its normal may be a shading normal, and its depth be rounded.
+struct ShadowOrigin {
+  vec3 position{0}, normal{0, 1, 0};
+};
+// `apart`: World::any_apart().
+ShadowOrigin shadow_origin(vec3 place, vec3 normal, float depth, bool apart = false);
+
+// What arrives along one ray goes to the item that it was added for.
+class ShadowPacket {
+ public:
+  explicit ShadowPacket(const Transport& transport) : transport_(transport) {}
+  bool full() const { return count_ == RayPacket::lanes; }
+  void add(const ShadowOrigin& from, vec3 target, uint32_t item);
+  // Calls arrive(item, tint) for every ray that is not blocked, in the order of add(), and is
+  // empty.
+  template <class Arrive>
+  void cast(const Arrive& arrive) {
+    if (count_ == 0) return;
+    uint32_t blocked = find_blocked();
+    for (int i = 0; i < count_; i++) {
+      vec3 tint = blocked >> i & 1 ? through_panes(i) : vec3(1);
+      if (max_component(tint) > 0) arrive(item_[i], tint);
+    }
+    count_ = 0;
+  }
+
+ private:
+  uint32_t find_blocked() const;
+  vec3 through_panes(int i) const;
+  const Transport& transport_;
+  RayPacket rays_;
+  ShadowOrigin from_[RayPacket::lanes];
+  vec3 target_[RayPacket::lanes];
+  uint32_t item_[RayPacket::lanes];
+  int count_ = 0;
+};
 
 // Workspace, kept from picture to picture.
 struct SplatShadowRoom {
@@ -38,5 +82,15 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
                                const SplatSettings& settings, SplatSeed seed,
                                const Subsplats& subsplats, SplatShadowRoom& room,
                                IlluminationPyramid& to);
+
+// Shadows of virtual lights for the price of few rays, where each place cannot have its own: what
+// of a light arrives at the places that are seen, on average, is what arrives everywhere. So light
+// does not pass through walls, and a picture's light is right in the mean; that of places half in
+// shadow is not.
+
+// Dims each light by the share of its light that arrives at `probes`, by at most `rays` rays a
+// light, to probes that would have most of it. Lights that reach none are left out. All cores.
+void dim_hidden_lights(const Transport& transport, std::span<const LitProbe> probes, int rays,
+                       VirtualLights& lights);
 
 }  // namespace wellspring::light

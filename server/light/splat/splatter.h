@@ -18,6 +18,8 @@
 #include <span>
 #include <vector>
 
+#include "light/sample.h"
+#include "light/sample/lights.h"
 #include "light/splat/splat_lights.h"
 #include "light/splat/splat_visibility.h"
 #include "light/splat/upsample.h"
@@ -71,5 +73,27 @@ void splat_picture(const Transport& transport, const SplatLights& drawn, const S
 
 // About `count` lit places spread over the picture, into `probes`.
 void find_splat_probes(const SplatPixels& pixels, int count, std::vector<LitProbe>& probes);
+
+// Technique `multires_splatting`: samples are those of `direct`; of each pass over a picture, the
+// samples' places are the pixels on which virtual lights of all sources are splatted, drawn anew
+// for each pass. So the mean of many passes becomes direct light and one bounce.
+//
+// What remains different from `path` with a depth of 3: surfaces reflect the bounce as Lambert does
+// on both ends (no highlights, no caustics; rough metal counts as matte); what mirrors show has no
+// bounced light; subsplats blur the bounce between discontinuities, its shadows a little more; near
+// virtual lights it is bounded, by a radius that shrinks from pass to pass.
+
+// What one pass has drawn.
+struct SplatPass {
+  SplatLights drawn;
+  SplatSettings settings;
+  SplatSeed seed;
+};
+
+// Functions of the technique between samples (light/technique/technique.h).
+void begin_splat(const World& world, const TransportSettings& settings, const View& view,
+                 uint64_t seed, uint32_t index, Lights& lights);
+void finish_splat(const World& world, const Lights& lights, const View& view,
+                  std::span<Sample> samples);
 
 }  // namespace wellspring::light

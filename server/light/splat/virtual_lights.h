@@ -9,7 +9,7 @@
 #pragma once
 #include <span>
 
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "light/splat/reflective_shadow_map.h"
 
 namespace wellspring::light {

@@ -1,21 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/technique/technique.h"
 
-#include <atomic>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "base/raw_vector.h"
 #include "base/rng.h"
+#include "base/simd.h"
+#include "light/bake/finish_bake.h"
+#include "light/instant/edge_samples.h"
 #include "light/instant/instant_radiosity.h"
-#include "light/instant/instant_samples.h"
-#include "light/splat/splat_technique.h"
-#include "light/technique/pixel_requests.h"
-#include "light/technique/technique_list.h"
+#include "light/random/sampler.h"
+#include "light/sample/lamps_seen.h"
+#include "light/sample/light_tables.h"
+#include "light/sample/sample_light.h"
+#include "light/splat/splatter.h"
+#include "light/walk/walk.h"
 
 namespace wellspring::light {
+namespace {
+
+// view_ray's directions, a place inside each pixel.
+Lanes3 view_directions(const View& view, Lanes x, Lanes y) {
+  const float scale = 2 * view.tan_half_fov / float(view.height);
+  const vec2 axis = axis_place(view);
+  Lanes along = (x - axis.x) * scale;
+  Lanes upwards = (axis.y - y) * scale;
+  Lanes3 way =
+      all_lanes(view.forward) + all_lanes(view.right) * along + all_lanes(view.up) * upwards;
+  return way * (1 / lanes_sqrt(dot(way, way)));
+}
+
+}  // namespace
+
+void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelSample> which,
+                         std::span<Request> requests) {
+  uint64_t of_pixel = 0;
+  for (size_t first = 0; first < which.size(); first += lane_count) {
+    const int count = int(std::min(which.size() - first, size_t(lane_count)));
+    SamplerLanes jitter;
+    Lanes x{}, y{};
+    for (int i = 0; i < count; i++) {
+      const PixelSample& asked = which[first + size_t(i)];
+      Request& request = requests[first + size_t(i)];
+      const PixelSample* before = first + size_t(i) > 0 ? &which[first + size_t(i) - 1] : nullptr;
+      if (!before || before->x != asked.x || before->y != asked.y)
+        of_pixel = sample_seed(seed, uint32_t(asked.x), uint32_t(asked.y), 0);
+      request = Request();
+      request.pixel = uint32_t(asked.y) * uint32_t(view.width) + uint32_t(asked.x);
+      request.seed = of_pixel;
+      request.index = uint32_t(asked.index);
+      request.ray.origin = view.position;
+      request.ray.from_eye = true;
+      // A sequence apart from the sample's own.
+      jitter.set(i, Sampler(mix64(of_pixel ^ 0x6a09e667f3bcc909ull), request.index));
+      x[i] = float(asked.x), y[i] = float(asked.y);
+    }
+    Lanes u, v;
+    jitter.pair(LaneBits{}, u, v);
+    Lanes3 way = view_directions(view, x + u, y + v);
+    for (int i = 0; i < count; i++) requests[first + size_t(i)].ray.direction = way.at(i);
+  }
+}
+
 namespace {
 
 constexpr Technique list[] = {
@@ -203,6 +254,83 @@ Frame render_still(const Technique& technique, const World& world, const Lights&
     if (settings.progress) settings.progress(double(done += own) / double(pixels));
   });
   return frame;
+}
+
+// Technique `direct`: emission and the light that reaches a surface straight, seen also in chains
+// of perfect mirrors and glass. No light between rough surfaces.
+
+void trace_many_direct(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples) {
+  WalkRules rules;
+  rules.max_depth = settings.max_depth;
+  rules.scatterings = 1;
+  trace_samples({world, *lights.tables}, rules, requests, samples);
+  finish_samples(lights, settings, samples);
+}
+
+Sample trace_direct(const World& world, const Lights& lights, const TransportSettings& settings,
+                    const Request& request) {
+  Sample sample;
+  trace_many_direct(world, lights, settings, std::span(&request, 1), std::span(&sample, 1));
+  return sample;
+}
+
+// Technique `path`: unbiased path tracing, the reference.
+
+void trace_many_path(const World& world, const Lights& lights, const TransportSettings& settings,
+                     std::span<const Request> requests, std::span<Sample> samples) {
+  WalkRules rules;
+  rules.max_depth = settings.max_depth;
+  Transport transport{world, *lights.tables};
+  transport.maps = lights.maps.get();
+  trace_samples(transport, rules, requests, samples);
+  finish_samples(lights, settings, samples);
+}
+
+Sample trace_path(const World& world, const Lights& lights, const TransportSettings& settings,
+                  const Request& request) {
+  Sample sample;
+  trace_many_path(world, lights, settings, std::span(&request, 1), std::span(&sample, 1));
+  return sample;
+}
+
+// Technique `gather`: path tracing whose walks end where light is known (IlluminationMap). One
+// gathering bounce hides the map's nodes. Where nothing is known it is `path`.
+
+namespace {
+
+// So that what a Lambertian surface's rays meet has an alpha of 1/4, a roughness of 1/2.
+constexpr float blunt = 0.14f;
+
+}  // namespace
+
+void trace_many_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples) {
+  WalkRules rules;
+  rules.max_depth = settings.max_depth;
+  if (lights.known) rules.blunt = blunt;
+  rules.reads_maps = true;
+  trace_samples(
+      {world, *lights.tables, lights.known.get(), lights.lamps_seen.get(), lights.maps.get()},
+      rules, requests, samples);
+  finish_samples(lights, settings, samples);
+}
+
+Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                    const Request& request) {
+  Sample sample;
+  trace_many_gather(world, lights, settings, std::span(&request, 1), std::span(&sample, 1));
+  return sample;
+}
+
+void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {
+  if (!lights.tables->plan.uses(TransportPart::kept_light)) return;
+  lights.lamps_seen = learn_lamps_seen({world, *lights.tables}, places);
+  if (lights.known || places.empty()) return;
+  // Moving meshes would leave their shadows in light that is kept.
+  std::optional<World> still;
+  if (size_t(world.instance_count()) > world.scene().instances.size()) still.emplace(world.scene());
+  lights.known = make_bake_scene(still ? *still : world, places).known;
 }
 
 }  // namespace wellspring::light

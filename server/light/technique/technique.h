@@ -10,10 +10,37 @@
 #include "frame/frame.h"
 #include "light/sample.h"
 #include "light/sample/lights.h"
-#include "light/transport_settings.h"
+#include "light/transport_plan.h"
 #include "world/view.h"
 
 namespace wellspring::light {
+
+// What a still picture asks of its pixels, eight requests side by side.
+
+// Sample `index` of the picture's pixel (x, y).
+struct PixelSample {
+  int x = 0, y = 0, index = 0;
+};
+// requests[i] asks for which[i]; its seed is the pixel's. What is asked beside it does not matter.
+void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelSample> which,
+                         std::span<Request> requests);
+
+// The trace functions that technique.cpp lists, one file each; those of instant_radiosity are in
+// light/instant/instant_radiosity.h.
+
+Sample trace_path(const World& world, const Lights& lights, const TransportSettings& settings,
+                  const Request& request);
+void trace_many_path(const World& world, const Lights& lights, const TransportSettings& settings,
+                     std::span<const Request> requests, std::span<Sample> samples);
+Sample trace_direct(const World& world, const Lights& lights, const TransportSettings& settings,
+                    const Request& request);
+void trace_many_direct(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples);
+Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                    const Request& request);
+void trace_many_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples);
+void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights);
 
 struct Technique {
   const char* name;

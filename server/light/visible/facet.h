@@ -1,9 +1,131 @@
 // SPDX-License-Identifier: Apache-2.0
 // A triangle as a picture of it needs it: what every pixel of it has in common, looked up once.
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "base/simd.h"
+#include "base/vec.h"
+#include "light/material/material_use.h"
+#include "light/visible/guides.h"
+#include "light/walk/first_surface.h"
 #include "world/surface.h"
+#include "world/texture.h"
 
 namespace wellspring::light {
+
+// How a place reflects small lights as highlights: by GGX (glTF 2.0, appendix B), no clearcoat.
+
+// Highlights of rougher surfaces, of no metal, are not told from their diffuse light.
+inline constexpr float least_rough = 0.6f, least_metal = 0.05f;
+
+struct Gloss {
+  vec3 f0{0};  // reflectance towards the normal
+  float roughness = 1, metallic = 0;
+};
+
+// The same in two planes of a picture. `code`: roots of f0 in the low bytes, red first, then
+// roughness, each times 255; 0: no highlights.
+struct GlossCode {
+  uint32_t code = 0;
+  uint8_t metallic = 0;  // times 255
+};
+inline GlossCode pack_gloss(const Gloss& gloss) {
+  if (gloss.roughness >= least_rough && gloss.metallic < least_metal) return {};
+  auto byte = [](float x) { return uint32_t(255 * std::clamp(x, 0.0f, 1.0f) + 0.5f); };
+  GlossCode packed{byte(gloss.roughness) << 24, uint8_t(byte(gloss.metallic))};
+  for (int c = 0; c < 3; c++) packed.code |= byte(std::sqrt(gloss.f0[c])) << (8 * c);
+  return packed;
+}
+
+// Eight of them.
+struct GlossLanes {
+  Lanes f0[3], roughness, metallic;
+};
+inline GlossLanes unpack_gloss(const uint32_t* codes, const uint8_t* metallic) {
+  GlossLanes gloss;
+  for (int i = 0; i < lane_count; i++) {
+    for (int c = 0; c < 3; c++) {
+      const float root = float(codes[i] >> (8 * c) & 255) * (1 / 255.0f);
+      gloss.f0[c][i] = root * root;
+    }
+    gloss.roughness[i] = float(codes[i] >> 24) * (1 / 255.0f);
+    gloss.metallic[i] = float(metallic[i]) * (1 / 255.0f);
+  }
+  return gloss;
+}
+
+// What the visibility pass (light/visible/visibility.h) has to know of materials before it begins.
+
+// How the reflectance of a material is found.
+enum class Reflectance : uint8_t {
+  scaled,  // a factor times base colour, and no less than a floor
+  base,    // base colour and metallic of each place say all
+  traced,  // ask a ray
+};
+
+// What demodulated_albedo() makes of base colour.
+struct DemodulationScale {
+  float factor = 1, floor = 0;
+};
+inline Reflectance find_reflectance(const Material& m, MetalDemodulation metal,
+                                    DemodulationScale& scale) {
+  if (m.transmission > 0 || m.anisotropy > 0) return Reflectance::traced;
+  if (m.metallic > 0 && m.metallic_roughness_texture.texture >= 0) return Reflectance::base;
+  bool kept = metal != MetalDemodulation::none;
+  scale = {kept ? 1 : 1 - clean(m.metallic),
+           kept ? least_demodulated_metal * clean(m.metallic) : 0};
+  return Reflectance::scaled;
+}
+
+// RasterSettings::see_through of what is a clear pane everywhere.
+inline uint8_t pane_kind(const Material& m) {
+  bool clear = m.transmission == 1 && m.transmission_texture.texture < 0 && m.thickness == 0 &&
+               m.metallic == 0 && m.roughness == 0 && m.alpha_mode == AlphaMode::opaque && !m.unlit;
+  if (!clear || m.anisotropy > 0 || m.clearcoat > 0 || m.sheen_color != vec3(0)) return 0;
+  bool alike = m.base_color_texture.texture < 0 && m.specular_texture.texture < 0 &&
+               m.specular_color_texture.texture < 0 && m.normal_texture.texture < 0 &&
+               m.emission_texture.texture < 0;
+  return alike ? 1 : 2;
+}
+
+// Some place of it may be: what it shows is that of others (light/visible/guides.h).
+inline bool may_be_polished(const Material& m, TextureRanges& ranges) {
+  if (m.unlit) return false;
+  if (m.transmission > 0) return true;
+  float roughness = m.roughness * ranges.of(m.metallic_roughness_texture).low.y;
+  return roughness * roughness < polished_alpha;
+}
+
+// Some place of it has highlights (light/visible/facet.h), which are seen without rays.
+inline bool may_gloss(const Material& m, TextureRanges& ranges) {
+  if (m.unlit || m.transmission > 0) return false;
+  const TexelRange& range = ranges.of(m.metallic_roughness_texture);
+  return m.roughness * range.low.y < least_rough || m.metallic * range.high.z >= least_metal;
+}
+
+// Some place of it reflects light that depends on the view beyond what rough paint does.
+inline constexpr float least_matte = 0.5f;  // roughness, from which nothing shines
+inline bool may_shine(const Material& m, TextureRanges& ranges) {
+  if (m.unlit) return false;
+  const TexelRange& range = ranges.of(m.metallic_roughness_texture);
+  return m.metallic * range.high.z > 0 || m.roughness * range.low.y < least_matte ||
+         m.transmission > 0 || m.clearcoat > 0;
+}
+
+// All of it is diffuse but for a gloss so rough that it shows the light around as the diffuse layer
+// does: an illumination map says all of its light.
+inline constexpr float least_plain_roughness = 0.45f, most_plain_metal = 0.02f;
+inline bool is_plain(const Material& m, TextureRanges& ranges) {
+  if (m.unlit || m.transmission > 0 || m.alpha_mode == AlphaMode::blend || m.emission != vec3(0))
+    return false;
+  if (m.clearcoat > 0 || m.sheen_color != vec3(0)) return false;
+  const TexelRange& range = ranges.of(m.metallic_roughness_texture);
+  return m.roughness * range.low.y >= least_plain_roughness &&
+         m.metallic * range.high.z <= most_plain_metal;
+}
 
 // Where one of the material's pictures lies on a triangle.
 struct FacetPicture {
@@ -60,5 +182,33 @@ class FacetCache {
   uint64_t picture_ = ~uint64_t(0);
   Facet facets_[1 << bits];
 };
+
+// What one pixel sees of the triangle it shows (light/visible/facet.h), pictures averaged over the
+// pixel.
+
+// Pictures with their smaller selves, of all that a scene's reflectance is made of.
+struct Pictures {
+  const Scene* scene = nullptr;
+  std::vector<TexturePyramid> pyramids;  // of each image; empty where none is needed
+};
+
+// All cores.
+Pictures make_pictures(const Scene& scene);
+
+// A pixel's width in metres on the surface it sees: the root of its area there.
+inline float pixel_width(const Facet& f, float distance, float pixel_angle) {
+  const float cosine = f.plane_distance / distance;
+  return distance * pixel_angle / std::sqrt(std::max(cosine, 0.02f));
+}
+
+inline bool emits(const Facet& f) {
+  return (f.front || f.material->double_sided) && f.material->emission != vec3(0);
+}
+
+// `metal`: its material's; `pixel`: its width on the surface, metres.
+PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
+                     MetalDemodulation metal, const Hit& hit, float pixel);
+
+Gloss see_gloss(const Pictures& pictures, const Facet& f, vec2 barycentric, float pixel);
 
 }  // namespace wellspring::light

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/rgb9e5_simd.h"
-#include "light/material/gloss_albedo.h"
+#include "base/rgb9e5.h"
+#include "light/material/bsdf_gloss.h"
 #include "light/visible/visibility_impl.h"
 
 namespace wellspring::light {

@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "base/memory.h"
-#include "light/visible/describe_run.h"
 
 namespace wellspring::light {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "light/visible/see_through.h"
+#include "light/visible/guides.h"
 #include "world/raster/raster.h"
 
 namespace wellspring::light {
@@ -38,7 +38,7 @@ struct RunKnown {
   float gloss[RunSurface::most];
 };
 
-// Up to 64 pixels of a row, from (x, y) to the right. As light/visible/see_through.h answers for
+// Up to 64 pixels of a row, from (x, y) to the right. As light/visible/guides.h answers for
 // rays through the pixels' sampling places, but that normals are those of the mesh, without normal
 // maps, pictures are averaged over the pixel, and clear panes tint a part of the picture alike.
 class VisibleRun {
@@ -54,7 +54,7 @@ class VisibleRun {
   // Pixels that may see what is polished: their guides are those of what it shows
   // (light/visible/guides.h).
   uint64_t polished() const;
-  // Highlights of its pixels (light/visible/gloss.h); none where rays have seen them.
+  // Highlights of its pixels (light/visible/facet.h); none where rays have seen them.
   void gloss(uint32_t* codes, uint8_t* metallic) const;
   // Of its pixels that show what moves, as `surface` describes it (light/known/skin_light.h); of
   // others anything. Returns those, a bit each; none where rays have seen them. Rough gloss shows

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/simd3.h"
-#include "light/material/gloss_albedo.h"
+#include "base/simd.h"
+#include "light/material/bsdf_gloss.h"
 #include "light/sample/illumination_map.h"
 #include "light/visible/facet.h"
-#include "light/visible/shade_facet.h"
 #include "light/visible/visibility.h"
-#include "light/visible/visible_material.h"
 
 namespace wellspring::light {
 

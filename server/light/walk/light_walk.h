@@ -8,7 +8,7 @@
 #pragma once
 #include "light/sample/medium.h"
 #include "light/sample/sample_light.h"
-#include "light/walk/part_colors.h"
+#include "light/walk/walk.h"
 
 namespace wellspring::light {
 

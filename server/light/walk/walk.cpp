@@ -4,13 +4,30 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/material/bsdf_frame.h"
 #include "light/material/bsdf_gloss.h"
-#include "light/walk/part_colors.h"
-#include "light/walk/known_light.h"
+#include "light/material/bsdf_types.h"
 #include "light/random/warp.h"
+#include "light/walk/known_light.h"
 
 namespace wellspring::light {
+
+bool parts_colors(const Transport& transport, const Media& media, const Surface& surface) {
+  if (!transport.tables.plan.uses(TransportPart::dispersion)) return false;
+  const Material& material = transport.world.scene().materials[size_t(surface.material)];
+  return is_dispersive(surface, material) && owns_boundary(media, surface);
+}
+
+void part_colors(const Transport& transport, const Media& media, vec3 direction,
+                 const Surface& surface, const Wavelengths& carried, float u, Bsdf& bsdf,
+                 std::optional<WavelengthSpread>& spread) {
+  const Material& material = transport.world.scene().materials[size_t(surface.material)];
+  float outside = index_outside(transport, media, surface);
+  const DielectricAlbedo& albedo =
+      outside == 1 ? *transport.tables.materials[size_t(surface.material)].albedo
+                   : dielectric_albedo(std::max(material.ior / outside, outside / material.ior));
+  spread_wavelengths(surface, material, direction, albedo, carried, u, bsdf, spread, outside);
+}
+
 namespace {
 
 constexpr float wide = 1;           // density of rays among which shadows of what moves are lost

@@ -4,6 +4,8 @@
 // light and eye alike. The first surface is treated with more care, because its parts are told
 // apart in the Sample.
 #pragma once
+#include <optional>
+
 #include "light/material/dispersion.h"
 #include "light/material/lambert.h"
 #include "light/sample.h"
@@ -11,6 +13,18 @@
 #include "light/sample/sample_light.h"
 
 namespace wellspring::light {
+
+// Where walks meet what parts their colours (dispersion.h): a solid's own boundary, between the
+// indices on both its sides. Walks of the eye and of light ask the same.
+
+// Never true where the plan has no dispersion.
+bool parts_colors(const Transport& transport, const Media& media, const Surface& surface);
+
+// Of a ray of that direction, where parts_colors(): spread_wavelengths with what lies on both
+// sides.
+void part_colors(const Transport& transport, const Media& media, vec3 direction,
+                 const Surface& surface, const Wavelengths& carried, float u, Bsdf& bsdf,
+                 std::optional<WavelengthSpread>& spread);
 
 struct WalkRules {
   int max_depth = 8;          // edges, panes passed straight and what glass does not counted

@@ -8,19 +8,37 @@
 // begin -> Denoiser::advance() until done -> finish. Memory is borrowed from one picture to the
 // next.
 #pragma once
+#include <cstdint>
 #include <vector>
 
+#include "cache/point_image.h"
 #include "denoise/denoise.h"
 #include "frame/frame.h"
+#include "light/sample.h"
 #include "light/visible/guides.h"
+#include "light/visible/visibility.h"
 #include "picture/still/still_samples.h"
+#include "world/view.h"
 
 namespace wellspring::picture {
+
+// Guides of a picture at rest (light/visible/guides.h), from the visibility pass: the surface of
+// every pixel at a few places of it. Only of what may be polished a ray is asked, in the first
+// pass, as its guides are those of what it shows.
+
+inline constexpr int guide_places = 4;  // that antialias well enough
+
+// One visibility pass: adds what it sees at place `place` of the pixels, of guide_places. The first
+// makes the planes the view's size, begins anew and overwrites `followed`: not 0 of pixels whose
+// guides are a ray's, which the others leave alone.
+void add_still_guides(const World& world, const Lights& lights, const VisibilityPass& visibility,
+                      const View& view, RasterShows shows, int place, GuidePlanes& planes,
+                      std::vector<uint8_t>& followed);
 
 struct StillReconstruction {
   int width = 0, height = 0;      // of the picture
   GuidePlanes guides;             // of its pixels
-  std::vector<uint8_t> followed;  // picture/still/still_guides.h
+  std::vector<uint8_t> followed;  // picture/still/reconstruct_still.h
   std::vector<vec3> color;        // of its pixels: the input, then what was found
   std::vector<float> shares;      // of the mean, for squares of pixels
 };
@@ -35,5 +53,22 @@ void begin_reconstruction(const StillSamples& samples, const Frame& drawn, Denoi
 // Overwrites the frame's colours.
 void finish_reconstruction(const StillSamples& samples, const Denoiser& denoiser,
                            StillReconstruction& work, Frame& frame);
+
+// Which pixels are sampled while the view stands still: all of them in turn, so that any number of
+// samples is spread evenly: a quarter of a sample a pixel is one for each square of 2x2 pixels. The
+// samples of a pixel are those of its sequence (light/technique/technique.h).
+
+// Appends `count` requests for the samples [first, first + count) of the view's sequence.
+void plan_still(const View& view, uint64_t first, int count, uint64_t seed,
+                std::vector<Request>& requests);
+
+// The same where cells of the view count differently (PointImage::weight, of that view, which is
+// not empty): each time that its turn comes, a pixel has as many samples as its cell counts, once
+// in so many turns where that is less than one; none where `kept` has most_still_samples. Of a
+// pixel's sequence those after as many as `kept` has. Appends at most `count`, of at most a round
+// of all pixels. Returns which sample would come next.
+uint64_t plan_still(const View& view, uint64_t first, int count, uint64_t seed,
+                    const PointImage& image, const StillSamples& kept,
+                    std::vector<Request>& requests);
 
 }  // namespace wellspring::picture

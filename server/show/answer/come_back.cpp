@@ -9,7 +9,6 @@
 
 #include "base/log.h"
 #include "show/answer/groups.h"
-#include "show/answer/storyteller_orders.h"
 #include "show/state/lamps.h"
 #include "wire/limits.h"
 

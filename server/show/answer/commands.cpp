@@ -6,17 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "show/answer/cameras.h"
 #include "show/answer/come_back.h"
 #include "show/answer/events.h"
-#include "show/answer/follow_house.h"
 #include "show/answer/go.h"
 #include "show/answer/groups.h"
 #include "show/answer/idle.h"
-#include "show/answer/kiosk_window.h"
-#include "show/answer/storyteller_orders.h"
-#include "show/answer/trust.h"
 #include "show/count/count.h"
-#include "show/state/animations.h"
+#include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
 #include "wire/json.h"

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "show/answer/book.h"
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
-#include "show/state/animations.h"
+#include "show/state/in_view.h"
 #include "show/state/lamps.h"
 
 namespace wellspring::show {

@@ -6,9 +6,7 @@
 
 #include "show/answer/events.h"
 #include "show/answer/groups.h"
-#include "show/state/animations.h"
 #include "show/state/in_view.h"
-#include "show/visit/closer.h"
 #include "show/visit/route.h"
 
 namespace wellspring::show {

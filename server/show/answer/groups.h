@@ -4,6 +4,7 @@
 // moment after the last turn their view comes back. Who walks off is away until they return.
 #pragma once
 #include <optional>
+#include <string>
 
 #include "show/state/show.h"
 #include "wire/json.h"
@@ -21,5 +22,34 @@ void go_away(Visitor& visitor);
 // Where followers stand and look, from where their leader does; once a tick, after the leader has
 // moved. Tells those whose leader has left.
 void follow_leader(Show& show, Visitor& visitor, float dt);
+
+// Where the screens of kiosks are in the exhibit.
+
+// Where a kiosk's screen is a window: its own viewpoint, that of its storyteller, or of whoever is
+// there; the exhibit's start where there is nobody. Index into Exhibit::viewpoints.
+int kiosk_viewpoint(const Show& show, const std::string& kiosk);
+View kiosk_window(const Show& show, const std::string& kiosk);
+
+// A step of a kiosk's page: while it stands at the kiosk's viewpoint, its picture is seen from
+// where the head before the screen is (show/kiosk/kiosk.h), as far as no wall is in the
+// way.
+void look_through(const Show& show, Visitor& page, float dt);
+
+// What visitors ask of the storyteller: to come, to go, to tell, to answer, to fall silent.
+
+// Carries it out, and gives who orders something a storyteller of their own where the exhibit does
+// not share it; the error to send back, if any.
+std::optional<WireError> handle_storyteller(Show& show, Visitor& visitor,
+                                            const StorytellerOrder& order);
+// The answer is sent to be read, and said where there is somebody to say it.
+std::optional<WireError> ask(Show& show, Visitor& visitor, const Ask& question);
+
+// The storyteller is there for those who are there: a story that was paused by somebody who has
+// left since is over, and so is any story when nobody is left. After visitors have left.
+void forget_absent_listeners(Show& show);
+// The storyteller says nothing more, and its subtitle goes.
+void fall_silent(Show& show, Teller& teller);
+// Subtitles go with what is broken off.
+void clear_subtitle(Visitor& visitor);
 
 }  // namespace wellspring::show

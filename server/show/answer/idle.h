@@ -16,4 +16,13 @@ void note_presence(Visitor& visitor, const BrowserMessage& message);
 // back as its first text.
 void watch_presence(Show& show, double dt);
 
+// What the house's day and its announcements are to the pages. What a closed house is to kiosks:
+// show/answer/orders.h.
+
+// Once a tick, before visitors are read.
+void follow_house(Show& show, Arrivals& arrivals);
+
+// To a page that has just been welcomed: how the house is, and what is announced at the moment.
+void tell_house(const Show& show, Visitor& visitor);
+
 }  // namespace wellspring::show

@@ -31,4 +31,29 @@ inline constexpr size_t most_waiting_orders = 32;
 // Carries out what is due of what the visitor has ordered; what is wrong is answered.
 void follow_orders(Show& show, Visitor& visitor);
 
+// The kiosks of a running show: each has its stage, its guests, and the storyteller while she is
+// there.
+
+// Once a tick, before the storyteller behaves. Steps every kiosk with what its cameras and pages
+// say; stops stories and tours of who has left; finds the kiosk that the storyteller is with, from
+// its first guest until its farewell is over; follows gestures; tells pages and cameras what is
+// new to them. Kiosks that no exhibit names live as long as a page or a camera of theirs.
+void follow_kiosks(Show& show);
+
+// What a page says at a kiosk's screen, or asks for there, is a touch.
+void note_touch(Visitor& visitor, const BrowserMessage& message);
+
+// The kiosk that the storyteller is with; null: none.
+Kiosk* her_kiosk(Show& show);
+
+// What guests before a kiosk ask for with a hand, as its page could with a touch. While the page
+// shows what it turns the pages of itself (book, topics, partners, slides), gestures are handed to
+// it in the kiosk message. Else digits: the story of that number. Swipes to the left, as a page is
+// turned: the next sentence, or where nobody is telling the next story that they have not heard. To
+// the right: the story again. Down: enough. (The storyteller herself answers a wave,
+// avatar/mind/body_language.h.)
+
+// Once a tick, after the kiosk's step. A gesture counts once, however long it is told.
+void follow_gestures(Show& show, Kiosk& kiosk);
+
 }  // namespace wellspring::show

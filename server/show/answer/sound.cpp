@@ -7,7 +7,7 @@
 
 #include "base/log.h"
 #include "show/answer/events.h"
-#include "wire/sound_packet.h"
+#include "wire/packet.h"
 
 namespace wellspring::show {
 

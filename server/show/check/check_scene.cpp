@@ -6,11 +6,10 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "base/near_name.h"
+#include "base/unicode.h"
 #include "light/bake/bake_file.h"
 #include "light/bake/map_file.h"
-#include "show/exhibit/exhibit_light.h"
-#include "show/check/scene_scale.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "world/view.h"
 
 namespace wellspring::show {

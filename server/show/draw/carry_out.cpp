@@ -8,7 +8,6 @@
 
 #include "base/clock.h"
 #include "show/draw/late_samples.h"
-#include "show/draw/moving.h"
 #include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"
 #include "show/draw/picture.h"

@@ -6,8 +6,13 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "cache/trace_waiting.h"
+#include "cache/broker.h"
+#include "light/technique/technique.h"
+#include "picture/compose_drawn.h"
+#include "picture/still/reconstruct_still.h"
+#include "show/draw/decide.h"
 #include "show/draw/pace.h"
+#include "show/state/lamps.h"
 #include "show/state/visitor_world.h"
 
 namespace wellspring::show {
@@ -52,6 +57,176 @@ void finish_samples(Show& show) {
         renderer.traced_seconds / double(renderer.brokers.size()) * charge_weight(show, visitor);
   }
   renderer.brokers.clear();
+}
+
+namespace {
+
+constexpr float predicted_share = 0.3f;  // of the samples, at most
+constexpr float barely_covered = 0.1f;   // of the pixels by points
+constexpr size_t least_slice = 2048;     // samples
+// Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
+constexpr double longest_slice = 0.025, least_slice_seconds = 0.006;
+constexpr double spread_from = 0.8;  // samples a pixel
+constexpr float more_asked = 1.2f;   // than there is time for, by what was measured: none is idle
+
+// Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
+// still camera's picture, waits for its own.
+bool may_be_late(const Show& show, const RenderCache& cache, const Technique& technique,
+                 int samples) {
+  return show.settings.late_samples && show.settings.display != Display::points &&
+         !technique.begin_pass && samples <= BrokerSettings{}.most_waiting &&
+         cache.covered() > barely_covered;
+}
+
+TransportSettings transport_of(const Show& show, const PictureJob& job) {
+  TransportSettings transport = show.settings.transport;
+  if (!job.settled) transport.clamp = show.settings.moving_clamp;
+  return transport;
+}
+
+// Where pictures are reconstructed, the first samples serve the drawn picture that it begins with;
+// later ones are spread evenly, but for some, aimed at points, to find what changes.
+bool spreads_samples(const PictureJob& job, const Technique& technique) {
+  return job.learns && !technique.begin_pass && job.rest.samples >= spread_from &&
+         !has_all_samples(job.rest);
+}
+
+// So many are traced at a time.
+size_t slice_of_samples(const Show& show) {
+  double seconds = std::clamp(show.renderer.until_moving, least_slice_seconds, longest_slice);
+  return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
+}
+
+// The same view in as many pixels as there are samples.
+View pass_view(const View& view, int samples) {
+  const double pixels = double(view.width) * double(view.height);
+  const double side = std::sqrt(std::min(std::max(double(samples), 1.0) / pixels, 1.0));
+  View pass = view;
+  pass.width = std::max(int(view.width * side), 1);
+  pass.height = std::max(int(view.height * side), 1);
+  return pass;
+}
+
+// A sample for each pixel of a pass.
+void plan_pass(const View& pass, uint64_t seed, uint32_t index, std::vector<Request>& requests) {
+  std::vector<PixelSample> which;
+  which.reserve(size_t(pass.width) * size_t(pass.height));
+  for (int y = 0; y < pass.height; y++)
+    for (int x = 0; x < pass.width; x++) which.push_back({x, y, int(index)});
+  requests.resize(which.size());
+  make_pixel_requests(pass, seed, which, requests);
+}
+
+// Requests of a pass belong to the pixels of `view` that their rays run through.
+void name_pixels(const View& view, std::vector<Request>& requests) {
+  for (Request& request : requests) {
+    Projected at = project_point(view, request.ray.origin + request.ray.direction);
+    bool inside = at.x >= 0 && at.y >= 0 && at.x < float(view.width) && at.y < float(view.height);
+    request.pixel = inside ? uint32_t(at.y) * uint32_t(view.width) + uint32_t(at.x) : no_pixel;
+  }
+}
+
+void spread_samples(const View& view, int count, Visitor& visitor, std::vector<Request>& requests) {
+  VisitorPicture& picture = visitor.picture;
+  uint64_t& asked = picture.costs.asked;
+  const PointImage& image = picture.cache.image();
+  if (image.weight.empty()) {
+    plan_still(view, asked, count, visitor.link->id, requests);
+    asked += uint64_t(count);
+  } else {
+    asked = plan_still(view, asked, count, visitor.link->id, image, picture.compositor.samples(),
+                       requests);
+  }
+}
+
+}  // namespace
+
+void take_answers(const Show& show, VisitorPicture& picture) {
+  land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
+}
+
+void plan_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
+                  Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
+  RenderCache& cache = picture.cache;
+  follow_lamps(show, visitor);
+  cache.set_attention(job.attention);
+  cache.set_weights(job.weights ? std::span(*job.weights) : std::span<const float>());
+  cache.set_reference(job.settled);
+  picture.compositor.set_reconstructed(job.learns);
+  cache.resize(job.expected.width, job.expected.height);
+  cache.move_points(*show.world);
+  take_answers(show, picture);
+  cache.project(job.view);
+  if (technique.finish_pass) {
+    work.pass = pass_view(job.view, job.samples);
+    return plan_pass(work.pass, visitor.link->id, uint32_t(job.tick), work.requests);
+  }
+  cache.attend();
+  int most_asked = int(more_asked * float(job.samples));
+  bool late = !job.still && may_be_late(show, cache, technique, most_asked);
+  int asked = late ? most_asked : job.samples;
+  work.ahead.clear();
+  if (job.ahead != job.view && !technique.begin_pass)
+    cache.predict(job.ahead, int(predicted_share * float(asked)), job.seed, work.ahead);
+  const int planned = asked - int(work.ahead.size());
+  const bool spread = spreads_samples(job, technique);
+  const int aimed = spread ? samples_to_watch(planned) : planned;
+  cache.plan(job.view, aimed, job.seed, work.requests);
+  if (spread) spread_samples(job.view, planned - aimed, visitor, work.requests);
+  work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
+  picture.costs.late = late;
+}
+
+bool begin_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
+                   Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
+  work.samples.clear();
+  work.traced = 0;
+  if (picture.costs.late) {
+    picture.broker.ask(job.view, {&technique, transport_of(show, job)}, work.requests);
+    return false;
+  }
+  picture.broker.forget();  // what was asked for on the way
+  work.pose = show.pose_number;
+  if (technique.begin_pass)
+    technique.begin_pass(*show.world, transport_of(show, job),
+                         technique.finish_pass ? work.pass : job.view, pass_seed(visitor.link->id),
+                         uint32_t(job.tick), show.lights);
+  return true;
+}
+
+bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work) {
+  size_t all = work.requests.size(), count = all - work.traced;
+  if (!technique.begin_pass) count = std::min(count, slice_of_samples(show));
+  work.samples.resize(all);
+  trace(technique, *show.world, show.lights, transport_of(show, job),
+        std::span(work.requests).subspan(work.traced, count),
+        std::span(work.samples).subspan(work.traced, count));
+  work.traced += count;
+  if (technique.finish_pass)
+    technique.finish_pass(*show.world, show.lights, work.pass, work.samples);
+  return work.traced < all;
+}
+
+void remember_traced(const Show& show, const PictureJob& job, const Technique& technique,
+                     DrawingWork& work, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
+  if (picture.costs.late) return;
+  work.requests.resize(work.traced);
+  work.samples.resize(work.traced);
+  if (technique.finish_pass) name_pixels(job.view, work.requests);
+  if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
+  if (show.settings.display == Display::points)
+    for (Sample& sample : work.samples) sample.glow = vec3(0);  // points show all light
+  picture.cache.remember(job.view, work.requests, work.samples);
+  picture.costs.samples = work.samples.size();
+  // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
+  bool kept_long = !job.passing && picture.cache.is_still();
+  if (!job.still || !(job.learns || kept_long)) return;
+  picture.compositor.follow_changes(picture.cache);
+  picture.compositor.add_samples(job.view, work.requests, work.samples);
+  picture.costs.kept_samples = mean_count(picture.compositor.samples());
 }
 
 }  // namespace wellspring::show

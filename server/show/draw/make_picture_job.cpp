@@ -5,10 +5,10 @@
 
 #include "base/rng.h"
 #include "picture/compose_drawn.h"
+#include "show/draw/decide.h"
 #include "show/draw/pace.h"
-#include "show/draw/sample_budget.h"
 #include "show/draw/steer.h"
-#include "show/state/animations.h"
+#include "show/state/in_view.h"
 #include "show/state/lamps.h"
 
 namespace wellspring::show {
@@ -56,7 +56,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   const bool hurried = job.keep && place.camera_cuts != picture.job.camera_cuts &&
                        count_moving(show) > int(!stands(show, visitor));
   job.dynamic = visitor.dynamic;
-  // Over pictures at rest their light is put with what moves (show/draw/moving.h).
+  // Over pictures at rest their light is put with what moves (show/draw/still_pass.h).
   const bool put_over = job.keep && show.visibility->rasterises(now);
   job.still =
       !hurried && (job.dynamic.empty() || put_over) && show.time - place.moved_at > still_after;

@@ -6,7 +6,7 @@
 #pragma once
 #include <vector>
 
-#include "show/state/browser_picture.h"
+#include "show/state/visitor.h"
 #include "wire/packet.h"
 
 namespace wellspring::show {

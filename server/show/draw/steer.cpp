@@ -9,7 +9,7 @@
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "show/draw/pace.h"
-#include "show/kiosk/screen_window.h"
+#include "show/kiosk/kiosk.h"
 #include "show/state/in_view.h"
 
 namespace wellspring::show {

@@ -5,9 +5,14 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/rng.h"
 #include "frame/tonemap.h"
-#include "show/draw/moving.h"
+#include "light/known/skin_light.h"
+#include "picture/compositor.h"
 #include "show/draw/make_picture_job.h"
+#include "show/draw/pace.h"
+#include "show/state/in_view.h"
+#include "show/state/visitor_world.h"
 
 namespace wellspring::show {
 namespace {
@@ -83,6 +88,147 @@ void watch_pass(Show& show) {
     pass.visitor = nullptr;
     show.totals.given_up++;
   }
+}
+
+namespace {
+
+constexpr int cycles = 2, first_cycles = 6;  // of smoothing; when it was not found for a while
+constexpr double a_while = 1.5;              // seconds
+constexpr int sight_rays = 64;               // that tell how large it is in a visitor's picture
+
+}  // namespace
+
+bool may_be_laid_over(const PictureWindow& window, const View& view) {
+  return 3 * size_t(window.width) * size_t(window.height) <=
+         size_t(view.width) * size_t(view.height);
+}
+
+void begin_skin_light(Show& show, const Visitor& visitor) {
+  SkinJob& job = show.renderer.skin;
+  job.update = {};
+  job.views.clear();
+  float pixels = 0;
+  bool alike = true;  // all see the same of what moves
+  for (const Visitor& one : show.visitors) {
+    const View& view = one.place.last_view;
+    if (!one.welcomed || !sees_moving(show, one, view)) continue;
+    alike &= see_the_same(show, one, visitor);
+    if (!see_the_same(show, one, visitor)) continue;
+    const float seen = see_skin(*show.world, show.skin, view, sight_rays, job.turn).pixels;
+    if (seen > 0) job.views.push_back(view);
+    pixels = std::max(pixels, seen);
+  }
+  job.update.views = job.views;
+  const SkinPace pace = plan_skin(pixels, double(show.samples_per_second), show.skin.samples);
+  job.update.samples = pace.samples;
+  job.interval = alike ? pace.interval : least_interval;  // others may be nearer
+  job.update.seed = mix64(show.ticks);
+  job.update.transport = show.settings.transport;
+  job.update.transport.clamp = show.settings.moving_clamp;
+  job.cycles = show.time - job.lit_at > a_while ? first_cycles : cycles;
+  job.time = show.time;
+  if (pace.samples > 0) job.lit_at = show.time;
+  job.turn++;
+  job.at_work = true;
+}
+
+void compute_skin_light(Show& show) {
+  SkinJob& job = show.renderer.skin;
+  job.traced = 0;
+  if (job.update.samples <= 0) return;
+  job.traced = size_t(update_skin(*show.world, show.lights, job.update, show.skin));
+  smooth_skin(*show.world, show.skin, job.cycles);
+}
+
+void finish_skin_light(Show& show) {
+  show.renderer.skin.at_work = false;
+  show.totals.samples += show.renderer.skin.traced;
+}
+
+namespace {
+
+// The light of lights that move on what stands still in the visitor's picture, and on what moves.
+void light_picture(Show& show, VisitorPicture& picture) {
+  Renderer& renderer = show.renderer;
+  DynamicImage& image = renderer.work.dynamic;
+  const DynamicLights& from = renderer.posed_lights;
+  const SplatSettings& settings = show.settings.dynamic;
+  const View& view = picture.keyframe.view;
+  BackdropSurfaces& surfaces = picture.surfaces;
+  SettledBounce& settled = picture.settled;
+  if (surfaces.view != view) {
+    find_backdrop_surfaces(*show.visibility, view, surfaces);
+    settled = {};
+  }
+  see_surfaces(*show.visibility, dynamic_light_view(view), image.surfaces, RasterShows::moving);
+  DynamicLights others = from;
+  take_settled(settled, others);
+  if (wants_pass(settled))
+    add_pass(*show.world, show.lights, surfaces.surfaces, settings, settled, image.bounce);
+  begin_bounce(*show.world, show.lights, others, surfaces.surfaces, settings, {}, image.bounce);
+  light_surfaces(*show.world, show.lights, from, surfaces.surfaces, settings, image.bounce,
+                 renderer.work.backdrop_light);
+  add_settled(settled, renderer.work.backdrop_light);
+  if (!settled.lights.empty())
+    begin_bounce(*show.world, show.lights, from, surfaces.surfaces, settings, {}, image.bounce);
+  light_surfaces(*show.world, show.lights, from, image.surfaces, settings, image.bounce,
+                 image.light);
+}
+
+}  // namespace
+
+void draw_moving(Show& show, Visitor& visitor) {
+  Renderer& renderer = show.renderer;
+  double began = seconds_now();
+  VisitorPicture& picture = visitor.picture;
+  const bool dynamic = !renderer.posed_lights.empty();
+  if (dynamic) light_picture(show, picture);
+  const BackdropLight relit{picture.surfaces, renderer.work.backdrop_light};
+  picture.compositor.set_dynamic(dynamic ? &renderer.work.dynamic : nullptr);
+  picture.compositor.draw_moving(*show.world, picture.keyframe, dynamic ? &relit : nullptr,
+                                 *show.visibility, Tonemap{show.exhibit.exposure},
+                                 renderer.posed_layer, renderer.work.moving_light,
+                                 renderer.work.moving);
+  renderer.posed_seconds = seconds_now() - began;
+}
+
+void finish_moving(Show& show, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
+  Renderer& renderer = show.renderer;
+  const bool is_first = picture.posed_at < 0;
+  picture.posed_at = renderer.posed_at;
+  MovingPicture& moving = renderer.work.moving;
+  // Else all of it is drawn anew.
+  const bool layer = renderer.posed_layer, relit = !renderer.posed_lights.empty();
+  const PictureWindow& moves = layer ? moving.layer.window : moving.window;
+  picture.backdrop &= relit || may_be_laid_over(moves, moving.view);
+  if (!picture.backdrop) return;
+  // An empty one says that nothing moves any more.
+  picture.layer_unsent = layer && (!moves.empty() || visitor.shown.has_layer);
+  float& smoothed = visitor.times.moving;
+  float milliseconds = float(1000 * renderer.posed_seconds);
+  smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
+  std::swap(moving, picture.moving);
+  picture.job.time_us = renderer.posed_us;
+  // A page that has what does not move in it need not hear of that again.
+  if (!layer || relit || is_first) picture.unshown = true;
+  show.totals.posed++;
+}
+
+void finish_backdrop(VisitorPicture& picture) {
+  picture.backdrop = picture.costs.backdrop;
+  picture.unshown = !picture.backdrop;
+  picture.posed_at = -1e9;
+  if (picture.backdrop && picture.moving.view == picture.keyframe.view) return;
+  picture.moving = {};
+  picture.layer_unsent = false;
+}
+
+void merge_moving(VisitorPicture& picture) {
+  if (picture.moving.empty()) return;
+  lay_over(picture.moving, picture.keyframe);
+  picture.moving = {};
+  picture.backdrop = false;
 }
 
 }  // namespace wellspring::show

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/near_name.h"
+#include "base/unicode.h"
 
 namespace wellspring::show {
 

@@ -7,17 +7,43 @@
 #include <string>
 #include <vector>
 
-#include "avatar/figure/character.h"
+#include "avatar/body/gesture.h"
 #include "avatar/face/expression.h"
-#include "avatar/body/gesture_library.h"
+#include "avatar/figure/character.h"
 #include "avatar/story/story_script.h"
-#include "show/exhibit/kiosk_settings.h"
-#include "show/lighting/changing_light.h"
 #include "show/lighting/day.h"
-#include "world/load/credit.h"
+#include "world/load/scene_join.h"
 #include "world/scene.h"
 
 namespace wellspring::show {
+
+// What a curator may say of a kiosk: `kiosks` of exhibit.json, all of it optional but the name.
+
+// Seconds that a kiosk waits; what they decide: show/kiosk/kiosk.h.
+struct KioskTimes {
+  double hold_person = 2;       // a head counts as there after it was last seen
+  double sleep_after = 30;      // without motion
+  double leave_after = 6;       // of who is engaged: without a head or a touch
+  double leave_untouched = 45;  // where no camera sees the guest: without a touch
+  double leave_playing = 90;    // likewise while something plays
+  double farewell = 6;          // its length
+  double sleep_latest = 20;     // from its beginning, where nothing moves after it
+};
+
+// Of the lit part of a screen, in metres; 0: unknown.
+struct ScreenSize {
+  float width = 0, height = 0;
+  bool known() const { return width > 0 && height > 0; }
+};
+
+struct KioskSettings {
+  std::string name;       // as its page and its cameras say it
+  std::string viewpoint;  // where its screen is a window; empty: the storyteller's for kiosks
+  std::string teller;     // a storyteller's id: who comes there; empty: whoever is there
+  float volume = 1;       // 0 to 1
+  ScreenSize screen;      // known: its picture follows the head of its guest
+  KioskTimes times;
+};
 
 using LocalText = std::map<std::string, std::string>;               // language tag -> text
 using LocalLine = std::map<std::string, StoryLine>;                 // language tag -> a sentence
@@ -111,7 +137,7 @@ struct ExhibitProp {
   std::string id, file;
   int side = 1;                     // of the hand that holds it: 0 left, 1 right
   std::string gesture = "hold_up";  // how the arm holds it: of the gesture library
-  mat4 to_fist{1};                  // from the file's metres to the fist's (avatar/body/grip.h)
+  mat4 to_fist{1};                  // from the file's metres to the fist's (avatar/body/hold.h)
   Flicker flicker;                  // of its lights
   Scene scene;                      // of the file
 };

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "show/exhibit/media_file.h"
+#include "show/exhibit/exhibit_files.h"
 
 namespace wellspring::show {
 namespace {

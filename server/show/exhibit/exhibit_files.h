@@ -6,6 +6,32 @@
 
 namespace wellspring::show {
 
+// Pictures, films and sounds of a package that browsers will be given: whether they can show them,
+// by the bytes, not by the name.
+
+enum class Medium { image, video, sound };
+
+inline constexpr uint64_t most_image_bytes = 8 << 20, most_video_bytes = 60 << 20,
+                          most_sound_bytes = 8 << 20;
+inline constexpr int longest_image_side =
+    4096;  // pixels; screens show no more, and memory is finite
+
+// The media type of a file by its first bytes: JPEG and PNG; WebM and MP4; Ogg, MP3, WAV, FLAC.
+// Empty: none that all browsers show.
+std::string media_type(Medium medium, std::string_view first_bytes);
+
+// Adds the file `name` of the package to exhibit.files. False with a problem noted at `field` when
+// it cannot be served, or without one when `name` is empty. Reads all of it: images are decoded.
+bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const std::string& name,
+                     Medium medium);
+
+// Files of an exhibit package, named in its JSON.
+
+// The path of a file inside the package's folder that is there. Empty when not, with the problem
+// noted at `field`; also for an empty name.
+std::string package_file(Fields& fields, const char* field, const std::string& folder,
+                         const std::string& name);
+
 // Reads "scene" or "scenes", "scale", "light_scale" and "environment". Where a file cannot be read
 // exhibit.scene.objects is empty.
 void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems);

@@ -2,9 +2,22 @@
 // The lights of a package that move or change, and its hour of the day, out of its exhibit.json:
 // see content/README.md.
 #pragma once
+#include <optional>
+
+#include "show/exhibit/exhibit.h"
 #include "show/exhibit/json_fields.h"
+#include "world/world.h"
 
 namespace wellspring::show {
+
+// The lamps that a package names, out of its exhibit.json: see content/README.md.
+
+// Fills exhibit.lamps, and exhibit.scene.lamps one for one. Call when the scene is there.
+void read_lamps(Exhibit& exhibit, Fields& root);
+
+// As the exhibit is at first: which of its lamps are on, and the scene's.
+std::vector<char> first_lamps(const Exhibit& exhibit);
+LampLevels first_levels(const Exhibit& exhibit);
 
 // What the object "flicker" says; nothing: the light is steady.
 Flicker read_flicker(Fields& fields);
@@ -24,5 +37,15 @@ void take_lights(Exhibit& exhibit);
 void put_lights(const std::vector<ChangingLight>& lights, double time, Scene& scene);
 // Likewise the sun of that hour in place of the scene's.
 void put_sun(const Day& day, double hour, Scene& scene);
+
+// How bright an exhibit is, as a light meter at its viewpoints has it.
+
+// The exposure with which what is seen from the viewpoints (each counts the same) is well lit: the
+// light that falls on it, not what it reflects, so that a black statue stays black. From a coarse
+// picture of each of the first 16 viewpoints, lamps as they are at first. The same bits each time.
+// Nothing where no light is found. Tenths of a second, on all cores. `world` is of exhibit.scene.
+std::optional<float> measure_exposure(const Exhibit& exhibit, World& world);
+// The same with a world of its own; 1 where no light is found.
+float measure_exposure(const Exhibit& exhibit);
 
 }  // namespace wellspring::show

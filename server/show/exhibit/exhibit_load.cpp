@@ -4,25 +4,17 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "avatar/load/character_load.h"
 #include "avatar/face/expression_sum.h"
-#include "base/cancel.h"
+#include "avatar/load/character_load.h"
 #include "base/load_error.h"
 #include "base/log.h"
-#include "show/exhibit/exhibit_animations.h"
+#include "base/worker.h"
 #include "show/exhibit/exhibit_book.h"
 #include "show/exhibit/exhibit_files.h"
-#include "show/exhibit/exhibit_kiosks.h"
-#include "show/exhibit/exhibit_lamps.h"
-#include "show/exhibit/exhibit_light.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "show/exhibit/exhibit_objects.h"
-#include "show/exhibit/exhibit_props.h"
-#include "show/exhibit/exhibit_questions.h"
 #include "show/exhibit/exhibit_story.h"
 #include "show/exhibit/json_fields.h"
-#include "show/exhibit/media_file.h"
-#include "show/exhibit/package_file.h"
 
 namespace wellspring::show {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads and validates a whole exhibit package; every problem is listed with file and place, not
 // only the first. Blocks on the disk; called at start and by `./wellspring check`; may be cancelled
-// (base/cancel.h).
+// (base/worker.h).
 #pragma once
 #include <string>
 #include <vector>
 
 #include "show/exhibit/exhibit.h"
-#include "show/exhibit/problem.h"
+#include "show/exhibit/json_fields.h"
 
 namespace wellspring::show {
 

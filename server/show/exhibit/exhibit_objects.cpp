@@ -2,10 +2,18 @@
 #include "show/exhibit/exhibit_objects.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "base/near_name.h"
+#include "avatar/body/hold.h"
+#include "avatar/figure/rig.h"
+#include "base/load_error.h"
+#include "base/unicode.h"
+#include "show/exhibit/exhibit_files.h"
+#include "show/exhibit/exhibit_lights.h"
+#include "world/load/scene_load.h"
+#include "world/motion/scene_motion.h"
 
 namespace wellspring::show {
 
@@ -121,6 +129,319 @@ void read_objects(Exhibit& exhibit, Fields& root) {
     fields.finish();
     exhibit.points.push_back(std::move(point));
   });
+}
+
+namespace {
+
+constexpr double turn_degree = 3.14159265358979323846 / 180;
+constexpr const char* side_names[] = {"left", "right"};
+
+// From the hand to the farthest corner.
+float reach_of(const ExhibitProp& prop) {
+  float reach = 0;
+  for (const Instance& instance : prop.scene.instances)
+    for (const vec3& p : prop.scene.meshes[size_t(instance.mesh)].positions)
+      reach = std::max(reach, glm::length(vec3(prop.to_fist * instance.to_world * vec4(p, 1))));
+  for (const PunctualLight& light : prop.scene.lights)
+    reach = std::max(reach, glm::length(vec3(prop.to_fist * vec4(light.position, 1))));
+  return reach;
+}
+
+// What makes it too much for a hand; empty: nothing.
+std::string too_much(const ExhibitProp& prop) {
+  const Scene& scene = prop.scene;
+  if (scene.instances.empty()) return "has nothing to hold";
+  if (size_t count = triangle_count(scene); count > most_prop_triangles)
+    return fmt::format("has {} triangles; at most {} are held", count, most_prop_triangles);
+  size_t texels = 0;
+  for (const Image& image : scene.images) texels += size_t(image.width) * size_t(image.height);
+  if (texels > most_prop_texels)
+    return fmt::format("has pictures of {} texels together; at most {} are held", texels,
+                       most_prop_texels);
+  if (scene.lights.size() > most_prop_lights)
+    return fmt::format("has {} lights; at most {} are held", scene.lights.size(), most_prop_lights);
+  for (const PunctualLight& light : scene.lights)
+    if (light.type == PunctualType::directional)
+      return "has a directional light; those of a lamp are point and spot";
+  if (float reach = reach_of(prop); reach > farthest_prop)
+    return fmt::format("reaches {:.3g} m from the hand; at most {} m are held", reach,
+                       farthest_prop);
+  return "";
+}
+
+void read_file(const Exhibit& exhibit, Fields& fields, ExhibitProp& prop,
+               std::vector<Problem>& problems) {
+  const std::string path = package_file(fields, "file", exhibit.folder, prop.file);
+  if (path.empty()) return;
+  try {
+    SceneLoadOptions options;
+    options.package = exhibit.folder;
+    prop.scene = load_scene(path, options);
+  } catch (const LoadError& error) {
+    problems.push_back({error.file, error.where, error.what_});
+    return;
+  }
+  prop.to_fist = mat4(dmat4(prop.to_fist) * glm::translate(dmat4(1), prop.scene.origin));
+  prop.scene.origin = dvec3(0);
+  for (const std::string& warning : prop.scene.warnings)
+    problems.push_back({path, "", warning, false});
+  if (const std::string wrong = too_much(prop); !wrong.empty())
+    fields.problem("file", "'" + prop.file + "' " + wrong);
+}
+
+// The gesture of every storyteller's library, and hands.
+void check_hands(const Exhibit& exhibit, Fields& fields, const ExhibitProp& prop) {
+  for (const StorytellerPlace& place : exhibit.storytellers) {
+    const GestureLibrary& library = place.gestures ? *place.gestures : default_gestures();
+    const int clip = find_gesture(library, prop.gesture);
+    std::vector<std::string> holding;
+    for (const GestureClip& one : library.clips)
+      if (can_hold(one)) holding.push_back(one.name);
+    if (clip < 0) {
+      fields.problem("gesture", "there is no gesture '" + prop.gesture + "'" +
+                                    did_you_mean(prop.gesture, holding));
+      return;
+    }
+    if (!can_hold(library.clips[size_t(clip)])) {
+      fields.problem("gesture", "the gesture '" + prop.gesture +
+                                    "' can hold nothing: its \"hold\" must lie well after its "
+                                    "\"stroke\", and as far before its end");
+      return;
+    }
+    if (!place.character.joints.empty() &&
+        make_rig(place.character).arm[size_t(prop.side)].wrist < 0)
+      fields.problem("hand",
+                     "the figure of '" + place.id + "' has no " + side_names[prop.side] +
+                         " hand: nothing is seen in it",
+                     false);
+  }
+}
+
+void read_prop(Exhibit& exhibit, Fields fields, std::vector<Problem>& problems) {
+  ExhibitProp prop;
+  prop.id = fields.text("id", true);
+  if (find_prop(exhibit, prop.id) >= 0)
+    fields.problem("id", "'" + prop.id + "' is taken by another prop");
+  if (prop.id == "nothing") fields.problem("id", "'nothing' is what a free hand holds");
+  const std::string hand = fields.text("hand", false, "right");
+  if (hand != "left" && hand != "right") fields.problem("hand", "is 'left' or 'right'");
+  prop.side = hand == "left" ? 0 : 1;
+  prop.gesture = fields.text("gesture", false, prop.gesture);
+  prop.flicker = read_flicker(fields);
+  fields.object("grip", false, [&](Fields grip) {
+    const dvec3 place = grip.triple("position", false);
+    const dvec3 turn = grip.triple("turn_deg", false) * turn_degree;
+    dmat4 to_fist = glm::rotate(dmat4(1), turn.z, dvec3(0, 0, 1));
+    to_fist = glm::rotate(to_fist, turn.y, dvec3(0, 1, 0));
+    to_fist = glm::rotate(to_fist, turn.x, dvec3(1, 0, 0));
+    prop.to_fist = mat4(glm::translate(to_fist, -place));
+    grip.finish();
+  });
+  prop.file = fields.text("file", true);
+  read_file(exhibit, fields, prop, problems);
+  check_hands(exhibit, fields, prop);
+  fields.finish();
+  if (exhibit.props.size() == most_props)
+    fields.problem("",
+                   fmt::format("is one more than the {} props an exhibit may have", most_props));
+  else exhibit.props.push_back(std::move(prop));
+}
+
+}  // namespace
+
+void read_props(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
+  root.objects("props", false,
+               [&](Fields fields) { read_prop(exhibit, std::move(fields), problems); });
+}
+
+std::vector<vec3> eye_places(const Exhibit& exhibit) {
+  std::vector<vec3> places;
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
+    places.push_back(vec3(viewpoint.view.position - exhibit.scene.origin));
+  for (size_t i = 1, count = places.size(); i < count; i++)
+    places.push_back(0.5f * (places[i - 1] + places[i]));
+  return places;
+}
+
+std::vector<vec3> all_eye_places(const Exhibit& exhibit) {
+  constexpr int most_along = 9;
+  std::vector<vec3> places = eye_places(exhibit);
+  if (!exhibit.walk || !exhibit.walk->bounds) return places;
+  const auto& bounds = *exhibit.walk->bounds;
+  const dvec3 size = bounds.high - bounds.low;
+  const double step = std::max(size.x, size.z) / most_along;
+  if (!(step > 0)) return places;
+  for (double x = bounds.low.x + 0.5 * step; x < bounds.high.x; x += step)
+    for (double z = bounds.low.z + 0.5 * step; z < bounds.high.z; z += step)
+      places.push_back(vec3(dvec3(x, bounds.low.y + double(exhibit.walk->eye_height), z) -
+                            exhibit.scene.origin));
+  return places;
+}
+
+namespace {
+
+// Of edges of what moves: light is kept at its vertices.
+constexpr double longest_edge = 0.12;  // metres
+constexpr size_t most_named = 8;       // animations in a message
+constexpr size_t most_mover_triangles = 40'000;
+
+// Of one file's, or of all where none is named.
+struct Clips {
+  const Scene& scene;
+  std::string file;
+  bool has(const PlacedMotion& motion) const { return file.empty() || motion.of->file == file; }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const PlacedMotion& motion : scene.motions)
+      for (const gltf::Clip& clip : motion.of->clips)
+        if (has(motion)) names.push_back(clip.name);
+    return names;
+  }
+
+  bool find(const std::string& name, ExhibitAnimation& animation) const {
+    for (size_t m = 0; m < scene.motions.size(); m++) {
+      const std::vector<gltf::Clip>& clips = scene.motions[m].of->clips;
+      const auto found = std::ranges::find(clips, name, &gltf::Clip::name);
+      if (found == clips.end() || !has(scene.motions[m])) continue;
+      animation.motion = int(m), animation.clip = int(found - clips.begin());
+      animation.seconds = gltf::length_of(*found);
+      return true;
+    }
+    return false;
+  }
+
+  std::string unknown(const std::string& name) const {
+    const std::vector<std::string> all = names();
+    const std::string where = file.empty() ? "the scene" : "'" + file + "'";
+    if (all.empty()) return where + " has no animations";
+    std::string some;
+    for (size_t i = 0; i < all.size() && i < most_named; i++)
+      some += (i > 0 ? ", '" : "'") + all[i] + "'";
+    return where + " has no animation '" + name + "'" + did_you_mean(name, all) + "; there is " +
+           some + (all.size() > most_named ? ", ..." : "");
+  }
+};
+
+// What it moves besides meshes stays where it is.
+void check_lights(const Exhibit& exhibit, const ExhibitAnimation& animation, Fields& fields) {
+  const Scene& scene = exhibit.scene;
+  const SceneMotion& motion = *scene.motions[size_t(animation.motion)].of;
+  const gltf::Clip& clip = motion.clips[size_t(animation.clip)];
+  if (std::ranges::none_of(motion.movers,
+                           [&](const Mover& one) { return moves(motion, clip, one); }))
+    fields.problem("clip", "the animation '" + clip.name + "' moves nothing that can be seen",
+                   false);
+  for (size_t i = 0; i < motion.movers.size(); i++) {
+    const int instance = scene.motions[size_t(animation.motion)].instances[i];
+    if (instance < 0 || !moves(motion, clip, motion.movers[i])) continue;
+    const Mesh& mesh = scene.meshes[size_t(scene.instances[size_t(instance)].mesh)];
+    const Material& material = scene.materials[size_t(mesh.material)];
+    if (material.emission == vec3(0)) continue;
+    fields.problem("clip",
+                   "'" + scene.objects[scene.instances[size_t(instance)].object] +
+                       "' shines and moves: it is seen to shine, and lights nothing",
+                   false);
+    return;
+  }
+}
+
+void read_animation(Exhibit& exhibit, Fields fields) {
+  ExhibitAnimation animation;
+  animation.id = fields.text("id", true);
+  if (std::ranges::find(exhibit.animations, animation.id, &ExhibitAnimation::id) !=
+      exhibit.animations.end())
+    fields.problem("id", "'" + animation.id + "' is taken by another animation");
+  animation.title = fields.local_text("title", false);
+  const std::string start = fields.text("play", false, "loop");
+  if (start != "loop" && start != "touch") fields.problem("play", "is 'loop' or 'touch'");
+  if (start == "touch") animation.start = ExhibitAnimation::Start::touch;
+  const bool touched = animation.start == ExhibitAnimation::Start::touch;
+  animation.shared = fields.flag("shared", !touched);
+  if (!animation.shared && !touched)
+    fields.problem("shared", "what plays by itself does so for everybody");
+  const std::string object = fields.text("object", touched);
+  if (const PointOfInterest* point = find_point(exhibit, object))
+    animation.point = int(point - exhibit.points.data());
+  else if (!object.empty()) fields.problem("object", unknown_object(exhibit, object));
+  const std::string clip = fields.text("clip", true);
+  const bool loaded = !exhibit.scene.objects.empty();
+  const Clips clips{exhibit.scene, fields.text("file", false)};
+  if (clips.find(clip, animation)) {
+    if (animation.seconds > 0) check_lights(exhibit, animation, fields);
+    else fields.problem("clip", "the animation '" + clip + "' takes no time");
+  } else if (loaded && !clip.empty()) {
+    fields.problem("clip", clips.unknown(clip));
+  }
+  fields.finish();
+  exhibit.animations.push_back(std::move(animation));
+}
+
+// Two of them at one node would pull it to and fro.
+void check_shared_nodes(const Exhibit& exhibit, Fields& root) {
+  for (size_t a = 0; a < exhibit.animations.size(); a++)
+    for (size_t b = 0; b < a; b++) {
+      const ExhibitAnimation &one = exhibit.animations[a], &other = exhibit.animations[b];
+      if (one.seconds <= 0 || other.seconds <= 0 || one.motion != other.motion) continue;
+      const SceneMotion& motion = *exhibit.scene.motions[size_t(one.motion)].of;
+      for (const gltf::Track& track : motion.clips[size_t(one.clip)].tracks)
+        for (const gltf::Track& same : motion.clips[size_t(other.clip)].tracks)
+          if (track.node == same.node && track.path == same.path) {
+            root.problem(
+                "animations",
+                "'" + other.id + "' and '" + one.id + "' move the same node: the later one is seen",
+                false);
+            return;
+          }
+    }
+}
+
+}  // namespace
+
+void read_animations(Exhibit& exhibit, Fields& root) {
+  root.objects("animations", false,
+               [&](Fields fields) { read_animation(exhibit, std::move(fields)); });
+  if (exhibit.animations.size() > most_animations)
+    root.problem("animations", fmt::format("are more than {}", most_animations));
+  check_shared_nodes(exhibit, root);
+}
+
+void take_movers(Exhibit& exhibit) {
+  Scene& scene = exhibit.scene;
+  std::vector<char> taken(scene.instances.size(), 0);
+  for (size_t m = 0; m < scene.motions.size(); m++) {
+    PlacedMotion& placed = scene.motions[m];
+    auto own = std::make_shared<SceneMotion>(*placed.of);
+    own->movers.clear();
+    for (size_t i = 0; i < placed.of->movers.size(); i++) {
+      const Mover& mover = placed.of->movers[i];
+      const bool moved = std::ranges::any_of(exhibit.animations, [&](const auto& animation) {
+        return size_t(animation.motion) == m && animation.seconds > 0 &&
+               moves(*own, own->clips[size_t(animation.clip)], mover);
+      });
+      if (!moved) continue;
+      const Instance& instance = scene.instances[size_t(placed.instances[i])];
+      exhibit.movers.push_back({int(m), int(own->movers.size()),
+                                scene.meshes[size_t(instance.mesh)].material, instance.object});
+      taken[size_t(placed.instances[i])] = 1;
+      own->movers.push_back(mover);
+      const dmat4 to_world = placed.to_world * own->nodes[mover.node].global;
+      const double scale =
+          std::max({glm::length(dvec3(to_world[0])), glm::length(dvec3(to_world[1])),
+                    glm::length(dvec3(to_world[2]))});
+      subdivide(own->movers.back(), scale, longest_edge, most_mover_triangles);
+    }
+    placed.instances.assign(own->movers.size(), -1);
+    placed.of = std::move(own);
+  }
+  if (exhibit.movers.empty()) {
+    scene.motions.clear();
+    return;
+  }
+  size_t kept = 0;
+  for (size_t i = 0; i < taken.size(); i++)
+    if (!taken[i]) scene.instances[kept++] = scene.instances[i];
+  scene.instances.resize(kept);
 }
 
 }  // namespace wellspring::show

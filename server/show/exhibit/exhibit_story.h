@@ -23,4 +23,15 @@ VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& oth
 // are there, and languages have as many sentences as each other. What is not is not fatal.
 void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems);
 
+// Questions that a curator has answered, out of exhibit.json: see content/README.md.
+
+void read_questions(Exhibit& exhibit, Fields& root);  // fills exhibit.questions
+
+// The kiosks of a package.
+
+// `kiosks` of exhibit.json, or of a house's file, which is read after it: what it says of a kiosk
+// takes the place of what was said. The viewpoints and storytellers that they name are read
+// already.
+void read_kiosks(Exhibit& exhibit, Fields& root);
+
 }  // namespace wellspring::show

@@ -7,11 +7,27 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/near_name.h"
 #include "base/unicode.h"
 #include "wire/json.h"
 
 namespace wellspring::show {
+namespace {
+
+std::string join(const std::vector<Problem>& problems) {
+  std::string all;
+  for (const Problem& problem : problems)
+    if (problem.fatal) all += (all.empty() ? "" : "\n") + to_string(problem);
+  return all;
+}
+
+}  // namespace
+
+std::string to_string(const Problem& problem) {
+  return problem.file + (problem.where.empty() ? "" : ": " + problem.where) + ": " + problem.what;
+}
+
+ExhibitError::ExhibitError(std::vector<Problem> problems_)
+    : std::runtime_error(join(problems_)), problems(std::move(problems_)) {}
 
 using nlohmann::json;
 

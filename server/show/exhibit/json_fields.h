@@ -5,13 +5,27 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "show/exhibit/exhibit.h"
-#include "show/exhibit/problem.h"
 
 namespace wellspring::show {
+
+// What is wrong with an exhibit package: every fault is noted with file and place, not only the
+// first.
+
+struct Problem {
+  std::string file, where, what;
+  bool fatal = true;  // false: the exhibit runs, but a curator should know
+};
+std::string to_string(const Problem& problem);  // "file: where: what"
+
+struct ExhibitError : std::runtime_error {
+  std::vector<Problem> problems;
+  explicit ExhibitError(std::vector<Problem> problems);
+};
 
 bool is_language_tag(const std::string& tag);
 

@@ -10,7 +10,19 @@
 #include <string>
 #include <vector>
 
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/json_fields.h"
+
 namespace wellspring::show {
+
+// What the house says on all screens.
+
+struct Announcement {
+  uint32_t id = 0;     // grows with each
+  LocalText text;      // empty: the last is taken back
+  double seconds = 0;  // that it stays
+  bool urgent = false;
+};
 
 inline constexpr int minutes_a_day = 24 * 60;
 
@@ -50,5 +62,14 @@ HouseState house_at(const HouseSettings& settings, const LocalTime& now);
 
 // Of a kiosk whose own volume is `own`: quiet hours make none louder.
 float kiosk_volume(const HouseSettings& settings, const HouseState& house, float own);
+
+// The house file of `./wellspring run --house FILE` (docs/kiosk.md), checked as an exhibit is.
+
+// Never throws; what is wrong is in `problems`. Its `kiosks` come into the exhibit: what is said of
+// one that is there already takes the place of what was said.
+HouseSettings read_house(const std::string& file, Exhibit& exhibit, std::vector<Problem>& problems);
+
+// As above. Throws ExhibitError where a problem is fatal; logs the others.
+HouseSettings load_house(const std::string& file, Exhibit& exhibit);
 
 }  // namespace wellspring::show

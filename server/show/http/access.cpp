@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/http/access.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "show/exhibit/json_fields.h"
+#include "wire/json.h"
 
 namespace wellspring::show {
 
@@ -43,6 +47,60 @@ UpgradeAnswer admit(const AccessRules& rules, const HttpQuestion& question) {
   return {refuse("not_trusted",
                  "a kiosk's camera on another machine needs a kiosk token: Authorization: Bearer "
                  "TOKEN, one of the server's WELLSPRING_KIOSK_TOKEN or --kiosk-token-file")};
+}
+
+using nlohmann::json;
+
+namespace {
+
+HttpReply reply_of(int status, const json& body) {
+  HttpReply reply;
+  reply.status = status;
+  reply.body = body.dump(-1, ' ', false, json::error_handler_t::replace);
+  reply.headers["Cache-Control"] = "no-store";
+  return reply;
+}
+
+HttpReply refuse(int status, const char* code, const std::string& message) {
+  return reply_of(status, {{"error", {{"code", code}, {"message", message}}}});
+}
+
+Announcement read_announcement(const json& body, std::vector<Problem>& problems) {
+  Announcement announcement;
+  Fields fields(body, "body", "", problems);
+  announcement.text = fields.local_text("text", true);
+  announcement.seconds = fields.number("seconds", false, 60, 1, longest_announcement);
+  announcement.urgent = fields.flag("urgent", false);
+  fields.finish();
+  for (const auto& [lang, text] : announcement.text)
+    if (text.size() > most_announced_bytes)
+      fields.problem("text", "is longer than 2000 bytes in '" + lang + "'");
+  std::erase_if(announcement.text, [](const auto& one) { return one.second.empty(); });
+  return announcement;
+}
+
+}  // namespace
+
+HttpReply answer_announce(const AnnouncementDesk& desk, const Access& access,
+                          const HttpQuestion& question) {
+  if (question.method != "POST") {
+    HttpReply reply = refuse(405, "method_not_allowed", "POST only");
+    reply.headers["Allow"] = "POST";
+    return reply;
+  }
+  if (!access.has_token)
+    return refuse(403, "no_admin_token",
+                  "this server was started without WELLSPRING_ADMIN_TOKEN and --admin-token-file");
+  if (!access.admin) return refuse_access(access);
+  const auto body = parse_json(question.body);
+  if (const WireError* error = std::get_if<WireError>(&body))
+    return refuse(400, error->code.c_str(), error->message);
+  std::vector<Problem> problems;
+  Announcement announcement = read_announcement(std::get<json>(body), problems);
+  std::string wrong;
+  for (const Problem& problem : problems) wrong += (wrong.empty() ? "" : "; ") + to_string(problem);
+  if (!wrong.empty()) return refuse(400, "bad_field", wrong);
+  return reply_of(200, {{"id", desk.put(std::move(announcement))}});
 }
 
 }  // namespace wellspring::show

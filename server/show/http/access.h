@@ -2,10 +2,12 @@
 // Who may do what, decided once for each question: what the house's technician reads, what whoever
 // looks after the house does, and what claims to be a kiosk.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "base/layers.h"
+#include "show/house/house.h"
 #include "wire/http.h"
 #include "wire/tokens.h"
 
@@ -30,7 +32,22 @@ Access access_of(const AccessRules& rules, const HttpQuestion& question);
 HttpReply refuse_access(const Access& access);
 
 // A camera is let in from the machine that serves, or with a kiosk's token (401 without); every
-// visit is, and shows by its `hello` whether it is a kiosk's (show/answer/trust.h).
+// visit is, and shows by its `hello` whether it is a kiosk's (show/answer/cameras.h).
 UpgradeAnswer admit(const AccessRules& rules, const HttpQuestion& question);
+
+// POST /api/v1/admin/announce: words of the house for all screens, by whoever has the token.
+
+inline constexpr size_t most_announced_bytes = 2000;       // of the text in one language
+inline constexpr double longest_announcement = 24 * 3600;  // seconds
+
+// Where announcements are handed in.
+struct AnnouncementDesk {
+  std::function<uint32_t(Announcement)> put;  // tells the announcement's number
+};
+
+// 403 where there is no admin token, 401 without it, 400 for a body that is wrong: naming the
+// field. Else hands the announcement over and tells its number.
+HttpReply answer_announce(const AnnouncementDesk& desk, const Access& access,
+                          const HttpQuestion& question);
 
 }  // namespace wellspring::show

@@ -5,11 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "show/answer/book.h"
 #include "show/answer/objects.h"
-#include "show/answer/transcript.h"
-#include "show/http/still_question.h"
-#include "show/http/take_along.h"
+#include "show/http/pages.h"
+#include "show/http/still.h"
 
 namespace wellspring::show {
 

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "show/http/access.h"
-#include "show/http/announce.h"
 #include "show/exhibit/exhibit.h"
+#include "show/http/access.h"
 #include "show/http/pages.h"
 #include "show/http/report.h"
 #include "show/http/still_desk.h"
@@ -43,9 +42,10 @@ struct AnswerSources {
   AccessRules access;
   StillDesk* stills = nullptr;
   AnnouncementDesk desk;
-  std::function<HttpReply(const HttpQuestion&)> sums;  // GET /api/v1/sums.csv (show/status/sums.h)
+  std::function<HttpReply(const HttpQuestion&)>
+      sums;                             // GET /api/v1/sums.csv (show/status/status.h)
   std::function<std::string()> status;  // GET /api/v1/status: JSON (show/status/status.h)
-  std::function<std::string()> speeds;  // GET /api/v1/speeds: JSON (show/status/speeds.h)
+  std::function<std::string()> speeds;  // GET /api/v1/speeds: JSON (show/status/status.h)
   std::function<bool()> drains;         // visitors are to go elsewhere; empty: never
   bool changes = false;                 // exhibits may: nothing of them is kept by browsers
 };

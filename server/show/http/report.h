@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "avatar/mind/storyteller_io.h"
-#include "show/kiosk/stage.h"
+#include "show/kiosk/kiosk.h"
 #include "show/state/baker.h"
-#include "show/state/totals.h"
-#include "show/visit/give_way.h"
+#include "show/state/show.h"
+#include "show/visit/flow.h"
 #include "wire/messages.h"
 
 namespace wellspring::show {
@@ -87,7 +87,7 @@ struct ShowReport {
   uint64_t turned_away = 0;  // since so many waited already
   std::string sums_problem;  // why the ledger cannot be written; whoever has one sets it
   DoorCounts doors;          // likewise
-  std::vector<std::string> damaged_files;  // of the cache (base/keyed_file.h); likewise
+  std::vector<std::string> damaged_files;  // of the cache (base/write_file.h); likewise
   std::vector<std::string> full_disks;     // what cannot be written; likewise
 };
 

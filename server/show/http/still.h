@@ -6,11 +6,13 @@
 #pragma once
 #include <functional>
 #include <list>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include "base/clock.h"
+#include "show/exhibit/exhibit.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {
@@ -79,5 +81,16 @@ class StillRoom {
   std::mutex mutex_;      // of what follows
   std::list<Kept> kept_;  // newest first
 };
+
+// The query of still.jpg: which finished picture is asked for, within which bounds.
+
+struct StillQuestion {
+  StillJob job;
+  int status = 200;           // of HTTP; 200: `job` may be done
+  std::string code, problem;  // what is wrong with it otherwise, and with which field
+};
+
+StillQuestion read_still_question(const Exhibit& exhibit,
+                                  const std::map<std::string, std::string>& query);
 
 }  // namespace wellspring::show

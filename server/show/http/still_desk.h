@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/rate.h"
+#include "base/clock.h"
 #include "show/http/still.h"
 
 namespace wellspring::show {

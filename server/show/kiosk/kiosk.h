@@ -1,15 +1,105 @@
 // SPDX-License-Identifier: Apache-2.0
 // One kiosk of the house: a screen and the cameras beside it, which belong together by their name.
 #pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "show/exhibit/kiosk_settings.h"
-#include "show/kiosk/stage.h"
+#include "show/exhibit/exhibit.h"
 #include "show/storyteller/audience.h"
+#include "world/view.h"
 
 namespace wellspring::show {
+
+// How far a guest before a kiosk has come: asleep -> awake -> person -> engaged -> farewell ->
+// asleep. A function of what cameras and touches say and of time alone. Source: the storyteller and
+// kiosk paper's states; who leaves is its gap, filled here.
+//
+//   sleep, awake -> person   a head; a touch, of a guest whom no camera sees
+//   person -> engaged        the page shows something, she tells, a tour goes; without a camera
+//                            that works a touch is enough
+//   person -> awake          gone, and was never greeted: has only walked by
+//   person, engaged -> farewell   gone
+//   farewell -> person       a head or a touch: the same visit goes on
+//   farewell -> awake, sleep      its time is over; something moved meanwhile, or nothing
+//
+// Gone: no head for hold_person, or for leave_after while engaged, and no touch meanwhile. A guest
+// who touches where no camera has a head, or none works, is gone without touches for
+// leave_untouched, while something plays leave_playing. Where the house closes, all are gone.
+
+enum class Stage : uint8_t { sleep, awake, person, engaged, farewell };
+const char* to_string(Stage stage);
+
+struct StageInput {
+  bool camera = false;   // one at least says that it sees
+  bool motion = false;   // something moves
+  bool head = false;     // somebody is seen
+  bool touched = false;  // the screen, since the last step
+  bool busy = false;     // the guest does something: a book is open, a story told, a tour goes on
+  bool playing = false;  // something goes on that needs no touches
+  bool greeted = false;  // the guests of this visit have been
+  bool closed = false;   // the house is: nobody is taken to be there, whatever else is said
+};
+
+// A plain value. Times are those of the steps.
+struct StageState {
+  Stage now = Stage::sleep;
+  double since = 0;  // time of the last change
+  double time = 0;   // of the last step
+  double last_motion = -1e9, last_head = -1e9, last_touch = -1e9;
+  double camera_since = -1e9;    // from when a camera sees
+  std::optional<double> parted;  // when the farewell began that is going on or led here
+  bool camera = false;           // in the last step
+};
+
+// One step at `time`, seconds on a clock; one that runs back counts as no time passed, one that is
+// no number changes nothing. Returns state.now. A visit is from the change to `person` until that
+// to `sleep` or `awake`.
+Stage step_stage(StageState& state, const KioskTimes& times, const StageInput& input, double time);
+
+// Somebody is taken to be there.
+inline bool has_guest(Stage stage) { return stage == Stage::person || stage == Stage::engaged; }
+inline bool is_visit(Stage stage) { return has_guest(stage) || stage == Stage::farewell; }
+
+// A kiosk's screen as a window: what is behind it is seen from where the head before it is, so it
+// shifts as the head moves, while the window's frame stays (Kooima, "Generalized Perspective
+// Projection", 2008). Places before the screen are metres from its middle: to the right, up, away
+// from it.
+
+// Where a page's picture is seen from. A plain value.
+struct WindowEye {
+  vec3 place{0};         // metres to the right of, above and behind the kiosk's viewpoint
+  vec3 speed{0};         // metres a second
+  vec3 aim{0};           // where it glides to, as `place`
+  vec3 head{0};          // that is followed, before the screen
+  bool follows = false;  // a head
+  int watching = 0;      // heads near by: 0, 1, 2 or more
+  float since = 0;       // seconds for which there have been as many
+  bool operator==(const WindowEye&) const = default;
+};
+
+// Height of the picture, which covers the screen, in metres. Of a screen of unknown size: as high
+// as seen from viewing_distance.
+float picture_height(const ScreenSize& screen, const View& rest);
+// How far before the screen the picture of the viewpoint is right: `rest`.
+float rest_distance(const ScreenSize& screen, const View& rest);
+// The place that a head's picture is seen from, as WindowEye::place. In the head's direction from
+// the middle of the screen, but no farther aside or away than a visitor's eyes can bear.
+vec3 place_of_head(vec3 head, const ScreenSize& screen, const View& rest);
+
+// Sets `aim`: after the one head that is near; back to rest for none and for several, who cannot
+// all be right. Small motions of a head, which may be noise, are none.
+void watch_heads(WindowEye& eye, std::span<const vec3> heads, const ScreenSize& screen,
+                 const View& rest, float dt);
+// Towards `aim`, without jumps of place or speed: a critically damped spring of limited speed.
+// Stands still where it arrives. dt: seconds, 0 or more.
+void move_eye(WindowEye& eye, float dt);
+
+// What is seen through the screen from that place; `rest` where it is 0.
+View through_window(const View& rest, const ScreenSize& screen, vec3 place);
 
 // What is known of the guests of one visit, and forgotten when it ends.
 struct KioskVisit {

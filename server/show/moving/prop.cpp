@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "gltf/node.h"
+#include "gltf/animation.h"
 #include "world/load/scene_join.h"
 #include "world/mesh_finish.h"
 

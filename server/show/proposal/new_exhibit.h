@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "world/world.h"
+
 namespace wellspring::show {
 
 struct NewExhibit {
@@ -17,5 +19,17 @@ struct NewExhibit {
 // is left behind.
 NewExhibit make_new_exhibit(const std::string& content, const std::string& id,
                             const std::string& model);
+
+// Places from which a scene that nobody has furnished yet can be seen: from inside where it is a
+// room, from around where it is an object.
+
+struct ProposedViews {
+  bool is_room = false;
+  std::vector<Viewpoint> views;  // 2 to 5, with names
+};
+
+// A scene with something to see. In rooms somebody's eye is `eye_height` above a floor. The same
+// views each time; milliseconds to tenths of a second.
+ProposedViews propose_views(const World& world, float eye_height);
 
 }  // namespace wellspring::show

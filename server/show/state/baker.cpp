@@ -7,9 +7,9 @@
 #include <oneapi/tbb/task_arena.h>
 #include <pthread.h>
 
-#include "base/cancel.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/worker.h"
 #include "light/bake/bake_file.h"
 #include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "base/memory_limit.h"
+#include "base/memory.h"
 
 namespace wellspring::show {
 namespace {

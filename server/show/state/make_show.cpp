@@ -3,13 +3,13 @@
 
 #include <stdexcept>
 
-#include "base/cancel.h"
 #include "base/log.h"
+#include "base/worker.h"
 #include "light/bake/bake_file.h"
 #include "light/bake/map_file.h"
 #include "light/sample/light_tables.h"
+#include "show/exhibit/exhibit_objects.h"
 #include "show/moving/exhibit_scene.h"
-#include "show/exhibit/eye_places.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_world.h"
 

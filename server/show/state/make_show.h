@@ -8,7 +8,7 @@
 namespace wellspring::show {
 
 // Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a
-// tour that cannot be walked. Seconds; may be cancelled (base/cancel.h).
+// tour that cannot be walked. Seconds; may be cancelled (base/worker.h).
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 
 // Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet

@@ -5,6 +5,11 @@
 
 namespace wellspring::show {
 
+size_t memory_bytes(const StillPass& pass) {
+  return memory_bytes(pass.frame) + memory_bytes(pass.work) + memory_bytes(pass.keyframe) +
+         bytes_of(pass.picture.rgb) + (pass.denoiser ? pass.denoiser->memory_bytes() : 0);
+}
+
 size_t memory_bytes(const DrawingWork& work) {
   return memory_bytes(*work.cache) + memory_bytes(*work.compositor) + memory_bytes(work.frame) +
          memory_bytes(work.keyframe) + memory_bytes(work.around) +

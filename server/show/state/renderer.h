@@ -8,26 +8,101 @@
 //   --> idle
 //
 // Between the steps of a picture at rest the world may move, and what moves be drawn
-// (show/draw/moving.h).
+// (show/draw/still_pass.h).
 #pragma once
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <oneapi/tbb/task_arena.h>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/worker.h"
 #include "cache/broker.h"
+#include "denoise/denoise.h"
+#include "frame/frame.h"
+#include "frame/tonemap.h"
+#include "light/dynamic/direct_light.h"
 #include "light/dynamic/dynamic_image.h"
 #include "light/known/skin_light.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
-#include "picture/moving_picture.h"
-#include "show/state/picture_job.h"
+#include "picture/still/reconstruct_still.h"
 #include "show/state/visitor_attention.h"
+#include "world/view.h"
 
 namespace wellspring::show {
+
+// What a picture is to be, decided before it is drawn (show/draw/picture.h).
+
+// What of a visitor's rest, since the view or the light last changed, reconstructions depend on.
+struct RestState {
+  uint64_t asked = 0;         // samples of the view's sequence (picture/still/reconstruct_still.h)
+  double samples = 0;         // a pixel, that are kept
+  double passed_samples = 0;  // of these, in the last pass
+  double passed_at = -1e9, passed_seconds = 0;  // show time of its end; what it took
+  bool reconstructed = false;                   // its picture is the one shown
+};
+
+// All that a picture's drawing depends on besides the world and what the visitor's cache remembers.
+struct PictureJob {
+  double time = 0;  // of the tick that ordered it
+  uint64_t time_us = 0, tick = 0;
+  View expected;              // what the visitor will see when it is shown
+  View view;                  // drawn: that, and some around
+  View ahead;                 // in the picture after that, when answers to its requests are shown
+  uint32_t seq = 0;           // of the visitor's last input
+  uint32_t camera_cuts = 0;   // of the visitor, by then
+  bool still = false;         // without motion for a moment
+  bool moving = false;        // something that can move may be in it
+  bool learns = false;        // its samples are kept for each pixel, for reconstructions
+  bool reconstruct = false;   // it becomes a reconstruction instead of being shown
+  bool samples_only = false;  // nothing is drawn
+  bool settled = false;       // for long: the reference takes over
+  bool passing = false;       // drawn for a moment, and some around (picture/compose_drawn.h)
+  RestState rest;             // of the visitor, by then
+  float scale = 1;            // sides of its view, in pixels, over those of the visitor's picture
+  bool attention = true;
+  std::shared_ptr<const std::vector<float>> weights;  // of objects; null: all are 1
+  bool note_seen = false;                             // for the next of these
+  bool keep = false;                                  // as a keyframe, for others to be made of
+  uint64_t seed = 0;
+  std::optional<View>
+      around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
+  int samples = 0;
+  DynamicLights dynamic;  // as they are then
+};
+
+// It is drawn in steps, between which the world may move and what moves be drawn.
+inline bool in_steps(const PictureJob& job) { return job.still && job.keep; }
+
+// Learned reconstruction of pictures at rest as values: the one that is under way, and what of a
+// visitor's rest it depends on. What is done with them: show/draw/still_pass.h.
+
+struct Visitor;
+
+struct StillPass {
+  enum class Step : uint8_t { compute, finish, done };
+  Visitor* visitor = nullptr;  // whose picture it is; null: none is under way
+  PictureJob job;
+  bool backdrop = false;  // it is without what moves (show/draw/still_pass.h)
+  Step step = Step::compute;
+  bool at_work = false;  // the renderer is at it
+  std::atomic<bool> given_up{false};
+  double seconds = 0;  // of computing, so far
+  Frame frame;         // drawn; then as it is shown
+  StillReconstruction work;
+  Image8 picture;
+  Keyframe keyframe;                   // when it is finished the visitor's old one
+  std::unique_ptr<Denoiser> denoiser;  // null: there is none
+  std::string problem;                 // why
+};
+size_t memory_bytes(const StillPass& pass);
+
+// Samples a pixel, on average, beyond which more would be kept no more.
+inline constexpr double most_rest_samples = 0.98 * most_still_samples;
+inline bool has_all_samples(const RestState& rest) { return rest.samples >= most_rest_samples; }
 
 // What it took: milliseconds, and counts.
 struct PictureCosts {
@@ -70,7 +145,7 @@ struct DrawingWork {
 };
 size_t memory_bytes(const DrawingWork& work);
 
-// Light on what moves is being found (show/draw/moving.h).
+// Light on what moves is being found (show/draw/still_pass.h).
 struct SkinJob {
   bool at_work = false;
   double time = -1e9;    // show time

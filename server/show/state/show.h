@@ -3,6 +3,7 @@
 // make_show() (show/state/make_show.h) begins it, tick() (show/tick.h) advances it. Everything here
 // belongs to the thread that calls tick(), except Arrivals, and what the renderer is at work on.
 #pragma once
+#include <cstdint>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -16,26 +17,44 @@
 #include "light/visible/visibility.h"
 #include "picture/warp_picture.h"
 #include "show/exhibit/exhibit.h"
-#include "show/moving/figure.h"
-#include "show/exhibit/problem.h"
-#include "show/moving/movers.h"
-#include "show/moving/prop.h"
-#include "show/house/announcement.h"
+#include "show/exhibit/json_fields.h"
 #include "show/house/house.h"
-#include "show/questions/question_index.h"
 #include "show/kiosk/kiosk.h"
-#include "show/state/reconstruction.h"
-#include "show/state/renderer.h"
+#include "show/moving/exhibit_scene.h"
+#include "show/moving/figure.h"
+#include "show/moving/prop.h"
+#include "show/questions/question_index.h"
 #include "show/state/baker.h"
+#include "show/state/renderer.h"
 #include "show/state/switches.h"
-#include "show/state/teller.h"
-#include "show/state/totals.h"
 #include "show/state/visitor.h"
 #include "show/storyteller/audience.h"
-#include "wire/seal.h"
 #include "wire/tokens.h"
 
 namespace wellspring::show {
+
+// What a running show counts: for the report, the metrics and the log.
+
+// Counters since the start, unless said otherwise.
+struct ShowTotals {
+  uint64_t drawn = 0, warped = 0, unwarpable = 0;  // pictures; warps given up
+  uint64_t posed = 0;           // what moves in pictures at rest, drawn by itself
+  uint64_t reconstructed = 0;   // pictures at rest, by the network
+  float reconstruction_ms = 0;  // of the last of these
+  uint64_t surroundings = 0;    // drawn of quick turns
+  uint64_t given_up = 0;        // pictures that nobody needed any more before they were drawn
+  uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
+  uint64_t orders_left_out = 0;       // since newer ones of the same visitor came before their turn
+  float tick_ms = 0, animate_ms = 0;  // of the last tick
+  uint64_t utterances = 0, sounds = 0,
+           sounds_given_up = 0;  // spoken; packets sent; too slow a reader
+  uint64_t visits = 0, observations = 0, greetings = 0, farewells = 0, stories = 0;
+  uint64_t gestures = 0;  // of guests, that were followed
+  uint64_t lamps_switched = 0;
+  uint64_t announcements = 0;
+  uint64_t attention_analyses = 0;
+  float attention_ms = 0;  // of the last of these
+};
 
 // How a visitor's pictures get their diffuse light.
 enum class Display : uint8_t {
@@ -63,7 +82,7 @@ struct ShowSettings {
   float moving_clamp = 4;  // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
   HouseSettings house;
-  std::vector<Token> kiosk_tokens;  // show/answer/trust.h
+  std::vector<Token> kiosk_tokens;  // show/answer/cameras.h
   bool watched = false;             // a curator works at it: pages show what helps with that
   // Seconds (show/answer/idle.h): without a word until visitors are asked whether they are there,
   // and until they have answered; that a page is hidden until its visit rests. 0: never.
@@ -137,7 +156,7 @@ struct Show {
   std::vector<std::shared_ptr<Link>> resting;  // to be taken by who keeps them: answer/idle.h
   std::shared_ptr<Capacity> capacity = std::make_shared<Capacity>();  // of all exhibits together
   std::vector<Eye> eyes;
-  std::vector<Kiosk> kiosks;             // show/answer/kiosks.h
+  std::vector<Kiosk> kiosks;             // show/answer/orders.h
   std::optional<std::string> her_kiosk;  // the storyteller's guests are those of that name
   uint64_t her_visits = 0;               // of kiosks' guests that the storyteller has been with
 
@@ -148,7 +167,7 @@ struct Show {
   Announcement announced;         // the last; id 0: none yet
   double announced_until = -1e9;  // show time
 
-  // Where it is watched: what is wrong with its files as they are now (show/watch/problems.h).
+  // Where it is watched: what is wrong with its files as they are now (show/watch/rehearsal.h).
   std::vector<Problem> problems;
   std::string problems_message;  // the last that visitors were sent
 

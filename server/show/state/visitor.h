@@ -1,28 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 // One browser's visit, in parts, each of which is what one room of the show works on.
 #pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <variant>
+#include <vector>
 
+#include "avatar/mind/storyteller.h"
+#include "base/clock.h"
 #include "base/worker.h"
+#include "frame/jpeg.h"
 #include "frame/tonemap.h"
-#include "show/kiosk/screen_window.h"
-#include "show/moving/play.h"
-#include "show/state/browser_picture.h"
+#include "show/kiosk/kiosk.h"
+#include "show/moving/exhibit_scene.h"
 #include "show/state/capacity.h"
 #include "show/state/switches.h"
-#include "show/state/teller.h"
 #include "show/state/visitor_attention.h"
-#include "show/state/visitor_orders.h"
 #include "show/state/visitor_picture.h"
-#include "show/storyteller/sounding.h"
-#include "show/visit/give_way.h"
+#include "show/storyteller/held_prop.h"
+#include "show/storyteller/voice.h"
+#include "show/visit/flow.h"
 #include "show/visit/place.h"
 #include "wire/link.h"
 #include "wire/messages.h"
 #include "world/view.h"
 
 namespace wellspring::show {
+
+// A storyteller as those see her who share her: who of the exhibit's it is, how she is, what she
+// says. The house has one, for kiosks and for visitors who only look on. A visitor who calls her,
+// hides her or asks for a story gets one of their own, so that nobody takes her from anybody. Of
+// all of them there is one figure in the world, which is posed before each picture as its visitor's
+// own teller is.
+
+struct Teller {
+  uint64_t number = 0;  // Link::id of the visitor who called her first; 0: the house's
+  size_t index = 0;     // of Exhibit::storytellers
+  Storyteller storyteller;
+  StorytellerState mind;
+  Pose pose;
+  Voice voice;
+  Sounding sounding;
+  HeldProp held;
+  bool visible = true, humanlike = true;
+  double agent_sent_at = -1e9;  // show time of the last agent message
+  Mood agent_mood = Mood::idle;
+};
+
+// What a browser that takes parts has on its screen, while its visitor stands
+// (show/draw/parts.h).
+
+struct BrowserPicture {
+  Image8 image;                    // before it was encoded; empty: the next one is complete
+  std::vector<uint8_t> quality;    // JPEG's, of each tile; 0: it is not there in full size
+  std::vector<double> changed_at;  // seconds, of each tile: when its content last did
+  size_t next = 0, next_fine = 0;  // tiles at which the next parts begin
+  bool pending = false;  // some tiles could be finer, or are not quite what was drawn last
+};
+
+// What a visitor has ordered and what is not carried out yet (show/answer/orders.h).
+
+struct WaitingOrder {
+  BrowserMessage message;
+  bool late = false;  // since an earlier tick
+};
+
+struct VisitorOrders {
+  std::vector<WaitingOrder> waiting;                                 // oldest first
+  std::array<RateBound, std::variant_size_v<BrowserMessage>> spent;  // of each kind
+};
 
 // Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {

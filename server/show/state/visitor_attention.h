@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "attention/attended.h"
+#include "attention/task.h"
 #include "base/worker.h"
 #include "frame/frame.h"
 #include "world/view.h"

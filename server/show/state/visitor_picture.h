@@ -11,16 +11,28 @@
 #include "cache/cache.h"
 #include "frame/tonemap.h"
 #include "light/dynamic/backdrop_surfaces.h"
-#include "light/dynamic/settled_bounce.h"
+#include "light/dynamic/dynamic_image.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
-#include "picture/moving_picture.h"
-#include "show/state/fade.h"
-#include "show/state/picture_job.h"
-#include "show/state/reconstruction.h"
 #include "show/state/renderer.h"
 
 namespace wellspring::show {
+
+// From one picture at rest to the next, better one of the same view the eye is led gradually: a cut
+// would be seen as a flicker.
+
+struct Fade {
+  Image8 from;  // what was shown; empty: nothing fades
+  View view;
+  double began = 0;  // show time
+};
+
+// What the keyframe shows passes into what is shown from `time` on.
+void begin_fade(const Keyframe& shown, double time, Fade& fade);
+// How much of the newer picture is shown: 0 to 1; 1 of another view.
+float fade_share(const Fade& fade, const View& view, double time);
+// Mixes what was shown into a picture of its size, in display codes.
+void mix_fade(const Fade& fade, float share, Image8& image);
 
 // As the visitor's page asks for it.
 struct PictureWishes {
@@ -32,7 +44,7 @@ struct PictureWishes {
   bool local = false;                         // keyframes with depth, packet.h
   int best_quality = 82, still_quality = 92;  // of JPEGs, in motion and at rest
   bool attention = true;                      // CacheSettings::attention
-  // Of attention (attention/attended.h): 0 what catches the eye, 1 what the visitor looks at.
+  // Of attention (attention/task.h): 0 what catches the eye, 1 what the visitor looks at.
   float task_weight = 0.5f;
 };
 
@@ -69,7 +81,7 @@ struct VisitorPicture {
   Surroundings around;
   Fade fade;                  // to the keyframe
   bool fades_next = false;    // the next keyframe of the same view has better light: it fades in
-  bool backdrop = false;      // the keyframe is without what moves (show/draw/moving.h)
+  bool backdrop = false;      // the keyframe is without what moves (show/draw/still_pass.h)
   MovingPicture moving;       // that, to be laid over it; empty: nothing
   bool layer_unsent = false;  // its layer has not been sent
   double posed_at = -1e9;     // show time of its job

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/visitor_world.h"
 
-#include "show/state/animations.h"
+#include "show/state/in_view.h"
 #include "show/state/lamps.h"
 
 namespace wellspring::show {

@@ -3,9 +3,48 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace wellspring::show {
+
+namespace {
+
+HttpReply refuse(int status, const char* code, const std::string& message) {
+  HttpReply reply;
+  reply.status = status;
+  reply.body = nlohmann::json{{"error", {{"code", code}, {"message", message}}}}.dump(
+      -1, ' ', false, nlohmann::json::error_handler_t::replace);
+  reply.headers["Cache-Control"] = "no-store";
+  return reply;
+}
+
+// The day that the question names, or `otherwise` where it names none.
+std::optional<int64_t> day_of(const HttpQuestion& question, const char* name, int64_t otherwise) {
+  auto found = question.query.find(name);
+  if (found == question.query.end() || found->second.empty()) return otherwise;
+  return parse_day(found->second);
+}
+
+}  // namespace
+
+HttpReply answer_sums(const ReadSums& read, const HttpQuestion& question) {
+  if (!read) return refuse(404, "no_sums", "this server was started without --sums: it keeps none");
+  const auto from = day_of(question, "from", *parse_day("0000-01-01")),
+             to = day_of(question, "to", *parse_day("9999-12-31"));
+  if (!from || !to)
+    return refuse(400, "bad_parameter", "from, to: a day such as 2026-05-31 is expected");
+  HttpReply reply;
+  reply.content_type = "text/csv; charset=utf-8";
+  reply.headers["Cache-Control"] = "no-store";
+  reply.headers["Content-Disposition"] = "attachment; filename=\"sums.csv\"";
+  try {
+    reply.body = write_csv(read(*from, *to));
+  } catch (const std::exception& error) {
+    return refuse(503, "unreadable", error.what());
+  }
+  return reply;
+}
 
 using nlohmann::json;
 
@@ -85,6 +124,59 @@ void StatusDesk::see(const ShowReport& report) {
 Standing StatusDesk::tell() const {
   std::lock_guard lock(mutex_);
   return standing_;
+}
+
+using nlohmann::json;
+
+namespace {
+
+json problem(const std::string& what) { return {{"problem", what}}; }
+
+json find_points(const json& report) {
+  json points = json::array();
+  for (const json& result : report["results"]) {
+    if (!result.is_object() || result.value("report", "") != "light.error") continue;
+    if (!result.value("name", "").ends_with(".flip") || !result.contains("technique")) continue;
+    points.push_back({{"technique", result["technique"]},
+                      {"scene", result.value("scene", "")},
+                      {"spp", result.value("spp", 0)},
+                      {"seconds", result.value("cpu_seconds", 0.0)},
+                      {"flip", result.value("value", 0.0)}});
+  }
+  return points;
+}
+
+json speeds_of(const std::string& file) {
+  if (file.empty()) return problem("this server was started without --bench");
+  std::ifstream in(file);
+  if (!in)
+    return problem(
+        "nothing has been measured on this machine yet: ./wellspring bench --only "
+        "light.error --quick --json FILE does it");
+  const json report = json::parse(in, nullptr, false);
+  if (!report.is_object() || !report.contains("results") || !report["results"].is_array())
+    return problem(file + ": is no report of wellspring bench");
+  const json points = find_points(report);
+  if (points.empty()) return problem(file + ": holds no error over time (light.error)");
+  const json run = report.value("run", json::object()),
+             machine = report.value("machine", json::object());
+  return {{"date", run.value("date", "")},
+          {"commit", run.value("commit", "")},
+          {"cpu", machine.value("cpu", "")},
+          {"cores", machine.value("cores", 0)},
+          {"points", points}};
+}
+
+}  // namespace
+
+std::string read_speeds(const std::string& file) {
+  json speeds;
+  try {
+    speeds = speeds_of(file);
+  } catch (const json::exception&) {  // fields of other kinds
+    speeds = problem(file + ": is no report of wellspring bench");
+  }
+  return speeds.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace wellspring::show

@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // GET /api/v1/status: how the server is, for the page /status. Numbers and words, never pictures.
 #pragma once
+#include <functional>
 #include <mutex>
 #include <string>
 
+#include "base/layers.h"
+#include "ledger/sums.h"
 #include "show/http/answer.h"
 #include "show/status/judge.h"
+#include "wire/http.h"
 
 namespace wellspring::show {
+
+// GET /api/v1/sums.csv?from=YYYY-MM-DD&to=YYYY-MM-DD: the daily sums, for a spreadsheet.
+
+// Those of both days and all between; throws where the file cannot be read. Empty: none are kept.
+using ReadSums = std::function<Sums(int64_t from, int64_t to)>;
+
+// For who has Access::status (show/http/access.h): 404 where no sums are kept, 400 for what is no
+// day, 503 where the file cannot be read.
+HttpReply answer_sums(const ReadSums& read, const HttpQuestion& question);
 
 // How one exhibit is.
 struct Standing {
@@ -35,5 +48,11 @@ class StatusDesk {
   mutable std::mutex mutex_;
   Standing standing_;
 };
+
+// GET /api/v1/speeds: speed against error of all techniques, from a file of `./wellspring bench`.
+
+// {"date", "commit", "cpu", "cores", "points": [{technique, scene, spp, seconds (of all threads),
+// flip}]}, or {"problem"}: why there are none. Reads the file each time.
+std::string read_speeds(const std::string& file);
 
 }  // namespace wellspring::show

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "avatar/figure/noise.h"
-#include "show/exhibit/exhibit_props.h"
-#include "show/lighting/changing_light.h"
+#include "show/exhibit/exhibit_objects.h"
+#include "show/lighting/day.h"
 
 namespace wellspring::show {
 namespace {
@@ -73,6 +73,44 @@ void add_held_lights(const Exhibit& exhibit, const HeldProp& held, double time, 
     one.id = first_id + uint32_t(held.prop) * uint32_t(most_prop_lights) + uint32_t(i);
     if (max_component(one.light.intensity) > 0) lights.push_back(std::move(one));
   }
+}
+
+namespace {
+
+std::optional<vec3> place_of(const Exhibit& exhibit, const std::string& object) {
+  const PointOfInterest* point = object.empty() ? nullptr : find_point(exhibit, object);
+  if (!point) return {};
+  return vec3(point->place - exhibit.scene.origin);
+}
+
+// FNV-1a: the same story begins from the same seed on every machine.
+uint32_t seed_of(const std::string& story) {
+  uint32_t hash = 2166136261u;
+  for (char c : story) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  return hash;
+}
+
+}  // namespace
+
+StoryCue make_cue(const Exhibit& exhibit, const Voice& voice, const VoiceEvents& events) {
+  StoryCue cue;
+  if (voice.queue.empty()) return cue;
+  cue.emotion = voice.held.emotion;
+  cue.emotion_weight = voice.held.emotion_weight;
+  cue.look = place_of(exhibit, voice.held.look);
+  cue.point = place_of(exhibit, voice.held.point);
+  cue.held = find_held_thing(exhibit, voice.held.prop);
+  if (!voice.story.empty()) cue.seed = seed_of(voice.story);
+  for (const ActionEvent& act : events.acts) {
+    if (act.kind == StoryMarkKind::gesture) {
+      cue.gesture = act.name;
+      cue.gesture_weight = act.weight;
+      cue.gesture_lead = act.lead;
+    } else if (act.kind == StoryMarkKind::beat) {
+      cue.beat = std::max(cue.beat, act.weight);
+    }
+  }
+  return cue;
 }
 
 }  // namespace wellspring::show

@@ -4,9 +4,11 @@
 // the story off: it takes glow_seconds from nothing to full.
 #pragma once
 #include "avatar/mind/storyteller.h"
-#include "light/dynamic/dynamic_light.h"
+#include "avatar/story/timeline.h"
+#include "light/dynamic/direct_light.h"
 #include "show/exhibit/exhibit.h"
 #include "show/moving/prop.h"
+#include "show/storyteller/voice.h"
 
 namespace wellspring::show {
 
@@ -33,5 +35,11 @@ PropPose pose_of(const Exhibit& exhibit, const HeldProp& held, int prop, double 
 // Adds the lights of what is held, as they are at that time; their ids begin with `first_id`.
 void add_held_lights(const Exhibit& exhibit, const HeldProp& held, double time, uint32_t first_id,
                      DynamicLights& lights);
+
+// A story's marks on the stage of an exhibit: names become places in the world, for the
+// storyteller's body.
+
+// What the story asks of the body now; nothing while nothing marked is told. `events` of this tick.
+StoryCue make_cue(const Exhibit& exhibit, const Voice& voice, const VoiceEvents& events);
 
 }  // namespace wellspring::show

@@ -7,9 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "avatar/story/recorded_story.h"
-#include "avatar/speech/speech_folder.h"
 #include "avatar/speech/speech_json.h"
+#include "avatar/story/recorded_story.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "base/rng.h"

@@ -5,7 +5,7 @@
 #pragma once
 #include "avatar/speech/process.h"
 #include "show/exhibit/exhibit.h"
-#include "show/exhibit/problem.h"
+#include "show/exhibit/json_fields.h"
 
 namespace wellspring::show {
 

@@ -3,13 +3,52 @@
 // moment. For pictures to look at, and for tests that it is the same every time.
 #pragma once
 #include <memory>
+#include <string>
 #include <vector>
 
-#include "avatar/speech/speech.h"
+#include "avatar/figure/character.h"
+#include "avatar/figure/rig.h"
 #include "avatar/mind/storyteller.h"
+#include "avatar/speech/speech.h"
+#include "frame/frame.h"
 #include "show/exhibit/exhibit.h"
+#include "show/storyteller/held_prop.h"
 
 namespace wellspring::show {
+
+// A figure in a photographer's portrait scene, to look at: soft area lights, a floor that curves up
+// into the background.
+
+struct PortraitShot {
+  int width = 720, height = 1080, spp = 64;
+  bool close = false;  // head and shoulders instead of the whole figure
+  float turn =
+      0;  // camera's way round the figure, radians; 0: before its face, positive: to its left
+  // What it holds, in humanoid space, of an exhibit's props; null: nothing.
+  const Exhibit* exhibit = nullptr;
+  HeldProp held;
+};
+
+// All cores; seconds. Pictures of the figure that cannot be read are named in `warnings`.
+Frame render_portrait(const Character& character, const Pose& pose, const PortraitShot& shot,
+                      std::vector<std::string>& warnings);
+
+// A contact sheet: one figure in many poses, each picture with its name below.
+
+struct SheetCell {
+  std::string label;
+  Pose pose;
+};
+
+// `shot` is that of one cell; columns <= 0: as many as make the sheet about as wide as high. All
+// cores; seconds a cell. Empty where there is no cell.
+Frame render_sheet(const Character& character, const std::vector<SheetCell>& cells,
+                   const PortraitShot& shot, int columns, std::vector<std::string>& warnings);
+
+// Writes `text` into a picture with its upper left corner at x, y, in letters 7 * scale pixels
+// high; what lies outside is cut off.
+void draw_text(Frame& frame, const std::string& text, int x, int y, int scale, vec3 color);
+int text_width(const std::string& text, int scale);
 
 struct StoryMoment {
   double time = 0;   // seconds from the beginning

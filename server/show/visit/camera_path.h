@@ -3,6 +3,7 @@
 // B-spline (twice continuously differentiable; de Boor 1978), and a law of time that keeps
 // speed, turning and their changes comfortable everywhere, starting and ending at rest. Immutable.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "world/scene.h"
@@ -39,5 +40,19 @@ Viewpoint eval_camera_path(const CameraPath& path, double time);
 
 // Radians that it turns within `seconds` from `time` on.
 float turn_ahead(const CameraPath& path, double time, double seconds);
+
+// The camera on its way to where a visitor pointed. A value advanced by time.
+
+// Quicker than a tour: the visitor knows where it leads.
+inline constexpr CameraLimits glide_limits{1.7f, 0.9f, 1.1f, 1.5f};
+
+struct Glide {
+  std::shared_ptr<const CameraPath> path;  // null: it is over
+  double time = 0;                         // on the path
+  float pace = 1, most_pace = 1;           // 0..1 of the path's own speed, as of a TourRide
+};
+
+// Moves on by `dt` seconds, 0 to 0.25, or, where it leaps, to the end. Call while there is a path.
+Viewpoint advance_glide(Glide& glide, bool leaps, float dt);
 
 }  // namespace wellspring::show

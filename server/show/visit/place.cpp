@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/visit/place.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "show/visit/walk.h"
+#include "cache/plan.h"
+#include "picture/keyframe.h"
+#include "show/visit/walk_map.h"
 
 namespace wellspring::show {
 
@@ -66,6 +69,168 @@ TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
                     move_direction(place.velocity, place.view.yaw), dt);
   place.view.position = person ? keep_distance(place.view.position, next, *person) : next;
   return {};
+}
+
+namespace {
+
+constexpr double motion_seconds =
+    0.05;  // in which motion is measured: inputs may come thirty times a second
+constexpr double longest_gap = 0.5;   // between two views that tell motion
+constexpr size_t most_past = 32;      // views of that time
+constexpr float fastest = 25;         // metres a second; more is a jump
+constexpr float smallest_cut = 0.5f;  // metres
+
+constexpr float widest_turn = 0.8f;     // radians to either side
+constexpr float turned_away = 0.8f;     // radians
+constexpr float walked_away = 2;        // metres
+constexpr float wide_share = 1 / 8.0f;  // of the view's pixels
+
+}  // namespace
+
+bool note_view(Heading& heading, double time, const View& view) {
+  std::vector<Heading::PastView>& past = heading.past;
+  bool cut = false;
+  if (!past.empty()) {
+    float passed = float(time - past.back().time);
+    cut = length(view.position - past.back().view.position) > fastest * passed + smallest_cut;
+  }
+  auto alike = [&](const Heading::PastView& one) {
+    return !cut && time - one.time <= longest_gap && one.view.width == view.width &&
+           one.view.height == view.height;
+  };
+  auto of_use = [&](const Heading::PastView& one) {
+    return alike(one) && time - one.time <= motion_seconds;
+  };
+  auto first = std::find_if(past.begin(), past.end(), of_use);
+  // Where ticks come late the last one has to do, or there would be no motion.
+  if (first == past.end() && !past.empty() && alike(past.back())) first--;
+  past.erase(past.begin(), first);
+  if (past.size() >= most_past) past.erase(past.begin());
+  past.push_back({time, view});
+  return cut;
+}
+
+View expected_view(const Heading& heading, const View& now, double seconds) {
+  // Of a quick turn less than all views are enough.
+  for (const Heading::PastView& past : heading.past) {
+    double passed = heading.past.back().time - past.time;
+    if (!(passed > 0)) break;
+    View ahead = extrapolate(past.view, now, float(seconds / passed));
+    if (ahead != now) return ahead;
+  }
+  return now;
+}
+
+float expected_turn(const Heading& heading, const View& now, double seconds) {
+  return std::acos(
+      std::clamp(dot(now.forward, expected_view(heading, now, seconds).forward), -1.0f, 1.0f));
+}
+
+EyeMotion motion_of(const Heading& heading, const View& now) {
+  constexpr float seconds = 0.1f;
+  const View ahead = expected_view(heading, now, seconds);
+  return {length(ahead.position - now.position) / seconds,
+          expected_turn(heading, now, seconds) / seconds};
+}
+
+View wide_view(const View& now) {
+  View left = now, right = now;
+  for (auto [view, turn] : {std::pair(&left, widest_turn), {&right, -widest_turn}}) {
+    view->forward = std::cos(turn) * now.forward - std::sin(turn) * now.right;
+    view->right = std::cos(turn) * now.right + std::sin(turn) * now.forward;
+  }
+  const View views[] = {now, left, right};
+  return surrounding_view(views, wide_share);
+}
+
+bool is_elsewhere(const View& wide, const View& now) {
+  return dot(wide.forward, now.forward) < std::cos(turned_away) ||
+         length(wide.position - now.position) > walked_away;
+}
+
+namespace {
+
+constexpr float fov = 0.7f;                       // radians, of the picture's height
+constexpr float filled = 0.8f;                    // of the picture, by the object
+constexpr float turns = 2;                        // as far as a head would
+constexpr float lowest = -1.45f, highest = 0.6f;  // radians of the eye's pitch
+constexpr double nearest = 1.15, farthest = 6;    // radii
+constexpr double zoom_rate = 0.8;                 // of the logarithm of the distance, for 1 m/s
+constexpr float way_seconds = 0.9f;
+constexpr float turn_seconds = 0.08f;
+constexpr double margin = 1.02;  // of the sphere that is not cut
+
+vec3 forward_of(vec2 look) {
+  return {-std::sin(look.x) * std::cos(look.y), std::sin(look.y),
+          -std::cos(look.x) * std::cos(look.y)};
+}
+
+void find_view(const Viewpoint& from, Around& around) {
+  const float t = around.share, share = t * t * (3 - 2 * t);
+  const dvec3 eye = around.centre - around.distance * dvec3(forward_of(around.look));
+  around.view = from;
+  around.view.position = glm::mix(from.position, eye, double(share));
+  around.view.yaw = from.yaw + share * std::remainder(around.look.x - from.yaw, 2 * pi);
+  around.view.pitch = glm::mix(from.pitch, around.look.y, share);
+  around.view.roll = glm::mix(from.roll, 0.0f, share);
+  around.view.fov = glm::mix(from.fov, fov, share);
+  const double depth = dot(around.centre - around.view.position,
+                           dvec3(forward_of({around.view.yaw, around.view.pitch})));
+  around.near = share * float(std::max(depth - margin * around.radius, 0.0));
+}
+
+}  // namespace
+
+Bounds object_bounds(const World& world, const PointOfInterest& point) {
+  Bounds bounds;
+  for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++) {
+    if (std::ranges::find(point.objects, world.object_of(i)) == point.objects.end()) continue;
+    for (const vec3& position : world.mesh_of(i).positions) {
+      const vec3 p = vec3(world.to_world(i) * vec4(position, 1));
+      bounds.low = min(bounds.low, p), bounds.high = max(bounds.high, p);
+    }
+  }
+  return bounds;
+}
+
+void begin_around(const Exhibit& exhibit, int point, const Bounds& bounds, const Viewpoint& from,
+                  float aspect, Around& around) {
+  around = {};
+  around.point = point;
+  around.centre = exhibit.scene.origin + dvec3(0.5f * (bounds.low + bounds.high));
+  around.radius = std::max(0.5 * double(glm::length(bounds.high - bounds.low)), 1e-3);
+  const float across = std::tan(0.5f * fov) * filled * std::min(1.0f, aspect);
+  around.distance = around.wanted_distance = around.radius / std::sin(std::atan(double(across)));
+  const dvec3 way = around.centre - from.position;
+  around.look.x = float(std::atan2(-way.x, -way.z));
+  around.look.y = std::clamp(float(std::atan2(way.y, std::hypot(way.x, way.z))), -0.6f, 0.3f);
+  around.wanted_look = around.look;
+  find_view(from, around);
+}
+
+void turn_around(vec2 look, Around& around) {
+  around.wanted_look.x -= turns * look.x;
+  around.wanted_look.y = std::clamp(around.wanted_look.y - turns * look.y, lowest, highest);
+}
+
+void advance_around(const Viewpoint& from, float forward, bool leaps, float dt, Around& around) {
+  const float way = leaps ? 1 : dt / way_seconds;
+  around.share = std::clamp(around.share + (around.leaves ? -way : way), 0.0f, 1.0f);
+  if (around.leaves && around.share <= 0) {
+    around = {};
+    return;
+  }
+  around.wanted_distance =
+      std::clamp(around.wanted_distance * std::exp(-zoom_rate * double(forward) * double(dt)),
+                 nearest * around.radius, farthest * around.radius);
+  const float ease = leaps ? 1 : 1 - std::exp(-dt / turn_seconds);
+  const vec2 rest = around.wanted_look - around.look;
+  const double far = around.wanted_distance - around.distance;
+  // Comes to an end, so that the picture rests.
+  const bool there = glm::length(rest) < 2e-4f && std::abs(far) < 2e-4 * around.distance;
+  around.look += there ? rest : ease * rest;
+  around.distance += there ? far : double(ease) * far;
+  find_view(from, around);
 }
 
 }  // namespace wellspring::show

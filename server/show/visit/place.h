@@ -3,16 +3,77 @@
 // motion is remembered to tell where it is heading.
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "show/exhibit/exhibit.h"
-#include "show/visit/around.h"
-#include "show/visit/glide.h"
-#include "show/visit/heading.h"
+#include "show/visit/camera_path.h"
 #include "show/visit/tour.h"
 #include "world/view.h"
 #include "world/world.h"
 
 namespace wellspring::show {
+
+// An object looked at from all sides, as if it were lifted out of its case: the eye goes round it,
+// what stands before it is cut away, and it keeps the light of its place. The visitor stays where
+// they stand meanwhile.
+
+struct Around {
+  int point = -1;       // index into Exhibit::points; -1: nothing
+  bool leaves = false;  // goes back to where the visitor stands
+  float share = 0;      // of the way there: 0 is where the visitor stands, 1 round the object
+  dvec3 centre{0};      // absolute
+  double radius = 0;    // metres, of a sphere around it
+  double distance = 0, wanted_distance = 0;  // of the eye from the centre, metres
+  vec2 look{0}, wanted_look{0};              // yaw and pitch of the eye, which looks at the centre
+  Viewpoint view;                            // as it is seen
+  float near = 0;                            // View::near
+};
+
+// Of all that belongs to the object as it stands now, relative to the scene's origin; empty: low
+// above high.
+Bounds object_bounds(const World& world, const PointOfInterest& point);
+
+// From the side of which it is seen from `from`. `aspect`: the picture's width over its height.
+void begin_around(const Exhibit& exhibit, int point, const Bounds& bounds, const Viewpoint& from,
+                  float aspect, Around& around);
+// Turns it by `look`, as a visitor's head turns by that.
+void turn_around(vec2 look, Around& around);
+// Moves on by `dt` seconds, nearer by `forward` metres a second of its own size. `from`: where the
+// visitor stands; `leaps`: at once. It ends by itself once it has gone back.
+void advance_around(const Viewpoint& from, float forward, bool leaps, float dt, Around& around);
+
+// Where a visitor is heading: what its view has done in the last moments, and where that leads by
+// when a picture that is drawn now is seen.
+
+struct Heading {
+  struct PastView {
+    double time = 0;
+    View view;
+  };
+  std::vector<PastView>
+      past;  // of the last twentieth of a second, at most 32; at least the last one before
+};
+
+// The view at a later `time`. True: it has leapt to another place, so that nothing of before helps.
+bool note_view(Heading& heading, double time, const View& view);
+
+// Where the view is to be expected `seconds` after it was last noted, as `now`: straight on, and
+// round the same axis. Keys start and stop at once, so that motion is measured over as short a time
+// as inputs allow, which come in steps of their own; to expect less of motion the younger it is
+// gains nothing more (cache.turns.unknown).
+View expected_view(const Heading& heading, const View& now, double seconds);
+// By how many radians the view may turn away from there in `seconds` more or less.
+float expected_turn(const Heading& heading, const View& now, double seconds);
+
+struct EyeMotion {
+  float speed = 0, turn = 0;  // metres and radians a second
+};
+EyeMotion motion_of(const Heading& heading, const View& now);
+
+// Returns a view of all that a visitor may turn to within a moment, in an eighth of the pixels.
+View wide_view(const View& now);
+// The visitor has moved away from what such a view shows well.
+bool is_elsewhere(const View& wide, const View& now);
 
 struct VisitorPlace {
   Viewpoint view;

@@ -14,8 +14,8 @@ namespace {
 constexpr float pace_seconds = 0.35f;  // how softly a ride stops and goes on
 constexpr float look_hold = 1.5f,
                 look_return = 0.8f;  // seconds until the gaze goes back, and its lag
-constexpr float farthest_look = 2.1f, steepest = 1.45f;  // radians
-constexpr float storyteller_room = 0.35f;                // metres around her axis
+constexpr float widest_look = 2.1f, steepest = 1.45f;  // radians
+constexpr float storyteller_room = 0.35f;              // metres around her axis
 
 const Viewpoint& view_of(const Exhibit& exhibit, int viewpoint) {
   return exhibit.viewpoints[size_t(viewpoint)].view;
@@ -186,7 +186,7 @@ void glide_to(TourRide& ride, int viewpoint, const Viewpoint& from) {
 
 void look_round(TourRide& ride, vec2 by) {
   ride.look += by;
-  ride.look.x = std::clamp(ride.look.x, -farthest_look, farthest_look);
+  ride.look.x = std::clamp(ride.look.x, -widest_look, widest_look);
   ride.look.y = std::clamp(ride.look.y, -steepest, steepest);
   ride.looked = 0;
 }

@@ -5,10 +5,10 @@
 #pragma once
 #include <memory>
 
-#include "show/visit/camera_path.h"
 #include "show/exhibit/exhibit.h"
-#include "show/exhibit/problem.h"
+#include "show/exhibit/json_fields.h"
 #include "show/storyteller/voice.h"
+#include "show/visit/camera_path.h"
 #include "show/visit/walk_map.h"
 
 namespace wellspring::show {

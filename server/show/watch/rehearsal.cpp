@@ -5,17 +5,56 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
-#include "base/cancel.h"
 #include "base/clock.h"
-#include "base/latest.h"
 #include "base/log.h"
+#include "base/worker.h"
 #include "show/state/show.h"
-#include "show/watch/folder_watch.h"
 
 namespace wellspring::show {
+
+namespace fs = std::filesystem;
+
+FolderWatch::FolderWatch(std::string folder, double still)
+    : folder_(std::move(folder)), still_(still), known_(look(folder_)), last_(known_) {}
+
+FolderWatch::Files FolderWatch::look(const std::string& folder) {
+  Files files;
+  std::error_code error;  // what goes while it is looked at is not there
+  fs::recursive_directory_iterator at(folder, error), end;
+  while (!error && at != end) {
+    const std::string name = at->path().filename().string();
+    const bool hidden = name.starts_with('.'), folder_itself = at->is_directory(error);
+    if (hidden && folder_itself) at.disable_recursion_pending();
+    if (!hidden && !folder_itself && !name.ends_with('~')) {
+      const auto time = at->last_write_time(error);
+      const auto size = at->file_size(error);
+      if (!error) files[at->path().string()] = {time, size};
+    }
+    error.clear();
+    at.increment(error);
+  }
+  return files;
+}
+
+bool FolderWatch::changed(double now) {
+  Files files = look(folder_);
+  if (files != last_) {
+    last_ = std::move(files);
+    moved_at_ = now;
+  }
+  if (last_ == known_ || now - moved_at_ < still_) return false;
+  known_ = last_;
+  return true;
+}
+
+bool FolderWatch::changed() {
+  last_ = look(folder_);
+  return std::exchange(known_, last_) != last_;
+}
 
 namespace {
 
@@ -114,5 +153,26 @@ void Rehearsal::look(bool anyway) {
 bool Rehearsal::at_work() const { return impl_->at_work; }
 
 std::optional<Rehearsal::Outcome> Rehearsal::take() { return impl_->outcome.take(); }
+
+using nlohmann::json;
+
+std::string write_problems(const std::vector<Problem>& problems) {
+  json message = {{"type", "problems"}, {"list", json::array()}};
+  for (const Problem& problem : problems)
+    message["list"].push_back(
+        {{"file", problem.file}, {"where", problem.where}, {"what", problem.what}});
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+void set_problems(Show& show, std::vector<Problem> problems) {
+  const std::string message = problems.empty() && show.problems_message.empty()
+                                  ? std::string()  // nothing was ever wrong
+                                  : write_problems(problems);
+  show.problems = std::move(problems);
+  if (message == show.problems_message) return;
+  show.problems_message = message;
+  for (Visitor& visitor : show.visitors)
+    if (visitor.welcomed) visitor.link->send_text(message);
+}
 
 }  // namespace wellspring::show

@@ -1,15 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes a new show of an exhibit when its files have changed, while the old one goes on.
 #pragma once
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "show/exhibit/problem.h"
+#include "show/exhibit/json_fields.h"
+#include "show/state/show.h"
 
 namespace wellspring::show {
+
+// Whether files of a folder have changed, by their sizes and times. Who saves a file writes it in
+// pieces, so a change is told when all have been still for a moment.
+
+class FolderWatch {
+ public:
+  // As the files are now is how they are known.
+  explicit FolderWatch(std::string folder, double still = 0.5);
+
+  // At `now`, seconds. True once for each change, when the files have been still since `still`
+  // seconds; not for one that is taken back before.
+  bool changed(double now);
+  // Whether they are now other than they were known, without waiting: somebody says that they are
+  // complete.
+  bool changed();
+
+ private:
+  // Of all files below the folder but hidden ones and editors' copies (~).
+  using Files = std::map<std::string, std::pair<std::filesystem::file_time_type, std::uintmax_t>>;
+  static Files look(const std::string& folder);
+
+  std::string folder_;
+  double still_, moved_at_ = 0;
+  Files known_, last_;
+};
 
 struct Show;
 
@@ -38,5 +67,14 @@ class Rehearsal {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Tells the pages of a watched exhibit what is wrong with its files, while the old one goes on.
+
+// {"type": "problems", "list": [{file, where, what}]}; an empty list: all is mended.
+std::string write_problems(const std::vector<Problem>& problems);
+
+// From now on these: to all visitors, and by `hello` to those who come. Nothing is sent where that
+// is no news.
+void set_problems(Show& show, std::vector<Problem> problems);
 
 }  // namespace wellspring::show

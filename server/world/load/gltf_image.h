@@ -2,12 +2,46 @@
 // Pictures: PNG by libpng and JPEG by libjpeg-turbo to Image, found out by their first bytes,
 // not by their names.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 
 #include "world/texture.h"
 
+struct png_struct_def;
+struct png_info_def;
+
 namespace wellspring::world {
+
+// PNG pictures by libpng. Rows are unpacked one after the other, so that a file takes no more
+// memory than its width and height say.
+
+class PngReader {
+ public:
+  explicit PngReader(std::span<const uint8_t> bytes);  // borrowed
+  ~PngReader();
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+
+  // Both are called once, in this order. False: `problem` says what is wrong with the file.
+  bool read_head();
+  // Red, green, blue and alpha of each pixel as they stand in the file, from the top: uint8_t, or
+  // uint16_t where there are 16 bits. Its colour profile and gamma are left alone, as glTF has it
+  // (2.0, section 3.8.2).
+  bool read_texels(void* texels);
+
+  int width = 0, height = 0, bits = 0;  // of a channel; from the head
+  std::string problem;
+
+ private:
+  static void read(png_struct_def* png, unsigned char* to, size_t count);
+  static void fail(png_struct_def* png, const char* what);
+
+  std::span<const uint8_t> left_;  // of the file
+  png_struct_def* png_ = nullptr;
+  png_info_def* info_ = nullptr;
+};
 
 constexpr int image_side_limit = 16384;
 constexpr int64_t image_texel_limit = int64_t(1) << 28;  // all pictures of a scene together

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
-#include "base/cancel.h"
+#include "base/worker.h"
 #include "gltf/data.h"
-#include "gltf/uri.h"
+#include "gltf/file.h"
 #include "world/load/gltf_image.h"
 
 namespace wellspring::world {

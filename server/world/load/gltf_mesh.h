@@ -2,8 +2,11 @@
 // Primitives of a glTF file to triangles: topologies, attributes, morph targets, skins (glTF 2.0
 // section 3.7).
 #pragma once
+#include <vector>
+
 #include "base/vec.h"
 #include "gltf/file.h"
+#include "world/motion/scene_motion.h"
 #include "world/scene.h"
 
 namespace wellspring::world {
@@ -32,5 +35,29 @@ BuiltMesh build_primitive(File& file, size_t mesh, size_t primitive, const Defor
 
 // The joints and bind matrices of a skin, `global` being every node's transform.
 std::vector<dmat4> joint_matrices(File& file, size_t skin, const std::vector<dmat4>& global);
+
+// The animations of a glTF file, and the meshes that they move, to a SceneMotion.
+
+class MotionLoad {
+ public:
+  // `nodes` at rest. Throws LoadError for animations that cannot be read.
+  MotionLoad(File& file, const std::vector<Node>& nodes);
+
+  struct Shown {
+    int instance = 0;  // of Scene::instances
+    size_t node = 0, mesh = 0, primitive = 0;
+    int skin = -1;  // -1: it has none
+    int tangent_uv = -1;
+  };
+  void note(const Shown& shown);
+  // Adds the motion to the scene, if any clip moves anything that was noted.
+  void finish(Scene& scene);
+
+ private:
+  Mover make_mover(const Shown& shown);
+  File& file_;
+  SceneMotion motion_;
+  std::vector<Shown> shown_;
+};
 
 }  // namespace wellspring::world

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "base/near_name.h"
+#include "base/unicode.h"
 
 namespace wellspring::world {
 namespace {

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/load/scene_join.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <utility>
+
+#include "base/layers.h"
+#include "gltf/file.h"
 
 namespace wellspring::world {
 namespace {
@@ -92,6 +97,48 @@ void join_scene(Scene& into, Scene part) {
 void scale_light(Scene& scene, float factor) {
   for (PunctualLight& light : scene.lights) light.intensity *= factor;
   for (Material& material : scene.materials) material.emission *= factor;
+}
+
+using namespace gltf;
+
+std::vector<std::string> list_scene_files(const std::string& path) {
+  File file = load_gltf(path, "");
+  std::vector<std::string> names;
+  for (const char* kind : {"buffers", "images"}) {
+    const json& list = items(file.root, kind);
+    for (size_t i = 0; i < list.size(); i++) {
+      const std::string uri = text(list[i], "uri"), where = at(std::string("/") + kind, i);
+      if (uri.empty() || is_data_uri(uri)) continue;
+      const auto found = find_uri(file, where, uri);
+      if (!found) continue;
+      const std::string name = found->lexically_relative(file.package).string();
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+using namespace gltf;
+
+Credit load_credit(const std::string& path, const std::string& package) {
+  File file = load_gltf(path, package);
+  Credit credit;
+  credit.file = std::filesystem::path(path).filename().string();
+  const json& asset = file.root["asset"];
+  credit.copyright = text(asset, "copyright");
+  const json* extras = find(asset, "extras");
+  if (!extras || !extras->is_object()) return credit;
+  // Extras may hold anything: what is no text is passed over.
+  auto read = [&](const char* key) {
+    const json* value = find(*extras, key);
+    return value && value->is_string() ? value->get<std::string>() : std::string();
+  };
+  credit.title = read("title");
+  credit.author = read("author");
+  credit.licence = read("license");
+  if (credit.licence.empty()) credit.licence = read("licence");
+  credit.source = read("source");
+  return credit;
 }
 
 }  // namespace wellspring::world

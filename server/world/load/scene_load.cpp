@@ -6,17 +6,15 @@
 #include <cmath>
 #include <map>
 
-#include "base/cancel.h"
 #include "base/load_error.h"
-#include "gltf/attributes.h"
+#include "base/worker.h"
+#include "gltf/animation.h"
 #include "gltf/data.h"
+#include "gltf/primitive.h"
 #include "world/load/gltf_image.h"
 #include "world/load/gltf_material.h"
 #include "world/load/gltf_mesh.h"
-#include "world/load/load_motion.h"
 #include "world/mesh_finish.h"
-#include "gltf/instances.h"
-#include "gltf/pose.h"
 
 namespace wellspring::world {
 namespace {

@@ -2,7 +2,7 @@
 // glTF 2.0 files (.gltf, .glb, embedded data) to a Scene. Every type, count, offset and index is
 // checked before anything is read (gltf/file.h says what is refused and what is only warned of).
 // Files a package names must lie inside the package's folder. Cost is linear in the file and
-// bounded; may block on the disk; may be cancelled (base/cancel.h).
+// bounded; may block on the disk; may be cancelled (base/worker.h).
 #pragma once
 #include <string>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "gltf/pose.h"
+#include "gltf/animation.h"
 
 namespace wellspring::world {
 

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gltf/clip.h"
-#include "gltf/node.h"
+#include "gltf/animation.h"
 #include "world/scene.h"
 
 namespace wellspring::world {

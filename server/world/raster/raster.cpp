@@ -7,14 +7,13 @@
 #include <cstring>
 #include <limits>
 
-#include "base/simd.h"
 #include "base/parallel.h"
-#include "world/raster/raster_clusters.h"
+#include "base/simd.h"
 #include "world/raster/raster_cull.h"
 #include "world/raster/raster_edges.h"
 #include "world/raster/raster_setup.h"
 #include "world/raster/raster_tile.h"
-#include "world/world_alpha.h"
+#include "world/world_build.h"
 
 namespace wellspring::world {
 namespace {
@@ -146,7 +145,7 @@ void Raster::Impl::find_pieces(const View& view, const RasterSettings& settings)
     if (settings.shows == RasterShows::moving && !placed.moving && !veils(placed)) continue;
     moving[i] = moving_box(placed);
     wellspring::world::find_pieces(view, placed, meshes[mesh_of[i]], i, moving[i],
-                            std::max(near, view.near), pieces);
+                                   std::max(near, view.near), pieces);
   }
 }
 

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "world/raster/edge_share.h"
+#include "world/raster/raster_tile.h"
 #include "world/view.h"
 #include "world/world.h"
 

@@ -43,7 +43,7 @@ struct RasterTriangle {
   int32_t a[3], b[3], from_x[3], from_y[3], bias[3];
   uint32_t instance, triangle;
   float width;  // of it and its neighbours, pixels over inverse depth
-  bool bar;     // MeshNeighbours::bar (world/raster/raster_walk.h)
+  bool bar;     // MeshNeighbours::bar (world/raster/raster_edges.h)
   // Inverse depth, and it times the barycentrics: value at `corner` and slopes a pixel.
   vec2 corner;
   vec3 depth, u, v;  // value, slope along x, slope along y

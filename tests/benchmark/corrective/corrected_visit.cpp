@@ -7,8 +7,8 @@
 #include "light/bake/map_file.h"
 #include "light/technique/technique.h"
 #include "picture/compose_drawn.h"
-#include "picture/read_surface.h"
-#include "show/exhibit/eye_places.h"
+#include "picture/compositor.h"
+#include "show/exhibit/exhibit_objects.h"
 
 namespace wellspring::test {
 namespace {

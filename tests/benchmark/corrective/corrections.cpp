@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/packing.h"
-#include "light/visible/visible_material.h"
+#include "light/visible/facet.h"
 #include "picture/surface_image.h"
 
 namespace wellspring::test {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/simd3.h"
+#include "base/simd.h"
 
 namespace wellspring::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of a list, eight at a time; the last of a list may be fewer.
 #pragma once
-#include "base/simd3.h"
+#include "base/simd.h"
 
 namespace wellspring::test {
 

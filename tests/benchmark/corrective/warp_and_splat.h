@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "base/raw_vector.h"
+#include "base/memory.h"
 #include "object_samples.h"
 
 namespace wellspring::test {

@@ -7,9 +7,9 @@
 #include "kiosk/face/face_finder.h"
 #include "kiosk/face/head_pose.h"
 #include "kiosk/figure.h"
-#include "kiosk/frame/one_euro.h"
-#include "main_compare.h"
+#include "kiosk/frame/head.h"
 #include "kiosk/observe.h"
+#include "main_compare.h"
 
 namespace wellspring::test {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of visitors as a folder that the kiosk's eye watches: PNG files and truth.json, which
-// says how long each is shown and what is true in it. wellspring_kiosk_watch (tests/benchmark/kiosk/main_watch.cpp)
-// watches it, so that OpenCV stays out of the benchmark's program.
+// says how long each is shown and what is true in it. wellspring_kiosk_watch
+// (tests/benchmark/kiosk/main_watch.cpp) watches it, so that OpenCV stays out of the benchmark's
+// program.
 #pragma once
 #include <functional>
 #include <nlohmann/json.hpp>

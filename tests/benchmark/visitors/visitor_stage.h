@@ -28,7 +28,7 @@ struct Visitor {
   vec3 eyes{0, 0, 0.8f};   // the point between the pupils
   vec3 turn{0};            // yaw, pitch, roll of the head; identity faces the screen's plane
   float size = 1;          // 1: the figure's own
-  std::string expression;  // of the emotions (avatar/face/emotion.h); empty: neutral
+  std::string expression;  // of the emotions (avatar/face/expression.h); empty: neutral
   float strength = 1;
   Worn worn = Worn::nothing;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Attention to objects: the slider between picture and task, and who wins in which order.
-#include "attention/attended.h"
+#include "attention/task.h"
 
 #include <gtest/gtest.h>
 

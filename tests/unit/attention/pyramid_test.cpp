@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gaussian pyramids: symmetrical, of mean kept, and what is expanded lies where it was.
-#include "attention/pyramid.h"
+#include "attention/saliency.h"
 
 #include <gtest/gtest.h>
 

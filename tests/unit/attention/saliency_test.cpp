@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "base/rng.h"
-#include "attention/opponents.h"
 #include "unit/attention/bars.h"
 #include "unit/attention/saliency_at.h"
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attention/attended.h"
 #include "base/rng.h"
 #include "unit/attention/saliency_at.h"
 

@@ -5,12 +5,12 @@
 #include <set>
 #include <thread>
 
-#include "base/latest.h"
 #include "base/load_error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "base/raw_vector.h"
 #include "base/rng.h"
 #include "base/vec.h"
+#include "base/worker.h"
 
 namespace wellspring::test {
 namespace {

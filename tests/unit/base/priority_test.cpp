@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/priority.h"
+#include "base/worker.h"
 
 #include <chrono>
 #include <future>

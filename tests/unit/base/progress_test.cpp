@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the line about long work says.
-#include "base/progress.h"
+#include "base/clock.h"
 
 #include <gtest/gtest.h>
 

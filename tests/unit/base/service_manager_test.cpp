@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/service_manager.h"
+#include "base/host.h"
 
 #include <gtest/gtest.h>
 

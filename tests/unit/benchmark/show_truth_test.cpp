@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
-#include "frame/flip.h"
+#include "judge/flip.h"
 
 namespace wellspring::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "cache/point_image.h"
-#include "frame/flip.h"
+#include "judge/flip.h"
 #include "unit/cache/visit.h"
 
 namespace wellspring::test {

@@ -10,7 +10,7 @@
 
 #include "cache/packing.h"
 #include "cache/point_cache.h"
-#include "frame/compare.h"
+#include "judge/compare.h"
 #include "unit/cache/visit.h"
 
 namespace wellspring::test {

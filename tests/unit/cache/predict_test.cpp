@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is about to come into view is asked for before.
-#include "cache/predict.h"
+#include "cache/plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All cores as a worker: whose pieces it takes, and when it stops.
-#include "cache/trace_waiting.h"
+#include "cache/broker.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

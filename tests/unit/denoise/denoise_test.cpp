@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "denoise/transfer.h"
+#include "denoise/tile.h"
 
 namespace wellspring::test {
 namespace {

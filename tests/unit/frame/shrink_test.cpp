@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frame/shrink.h"
+#include "frame/jpeg.h"
 
 #include <gtest/gtest.h>
 

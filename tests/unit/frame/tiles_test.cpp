@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frame/tiles.h"
+#include "frame/jpeg.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
-#include "frame/jpeg.h"
 
 namespace wellspring::test {
 namespace {

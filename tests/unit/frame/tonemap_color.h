@@ -2,7 +2,6 @@
 #pragma once
 #include <cmath>
 
-#include "frame/tone_curve.h"
 #include "frame/tonemap.h"
 
 namespace wellspring::test {

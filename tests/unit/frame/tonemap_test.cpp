@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/tonemap.h"
 
-#include "frame/tone_curve.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

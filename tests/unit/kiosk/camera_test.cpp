@@ -12,7 +12,6 @@
 
 #include "base/clock.h"
 #include "base/load_error.h"
-#include "kiosk/feed.h"
 #include "kiosk/figure.h"
 #include "unit/folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/camera_watch.h"
+#include "kiosk/camera.h"
 
 #include <gtest/gtest.h>
 

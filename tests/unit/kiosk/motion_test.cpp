@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/motion.h"
+#include "kiosk/people.h"
 
 #include <gtest/gtest.h>
 

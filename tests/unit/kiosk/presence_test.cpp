@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/presence.h"
+#include "kiosk/observe.h"
 
 #include <gtest/gtest.h>
 

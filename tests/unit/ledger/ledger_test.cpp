@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "base/layers.h"
-#include "ledger/sums_file.h"
+#include "ledger/sums.h"
 #include "unit/folder.h"
 
 namespace wellspring::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/layers.h"
-#include "museum/calendar.h"
+#include "museum/upkeep.h"
 
 #include <gtest/gtest.h>
 

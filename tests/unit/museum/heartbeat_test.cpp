@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "museum/heartbeat.h"
+#include "museum/upkeep.h"
 
 #include <gtest/gtest.h>
 

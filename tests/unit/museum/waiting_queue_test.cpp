@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "museum/waiting_queue.h"
+#include "museum/reception.h"
 
 #include <gtest/gtest.h>
 

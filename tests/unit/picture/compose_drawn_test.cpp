@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame/compare.h"
-#include "frame/flip.h"
 #include "frame/tonemap.h"
+#include "judge/compare.h"
+#include "judge/flip.h"
 #include "unit/picture/drawn_visit.h"
 
 namespace wellspring::test {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "frame/compare.h"
+#include "judge/compare.h"
 #include "unit/picture/drawn_visit.h"
 
 namespace wellspring::test {

@@ -2,7 +2,7 @@
 // What techniques know of their samples' noise, and what the cache makes of it.
 #include <gtest/gtest.h>
 
-#include "frame/flip.h"
+#include "judge/flip.h"
 #include "unit/picture/drawn_visit.h"
 
 namespace wellspring::test {

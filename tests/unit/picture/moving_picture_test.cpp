@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What moves in a picture at rest, drawn by itself.
-#include "picture/moving_picture.h"
+#include "picture/keyframe.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
-#include "frame/tone_curve.h"
 #include "frame/tonemap.h"
 #include "light/known/skin_light.h"
 #include "unit/frame/tonemap_color.h"

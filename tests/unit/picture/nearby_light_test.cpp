@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The light of narrow things is that of the nearest points which show them, wherever in the
 // picture.
-#include "picture/nearby_light.h"
+#include "picture/pixel_light.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "base/rng.h"
 #include "cache/packing.h"
-#include "cache/scratch.h"
+#include "cache/point_image.h"
 
 using namespace wellspring;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light that moves, put over a picture at rest, is as if it had been there before the tone curve.
-#include "picture/relight.h"
+#include "picture/compositor.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "light/dynamic/dynamic_image.h"
-#include "light/visible/describe_run.h"
+#include "light/visible/surface_buffer.h"
 #include "scenes/scenes.h"
 
 using namespace wellspring;

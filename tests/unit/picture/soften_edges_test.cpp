@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "frame/tone_curve.h"
 #include "frame/tonemap.h"
 
 using namespace wellspring;

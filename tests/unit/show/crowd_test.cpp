@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 

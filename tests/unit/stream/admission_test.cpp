@@ -5,7 +5,7 @@
 #include "base/layers.h"
 #include "stream/address.h"
 #include "stream/admission.h"
-#include "stream/frames.h"
+#include "stream/core.h"
 #include "unit/stream/raw_client.h"
 
 using namespace wellspring;
@@ -67,7 +67,8 @@ TEST(Frames, are_counted_whatever_they_are_and_however_they_come) {
   for (int i = 0; i < 1000; i++) bytes += RawClient::frame_bytes(0x00, "");
   bytes += RawClient::frame_bytes(0x81, std::string(125, 'x')) +
            RawClient::frame_bytes(0x81, std::string(126, 'x')) + RawClient::frame_bytes(0x89, "") +
-           RawClient::frame_bytes(0x82, std::string(70000, 'x')) + RawClient::frame_bytes(0x8a, "p", false);
+           RawClient::frame_bytes(0x82, std::string(70000, 'x')) +
+           RawClient::frame_bytes(0x8a, "p", false);
   const auto* begin = reinterpret_cast<const uint8_t*>(bytes.data());
   FrameCounter whole;
   EXPECT_EQ(whole.count({begin, bytes.size()}), 1005u);

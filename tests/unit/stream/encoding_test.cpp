@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stream/encoding.h"
-
 #include "stream/reply.h"
+
 #include "unit/stream/fixture.h"
-#include "wire/gzip.h"
+#include "wire/http.h"
 
 using namespace wellspring;
 

@@ -39,7 +39,8 @@ TEST(Limits, a_foreign_host_gets_421_whatever_it_asks) {
 }
 
 TEST(Limits, empty_fragments_are_a_flood_like_others) {
-  for (const std::string& bytes : {frame_bytes(0x00, ""), frame_bytes(0x00, "x"), frame_bytes(0x89, "")}) {
+  for (const std::string& bytes :
+       {frame_bytes(0x00, ""), frame_bytes(0x00, "x"), frame_bytes(0x89, "")}) {
     House house;
     RawClient client(house.port());
     client.join();

@@ -7,12 +7,10 @@
 #include <atomic>
 #include <future>
 
-#include "base/rate.h"
-#include "stream/origin.h"
-#include "stream/range.h"
+#include "base/clock.h"
+#include "stream/core.h"
 #include "stream/reply.h"
 #include "stream/target.h"
-#include "stream/workers.h"
 
 using namespace wellspring;
 

@@ -3,8 +3,8 @@
 // are cut.
 #include <fstream>
 
+#include "judge/ws_client.h"
 #include "unit/stream/fixture.h"
-#include "stream/ws_client.h"
 
 using namespace wellspring;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who gets a WebSocket, and what a close says.
+#include "judge/ws_client.h"
 #include "unit/stream/fixture.h"
-#include "stream/ws_client.h"
 
 using namespace wellspring;
 

@@ -40,13 +40,15 @@ TEST(WebSocket, texts_arrive) {
 
 TEST(WebSocket, fragments_are_put_together_around_control_frames) {
   Talk talk;
-  talk.client.send(frame_bytes(0x01, "he") + frame_bytes(0x89, "ping") + frame_bytes(0x00, "ll") + frame_bytes(0x80, "o"));
+  talk.client.send(frame_bytes(0x01, "he") + frame_bytes(0x89, "ping") + frame_bytes(0x00, "ll") +
+                   frame_bytes(0x80, "o"));
   const auto pong = talk.client.next_frame();
   ASSERT_TRUE(pong);
   EXPECT_EQ(pong->opcode, 10);
   EXPECT_EQ(pong->payload, "ping");
   EXPECT_EQ(House::text_from(talk.link), "hello");
-  for (const char byte : frame_bytes(0x81, "byte by byte")) talk.client.send(std::string_view(&byte, 1));
+  for (const char byte : frame_bytes(0x81, "byte by byte"))
+    talk.client.send(std::string_view(&byte, 1));
   EXPECT_EQ(House::text_from(talk.link), "byte by byte");
 }
 
@@ -115,7 +117,9 @@ TEST(WebSocket, messages_of_64_kib_are_fine_and_one_byte_more_closes_with_1009) 
   EXPECT_EQ(talk.say(frame_bytes(0x81, std::string(max_message_bytes + 1, 'x'))), 1009);
   Talk fragments;
   const std::string part(max_message_bytes / 2, 'x');
-  EXPECT_EQ(fragments.say(frame_bytes(0x01, part) + frame_bytes(0x00, part) + frame_bytes(0x80, "x")), 1009);
+  EXPECT_EQ(
+      fragments.say(frame_bytes(0x01, part) + frame_bytes(0x00, part) + frame_bytes(0x80, "x")),
+      1009);
   Talk announced;  // by the header alone, before any of it has come
   EXPECT_EQ(
       announced.say(std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xff\x11\x22\x33\x44", 14)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/layers.h"
-#include "wire/gzip.h"
+#include "wire/http.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "wire/seal.h"
+#include "wire/tokens.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include "unit/wire/golden.h"
 #include "unit/wire/sound_view.h"
-#include "wire/sound_packet.h"
+#include "wire/packet.h"
 
 using namespace wellspring;
 

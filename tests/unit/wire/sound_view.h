@@ -5,8 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "wire/little_endian.h"
-#include "wire/sound_packet.h"
+#include "wire/packet.h"
 
 namespace wellspring::test {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "scenes/build.h"
-#include "world/packet_simd.h"
 #include "world/raster/raster.h"
 #include "world/surface.h"
 #include "world/world.h"
+#include "world/world_packet.h"
 
 namespace wellspring::test {
 namespace {

@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "avatar/align/align.h"
-#include "avatar/speech/mouth_shapes.h"
 #include "avatar/speech/process.h"
+#include "avatar/speech/visemes.h"
 #include "base/rng.h"
 #include "unit/avatar/speech/narrator.h"
 #include "unit/avatar/speech/speech_texts.h"

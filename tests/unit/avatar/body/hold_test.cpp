@@ -2,7 +2,6 @@
 // An arm that holds something: fetched, held, brought back; the other arm goes on.
 #include <gtest/gtest.h>
 
-#include "avatar/body/grip.h"
 #include "avatar/body/hold.h"
 #include "avatar/mind/storyteller.h"
 #include "unit/avatar/figures.h"

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "avatar/body/body.h"
-#include "avatar/body/point_at.h"
 #include "avatar/mind/storyteller.h"
 #include "unit/avatar/figures.h"
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "avatar/figure/describe.h"
+#include "avatar/figure/figure_check.h"
 #include "unit/avatar/figures.h"
 
 namespace wellspring::test {

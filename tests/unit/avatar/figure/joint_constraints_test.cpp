@@ -8,8 +8,8 @@
 #include <functional>
 
 #include "avatar/body/body.h"
+#include "avatar/figure/figure_check.h"
 #include "avatar/load/character_load.h"
-#include "avatar/figure/describe.h"
 #include "avatar/mind/storyteller.h"
 #include "base/load_error.h"
 #include "base/rng.h"

@@ -5,7 +5,6 @@
 
 #include "avatar/body/body.h"
 #include "avatar/figure/joint_limits.h"
-#include "avatar/body/point_at.h"
 #include "avatar/mind/storyteller.h"
 #include "base/rng.h"
 #include "unit/avatar/figures.h"

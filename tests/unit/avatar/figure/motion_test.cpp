@@ -6,14 +6,13 @@
 #include "avatar/figure/retarget.h"
 #include "avatar/figure/skin.h"
 #include "base/load_error.h"
-#include "unit/avatar/figures.h"
+#include "gltf/animation.h"
 #include "gltf/data.h"
-#include "gltf/pose.h"
+#include "unit/avatar/figures.h"
 #include "unit/avatar/load/gltf_person.h"
 
 namespace wellspring::test {
 namespace {
-
 
 Motion one_track(TrackKind kind, TrackCurve curve, std::vector<float> times,
                  std::vector<float> values) {

@@ -2,11 +2,11 @@
 // Springs, noise, mirror and blinks by their formulas.
 #include <gtest/gtest.h>
 
-#include "avatar/face/blink.h"
-#include "avatar/mind/mirror.h"
-#include "avatar/figure/noise.h"
-#include "avatar/figure/spring.h"
 #include "avatar/body/stance.h"
+#include "avatar/face/face.h"
+#include "avatar/figure/noise.h"
+#include "avatar/figure/spring_bones.h"
+#include "avatar/mind/storyteller_io.h"
 
 namespace wellspring::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <complex>
 
+#include "avatar/figure/figure_check.h"
 #include "avatar/load/character_load.h"
-#include "avatar/figure/describe.h"
 #include "avatar/mind/storyteller.h"
 #include "base/rng.h"
 #include "unit/avatar/figures.h"

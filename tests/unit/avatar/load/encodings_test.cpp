@@ -10,7 +10,6 @@
 namespace wellspring::test {
 namespace {
 
-
 const std::string in_xml = test::x3d(R"(
 <Transform scale='2 2 2'><HAnimHumanoid DEF='H' name='Twin' loa='0'>
   <HAnimJoint DEF='R' containerField='skeleton' name='HumanoidRoot' center='0 1 0' skinCoordIndex='0 1 2' skinCoordWeight='1 0.5 1'

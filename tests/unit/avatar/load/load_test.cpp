@@ -10,7 +10,6 @@
 namespace wellspring::test {
 namespace {
 
-
 bool warned(const Character& character, const std::string& part) {
   return std::any_of(character.warnings.begin(), character.warnings.end(),
                      [&](const std::string& w) { return w.find(part) != std::string::npos; });

@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "avatar/body/body.h"
-#include "avatar/load/character_load.h"
-#include "avatar/figure/describe.h"
 #include "avatar/face/expression_rules.h"
 #include "avatar/face/expression_sum.h"
-#include "avatar/mind/storyteller.h"
+#include "avatar/figure/figure_check.h"
+#include "avatar/load/character_load.h"
 #include "avatar/load/vrm_extension.h"
+#include "avatar/mind/storyteller.h"
 #include "base/load_error.h"
 #include "unit/avatar/load/vrm_person.h"
 

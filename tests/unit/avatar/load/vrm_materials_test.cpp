@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "avatar/load/character_load.h"
-#include "avatar/load/vrm_color.h"
 #include "avatar/load/vrm_extension.h"
+#include "avatar/load/vrm_json.h"
 #include "base/load_error.h"
 #include "unit/avatar/figures.h"
 #include "unit/avatar/load/vrm_person.h"

@@ -2,7 +2,7 @@
 // The mood machine against a clock of our own.
 #include <gtest/gtest.h>
 
-#include "avatar/mind/behaviour.h"
+#include "avatar/mind/gaze.h"
 
 namespace wellspring::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "avatar/speech/mouth_shapes.h"
+#include "avatar/speech/visemes.h"
 #include "base/rng.h"
 
 namespace wellspring::test {

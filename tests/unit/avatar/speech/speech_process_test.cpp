@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "avatar/speech/process.h"
-#include "avatar/speech/mouth_shapes.h"
+#include "avatar/speech/visemes.h"
 #include "base/layers.h"
 #include "unit/avatar/speech/speech_texts.h"
 

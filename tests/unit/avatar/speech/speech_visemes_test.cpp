@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "avatar/speech/make_visemes.h"
+#include "avatar/speech/visemes.h"
 #include "base/rng.h"
 
 namespace wellspring::test {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "avatar/align/fit.h"
+#include "avatar/align/align.h"
 #include "avatar/speech/speech_json.h"
 #include "avatar/story/recorded_story.h"
 #include "base/load_error.h"

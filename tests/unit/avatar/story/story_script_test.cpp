@@ -4,10 +4,9 @@
 
 #include <cmath>
 
-#include "avatar/speech/style.h"
+#include "avatar/speech/text.h"
+#include "avatar/story/story_markup.h"
 #include "avatar/story/story_script.h"
-#include "avatar/story/story_sentence.h"
-#include "avatar/story/story_value.h"
 #include "base/load_error.h"
 #include "base/rng.h"
 

@@ -2,7 +2,7 @@
 // Marks at the times of their words, and subtitles in and out.
 #include <gtest/gtest.h>
 
-#include "avatar/body/gesture_library.h"
+#include "avatar/body/gesture.h"
 #include "avatar/speech/process.h"
 #include "avatar/story/story_script.h"
 #include "avatar/story/subtitle.h"

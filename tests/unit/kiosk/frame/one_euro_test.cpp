@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/frame/one_euro.h"
+#include "kiosk/frame/head.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/gesture/hmm.h"
+#include "kiosk/gesture/trajectory.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/rng.h"
-#include "kiosk/gesture/non_gesture.h"
+#include "kiosk/gesture/train.h"
 
 namespace wellspring::test {
 namespace {

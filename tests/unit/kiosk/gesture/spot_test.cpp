@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "kiosk/gesture/score.h"
+#include "judge/score.h"
 #include "kiosk/gesture/train.h"
 #include "kiosk/gesture/writer.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Damaged manifests and weights are refused, with the file and the tensor that is wrong.
-#include "kiosk/network/weights.h"
+#include "kiosk/network/network.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include <string>
 
 #include "base/load_error.h"
-#include "kiosk/network/network.h"
 
 namespace wellspring::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/process/sandbox.h"
+#include "kiosk/process/eye_process.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -17,7 +17,6 @@
 #include <functional>
 #include <thread>
 
-#include "kiosk/process/eye_process.h"
 #include "unit/folder.h"
 
 namespace wellspring::test {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "light/bake/bake_file.h"
-#include "light/bake/coarse_light.h"
 #include "light/bake/finish_bake.h"
 #include "scenes/scenes.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bounce of lights that stay as they are comes to the truth, smoothly, and follows when a light
 // changes after all.
-#include "light/dynamic/settled_bounce.h"
+#include "light/dynamic/dynamic_image.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "light/instant/light_order.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "light/known/lamp_cells.h"
+#include "light/known/lamps.h"
 
 #include <gtest/gtest.h>
 

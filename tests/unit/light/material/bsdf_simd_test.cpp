@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eight surfaces at once scatter as each does alone.
-#include "light/material/bsdf_simd.h"
+#include "light/material/bsdf.h"
 
 #include "unit/light/material/bsdf_cases.h"
 #include "light/random/warp.h"

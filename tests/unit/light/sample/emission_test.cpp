@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/sample/emission.h"
 
-#include "light/sample/emission_picture.h"
-#include "light/sample/lights.h"
+#include "light/sample/environment_light.h"
 #include "light/sample/light_tables.h"
+#include "light/sample/lights.h"
 #include "light/sample/sample_light.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"

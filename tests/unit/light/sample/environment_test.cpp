@@ -5,9 +5,8 @@
 
 #include <functional>
 
-#include "light/sample/emission_picture.h"
-#include "light/sample/light_tables.h"
 #include "light/random/warp.h"
+#include "light/sample/light_tables.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 

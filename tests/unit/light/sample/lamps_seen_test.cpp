@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "light/known/lamps.h"
+#include "light/random/warp.h"
 #include "light/sample/lamps_seen.h"
 #include "light/sample/lights.h"
-#include "light/sample/shining.h"
-#include "light/random/place_key.h"
 #include "light/sample/sample_light.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"

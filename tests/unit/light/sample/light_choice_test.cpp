@@ -2,7 +2,7 @@
 // The choice among few punctual lights by what a glossy surface does with each.
 #include <gtest/gtest.h>
 
-#include "light/material/bsdf_frame.h"
+#include "light/material/bsdf_types.h"
 #include "light/sample/lights.h"
 #include "light/sample/sample_light.h"
 #include "unit/light/statistics.h"

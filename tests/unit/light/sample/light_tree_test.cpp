@@ -3,7 +3,7 @@
 // leave out a light that reaches the place.
 #include "light/sample/light_tree.h"
 
-#include "light/sample/light_bounds.h"
+#include "light/sample/lights.h"
 #include "light/sample/sample_light.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Virtual lights whose light does not arrive where it is seen are left out, others are dimmed by
 // what arrives.
-#include "light/splat/mean_visibility.h"
+#include "light/splat/splat_visibility.h"
 
 #include <gtest/gtest.h>
 

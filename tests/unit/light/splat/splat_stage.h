@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "light/splat/splatter.h"
 #include "light/sample/light_tables.h"
-#include "light/visible/see_through.h"
+#include "light/splat/splatter.h"
+#include "light/visible/guides.h"
 #include "scenes/scenes.h"
 
 namespace wellspring::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shadows of virtual lights: few rays, right in the mean.
-#include "light/splat/shadow_packet.h"
+#include "light/splat/splat_visibility.h"
 #include "unit/light/splat/splat_stage.h"
 #include "unit/light/statistics.h"
 

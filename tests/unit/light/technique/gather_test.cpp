@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "light/walk/known_light.h"
-#include "light/bake/coarse_light.h"
-#include "light/technique/technique.h"
-#include "light/walk/walk.h"
+#include "light/bake/finish_bake.h"
 #include "light/random/warp.h"
+#include "light/technique/technique.h"
+#include "light/walk/known_light.h"
+#include "light/walk/walk.h"
 #include "scenes/scenes.h"
 
 namespace wellspring::test {

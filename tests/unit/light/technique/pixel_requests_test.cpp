@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "light/technique/pixel_requests.h"
+#include "light/technique/technique.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <vector>
-
-#include "light/technique/technique.h"
 
 using namespace wellspring;
 

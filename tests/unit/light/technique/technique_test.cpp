@@ -4,7 +4,6 @@
 #include <cstring>
 #include <oneapi/tbb/global_control.h>
 
-#include "light/technique/pixel_requests.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 #include "world/surface.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is seen without light agrees with what a technique says of the same ray.
-#include "light/visible/see_through.h"
+#include "light/visible/guides.h"
 
 #include <cmath>
 

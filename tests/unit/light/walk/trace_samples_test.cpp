@@ -5,12 +5,12 @@
 
 #include <cstring>
 
-#include "light/random/sampler_simd.h"
+#include "light/random/sampler.h"
 #include "light/technique/technique.h"
 #include "light/walk/walk.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
-#include "world/surface_simd.h"
+#include "world/surface.h"
 
 using namespace wellspring;
 

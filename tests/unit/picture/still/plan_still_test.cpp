@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels sampled at rest: all alike, whenever one stops.
-#include "picture/still/plan_still.h"
+#include "picture/still/reconstruct_still.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame/compare.h"
+#include "judge/compare.h"
 #include "unit/picture/drawn_visit.h"
 
 namespace wellspring::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guides of the visibility pass are those that rays find.
-#include "picture/still/still_guides.h"
+#include "picture/still/reconstruct_still.h"
 
 #include <gtest/gtest.h>
 

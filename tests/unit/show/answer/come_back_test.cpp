@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A house that opens and closes, has quiet hours and says something on all screens.
-#include "show/answer/follow_house.h"
+#include "show/answer/idle.h"
 
 #include "show/http/report.h"
 #include "show/draw/pace.h"

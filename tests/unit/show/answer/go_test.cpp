@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "show/state/in_view.h"
-#include "show/visit/closer.h"
 #include "show/visit/route.h"
 #include "unit/show/show_stage.h"
 

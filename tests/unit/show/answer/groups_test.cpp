@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 

@@ -2,8 +2,8 @@
 // Kiosks of one house: stages, pages and cameras by name, and the storyteller who is with one.
 #include <gtest/gtest.h>
 
-#include "show/answer/kiosk_window.h"
-#include "show/kiosk/screen_window.h"
+#include "show/answer/groups.h"
+#include "show/kiosk/kiosk.h"
 #include "unit/show/kiosk_house.h"
 
 namespace wellspring::test {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "show/state/lamps.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"

@@ -9,7 +9,7 @@
 #include "show/answer/events.h"
 #include "unit/show/show_stage.h"
 #include "unit/wire/sound_view.h"
-#include "wire/sound_packet.h"
+#include "wire/packet.h"
 
 namespace wellspring::test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who is believed to be a kiosk's page.
-#include "show/answer/trust.h"
+#include "show/answer/cameras.h"
 
 #include <gtest/gtest.h>
 

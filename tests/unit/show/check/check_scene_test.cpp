@@ -8,10 +8,9 @@
 
 #include "light/bake/bake_file.h"
 #include "light/bake/bake_scene.h"
-#include "light/bake/coarse_light.h"
+#include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
-#include "show/exhibit/exhibit_light.h"
-#include "show/check/scene_scale.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "unit/show/exhibit/room_package.h"
 #include "unit/show/tiny_exhibit.h"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "light/technique/technique.h"
-#include "show/state/dynamic_lights.h"
+#include "show/state/lamps.h"
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The storyteller in pictures at rest, drawn by itself between those of the rest.
-#include "show/draw/moving.h"
+#include "show/draw/still_pass.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/layers.h"
-#include "show/draw/sample_budget.h"
+#include "show/draw/decide.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/draw/skin_pace.h"
+#include "show/draw/pace.h"
 
 #include <gtest/gtest.h>
 

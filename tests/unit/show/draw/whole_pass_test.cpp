@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "show/draw/picture_samples.h"
+#include "show/draw/late_samples.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {

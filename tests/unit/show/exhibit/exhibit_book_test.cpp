@@ -4,8 +4,8 @@
 
 #include "frame/picture_file.h"
 #include "show/exhibit/exhibit_book.h"
+#include "show/exhibit/exhibit_files.h"
 #include "show/exhibit/exhibit_load.h"
-#include "show/exhibit/media_file.h"
 #include "unit/folder.h"
 
 using namespace wellspring;

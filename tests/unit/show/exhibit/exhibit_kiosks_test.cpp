@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/exhibit_kiosks.h"
+#include "show/exhibit/exhibit_story.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "show/exhibit/exhibit_lamps.h"
 #include "unit/show/exhibit/room_package.h"
 
 namespace wellspring::test {

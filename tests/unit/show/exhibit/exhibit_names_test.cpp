@@ -2,9 +2,9 @@
 // Names in exhibit.json and in stories that are not there, and what was meant; files of several.
 #include <gtest/gtest.h>
 
-#include "avatar/body/gesture_library.h"
-#include "avatar/face/emotion.h"
-#include "avatar/story/story_load.h"
+#include "avatar/body/gesture.h"
+#include "avatar/face/expression.h"
+#include "avatar/story/story_speech.h"
 #include "unit/show/exhibit/room_package.h"
 
 using namespace wellspring;

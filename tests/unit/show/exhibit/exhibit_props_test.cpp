@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "show/exhibit/exhibit_props.h"
+#include "show/exhibit/exhibit_objects.h"
 #include "unit/avatar/figures.h"
 #include "unit/show/exhibit/room_package.h"
 

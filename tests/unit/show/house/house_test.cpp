@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "show/house/house_file.h"
 #include "unit/folder.h"
 #include "unit/show/tiny_exhibit.h"
 

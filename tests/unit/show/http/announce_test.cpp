@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who may announce what.
-#include "show/http/announce.h"
+#include "show/http/access.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/http/still_question.h"
+#include "show/http/still.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/http/take_along.h"
+#include "show/http/pages.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frusta of a screen that is a window, against geometry; how the eye follows a head.
-#include "show/kiosk/screen_window.h"
+#include "show/kiosk/kiosk.h"
 
 #include <gtest/gtest.h>
 

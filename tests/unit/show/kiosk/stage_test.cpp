@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/layers.h"
-#include "show/kiosk/stage.h"
+#include "show/kiosk/kiosk.h"
 
 namespace wellspring::test {
 namespace {

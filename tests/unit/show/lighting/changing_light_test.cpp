@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/lighting/changing_light.h"
+#include "show/lighting/day.h"
 
 #include <gtest/gtest.h>
 

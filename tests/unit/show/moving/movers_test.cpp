@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Animations of an exhibit: read from its package, played for its visitors, seen in their pictures.
-#include "show/moving/movers.h"
+#include "show/moving/exhibit_scene.h"
 
 #include <cmath>
 #include <utility>
 #include <nlohmann/json.hpp>
 
-#include "show/exhibit/exhibit_animations.h"
-#include "show/moving/exhibit_scene.h"
-#include "show/moving/play.h"
-#include "show/state/animations.h"
+#include "show/exhibit/exhibit_objects.h"
+#include "show/state/in_view.h"
 #include "show/state/visitor_world.h"
 #include "unit/show/exhibit/room_package.h"
 #include "unit/show/show_stage.h"

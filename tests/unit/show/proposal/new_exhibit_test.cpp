@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/load_error.h"
-#include "show/exhibit/exhibit_animations.h"
+#include "show/exhibit/exhibit_objects.h"
 #include "unit/show/exhibit/room_package.h"
 #include "world/view.h"
 

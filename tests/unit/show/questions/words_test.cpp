@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/layers.h"
-#include "show/questions/words.h"
+#include "show/questions/question_index.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lights that a visitor's pictures are given beside what stands still.
-#include "show/state/dynamic_lights.h"
+#include "show/state/lamps.h"
 
 #include <gtest/gtest.h>
 

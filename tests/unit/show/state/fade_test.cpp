@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/state/fade.h"
+#include "show/state/visitor_picture.h"
 
 #include <gtest/gtest.h>
 

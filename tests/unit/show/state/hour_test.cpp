@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "show/state/dynamic_lights.h"
 #include "show/state/lamps.h"
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "show/http/answer.h"
-#include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "show/exhibit/exhibit_load.h"
+#include "show/http/answer.h"
 #include "show/state/in_view.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speed against error out of a report of the benchmark; and files that are none.
-#include "show/status/speeds.h"
+#include "show/status/status.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/storyteller/contact_sheet.h"
+#include "show/storyteller/story_clip.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "avatar/mind/storyteller.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/moving/exhibit_scene.h"
-#include "show/storyteller/story_marks.h"
+#include "show/storyteller/held_prop.h"
 
 namespace wellspring::test {
 namespace {

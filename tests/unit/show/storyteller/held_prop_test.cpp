@@ -6,7 +6,7 @@
 #include <deque>
 
 #include "avatar/load/character_load.h"
-#include "show/state/dynamic_lights.h"
+#include "show/state/lamps.h"
 #include "show/state/visitor_world.h"
 #include "unit/show/show_stage.h"
 

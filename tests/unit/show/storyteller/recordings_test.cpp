@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "avatar/speech/speech_json.h"
 #include "avatar/speech/sound_file.h"
+#include "avatar/speech/speech_json.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/storyteller/recordings.h"
-#include "show/storyteller/sounding.h"
+#include "show/storyteller/voice.h"
 
 namespace wellspring::test {
 namespace {

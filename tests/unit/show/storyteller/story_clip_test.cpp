@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "avatar/load/character_load.h"
+#include "show/storyteller/held_prop.h"
 #include "show/storyteller/story_clip.h"
-#include "show/storyteller/story_marks.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring::test {

@@ -6,7 +6,7 @@
 
 #include "show/http/still.h"
 #include "show/state/make_show.h"
-#include "show/storyteller/sounding.h"
+#include "show/storyteller/voice.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/visit/give_way.h"
+#include "show/visit/flow.h"
 
 #include <gtest/gtest.h>
 

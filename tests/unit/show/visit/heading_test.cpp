@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/visit/heading.h"
+#include "show/visit/place.h"
 
 #include <gtest/gtest.h>
 

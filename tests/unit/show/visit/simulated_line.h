@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "show/visit/give_way.h"
+#include "show/visit/flow.h"
 
 namespace wellspring::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "show/visit/walk.h"
+#include "show/visit/walk_map.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring::test {

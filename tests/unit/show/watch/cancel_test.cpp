@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every long step of making a show ends soon when it is cancelled.
-#include "base/cancel.h"
+#include "base/worker.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "light/bake/bake.h"
-#include "light/bake/coarse_light.h"
-#include "show/exhibit/exhibit_light.h"
+#include "light/bake/finish_bake.h"
+#include "show/exhibit/exhibit_lights.h"
 #include "show/state/baker.h"
 #include "show/state/make_show.h"
 #include "show/watch/rehearsal.h"

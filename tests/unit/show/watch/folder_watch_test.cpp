@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changes of a folder's files, told once and only when they lie still.
-#include "show/watch/folder_watch.h"
+#include "show/watch/rehearsal.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mistakes in a watched exhibit's files: told to those who are there and to those who come, and
 // taken back.
-#include "show/watch/problems.h"
+#include "show/watch/rehearsal.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "show/http/report.h"
-#include "show/watch/rehearsal.h"
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 

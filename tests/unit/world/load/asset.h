@@ -133,7 +133,9 @@ inline Scene load_scene_text(const std::string& text, double time = 0) {
   TempFolder folder;
   return load_scene(folder.write("test.gltf", text), {time, ""});
 }
-inline Scene load(const Asset& asset, double time = 0) { return load_scene_text(asset.gltf(), time); }
+inline Scene load(const Asset& asset, double time = 0) {
+  return load_scene_text(asset.gltf(), time);
+}
 
 // The error that loading gives; fails the test if there is none.
 inline LoadError refused(const std::string& text, const std::string& name = "test.gltf") {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a file may cost is counted in bytes and totals, however it divides its data.
-#include "gltf/limits.h"
+#include "gltf/file.h"
 
 #include "unit/world/load/asset.h"
 

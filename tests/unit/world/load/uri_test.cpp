@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gltf/uri.h"
+#include "gltf/file.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gltf/pose.h"
+#include "gltf/animation.h"
 #include "unit/world/load/asset.h"
 #include "world/load/scene_join.h"
 

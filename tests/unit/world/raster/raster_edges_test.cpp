@@ -8,7 +8,7 @@
 
 #include "scenes/scenes.h"
 #include "world/raster/raster.h"
-#include "world/raster/raster_walk.h"
+#include "world/raster/raster_edges.h"
 
 using namespace wellspring;
 

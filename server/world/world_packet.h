@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Filling the lanes of ray packets.
+#pragma once
+#include "base/simd.h"
+#include "world/world.h"
+
+namespace wellspring::world {
+
+// Rays against boxes, slab by slab, in a form that compilers turn into vector code: std::fmin and
+// std::fmax are calls.
+
+// Cuts [near, far] of a ray down to the slab [low, high] of one axis; `inverse`: 1 / direction. A
+// ray in the slab's very plane (0 times infinity) is not cut: boxes are asked whether something may
+// be met.
+inline void cut_by_slab(float low, float high, float origin, float inverse, float& near,
+                        float& far) {
+  float a = (low - origin) * inverse, b = (high - origin) * inverse;
+  float in = a < b ? a : b, out = a < b ? b : a;
+  bool known = a + b == a + b;  // else within it all along
+  in = known ? in : near;
+  out = known ? out : far;
+  near = in > near ? in : near;
+  far = out < far ? out : far;
+}
+
+inline void set_ray(const Ray& ray, int lane, RayPacket& rays) {
+  rays.origin_x[lane] = ray.origin.x, rays.origin_y[lane] = ray.origin.y;
+  rays.origin_z[lane] = ray.origin.z;
+  rays.direction_x[lane] = ray.direction.x, rays.direction_y[lane] = ray.direction.y;
+  rays.direction_z[lane] = ray.direction.z;
+  rays.t_max[lane] = ray.t_max;
+  rays.from_eye = (rays.from_eye & ~(1u << lane)) | uint32_t(ray.from_eye) << lane;
+}
+
+// lane_count of them, from lane `first` on, none of the eye.
+inline void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max, int first,
+                     RayPacket& rays) {
+  store_lanes(rays.origin_x + first, origin.x);
+  store_lanes(rays.origin_y + first, origin.y);
+  store_lanes(rays.origin_z + first, origin.z);
+  store_lanes(rays.direction_x + first, direction.x);
+  store_lanes(rays.direction_y + first, direction.y);
+  store_lanes(rays.direction_z + first, direction.z);
+  store_lanes(rays.t_max + first, t_max);
+  rays.from_eye &= ~(((1u << lane_count) - 1) << first);
+}
+
+}  // namespace wellspring::world
