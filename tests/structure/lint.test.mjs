@@ -24,7 +24,7 @@ test('ESLint has nothing to say', async () => {
   }];
   const node = 'n/no-unsupported-features';
   rules.push({
-    files: ['tests/**/*.mjs'], plugins: { n: load_module('eslint-plugin-n') },
+    files: ['tests/**/*.mjs', 'art/*.mjs'], plugins: { n: load_module('eslint-plugin-n') },
     settings: { node: { version: oldest_node } },
     rules: {
       [`${node}/node-builtins`]: ['error', { allowExperimental: true }],
@@ -33,7 +33,7 @@ test('ESLint has nothing to say', async () => {
     },
   });
   const eslint = new ESLint({ cwd: root, overrideConfigFile: true, overrideConfig: rules });
-  const looked = await eslint.lintFiles(['web/**/*.js', 'tests/**/*.mjs']);
+  const looked = await eslint.lintFiles(['web/**/*.js', 'tests/**/*.mjs', 'art/*.mjs']);
   assert.ok(looked.length > scripts.length);
   assert.deepEqual(looked.flatMap(({ filePath, messages }) => messages.map(({ line, message }) =>
     `${relative(root, filePath)}:${line} ${message}`)), []);

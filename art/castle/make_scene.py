@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the castle museum:
 
-    blender -b --factory-startup --python content/castle/make_scene.py -- OUT.glb
+    blender -b --factory-startup --python art/castle/make_scene.py -- OUT.glb
 
 Everything is computed here: geometry, pictures, light. The same script gives the same castle.
 Needs Blender 3.4 or newer with numpy in its Python (Debian: blender, python3-numpy); takes a few
@@ -19,6 +19,8 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from scripts import cameras, courtyard, export, furniture, hall, lights  # noqa: E402
 from scripts import materials, pictures, statues, treasury  # noqa: E402
 
+EXHIBIT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../content/castle')
+
 
 def build(folder):
     images = {name: materials.store_picture(name, pixels, folder, data, quality)
@@ -35,7 +37,7 @@ def build(folder):
     statues.make_bust(0.1, -3.8, 155)
     statues.make_armour(-7.35, 2.1, 90, 'Armour')
     lights.make_daylight()
-    cameras.make_cameras(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'exhibit.json'))
+    cameras.make_cameras(os.path.join(EXHIBIT, 'exhibit.json'))
 
 
 def main():

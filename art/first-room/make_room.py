@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the potter's room:
 
-    blender -b --factory-startup --python content/first-room/make_room.py -- OUT.glb
+    blender -b --factory-startup --python art/first-room/make_room.py -- OUT.glb
 
 It is put together of boxes and turned profiles (shapes.py) and computed pictures (pictures.py).
 Lengths are metres. Blender's (x, y, z) becomes (x, z, -y) in the file: the window is in the west

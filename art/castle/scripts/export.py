@@ -26,7 +26,7 @@ def settle(path):
     length, kind = struct.unpack_from('<I4s', data, 12)
     assert kind == b'JSON'
     document, rest = json.loads(data[20:20 + length]), data[20 + length:]
-    document['asset']['generator'] = 'content/castle/make_scene.py'
+    document['asset']['generator'] = 'art/castle/make_scene.py'
     document['asset']['copyright'] = 'The Wellspring authors, Apache License 2.0'
     used = {'KHR_lights_punctual'}
     for material in document['materials']:

@@ -18,7 +18,7 @@ from bell import casting
 from paper import GOLD, INK, RED, STONE, WATER, Sheet, castle_on, framed
 from well import film, well
 
-here = os.path.dirname(os.path.abspath(__file__))
+exhibit = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../../content/castle')
 
 
 def plan():
@@ -190,7 +190,7 @@ def day():
 
 def paintings():
     """The pictures that hang in the hall, out of the scene's file."""
-    with open(os.path.join(here, '..', 'scene.glb'), 'rb') as file:
+    with open(os.path.join(exhibit, 'scene.glb'), 'rb') as file:
         data = file.read()
     length = struct.unpack('<I', data[12:16])[0]
     document, start = json.loads(data[20:20 + length]), 20 + length + 8

@@ -262,7 +262,7 @@ def write(path):
               for picture in (wood_picture(), flame_picture())]
     data += b'\0' * (-len(data) % 4)
     document = {
-        'asset': {'version': '2.0', 'generator': 'content/castle/props/make_torch.py',
+        'asset': {'version': '2.0', 'generator': 'art/castle/props/make_torch.py',
                   'copyright': 'The Wellspring authors, Apache License 2.0'},
         'extensionsUsed': ['KHR_lights_punctual', 'KHR_materials_emissive_strength'],
         'extensions': {'KHR_lights_punctual': {'lights': [
