@@ -72,6 +72,7 @@ struct BoneWord {
   int number = -1;  // written behind it; finger bones: 0 metacarpal, 1, 2, 3 from the palm
 };
 BoneWord read_bone_name(std::string_view name);
+std::string_view bone_words_json();  // avatar/library/bone_words.json
 
 // H-Anim names by position alone: legs, trunk, arms and head of an upright figure. All empty where
 // the skeleton is none of a person.

@@ -3,9 +3,12 @@
 // "f_index.02.L".
 #include <algorithm>
 #include <cctype>
+#include <nlohmann/json.hpp>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "avatar/figure/bone_names.h"
+#include "base/load_error.h"
 
 namespace wellspring::avatar {
 namespace {
@@ -37,151 +40,38 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
+// The parts' names in avatar/library/bone_words.json, in the order of BonePart.
+constexpr std::string_view part_names[] = {
+    "none",  "root",  "hips",   "spine",    "neck",      "head",   "eye",     "jaw",
+    "lid",   "brow",  "collar", "shoulder", "upper_arm", "arm",    "forearm", "wrist",
+    "hand",  "hip",   "thigh",  "leg",      "shin",      "ankle",  "foot",    "toe",
+    "thumb", "index", "middle", "ring",     "little",    "finger", "helper"};
+static_assert(std::size(part_names) == size_t(BonePart::helper) + 1);
+
+// The words of avatar/library/bone_words.json.
+struct Vocabulary {
+  std::unordered_set<std::string> left, right, noise, helpers;
+  std::unordered_map<std::string, BonePart> parts;
+
+  Vocabulary() {
+    const auto words = nlohmann::json::parse(bone_words_json());
+    words.at("left").get_to(left), words.at("right").get_to(right);
+    words.at("noise").get_to(noise), words.at("helpers").get_to(helpers);
+    for (const auto& [name, known] : words.at("parts").items()) {
+      const auto found = std::find(std::begin(part_names), std::end(part_names), name);
+      if (found == std::end(part_names)) throw LoadError("bone_words.json", "/parts", name);
+      for (const std::string word : known) parts[word] = BonePart(found - std::begin(part_names));
+    }
+  }
+};
+
+const Vocabulary& vocabulary() {
+  static const Vocabulary words;
+  return words;
+}
+
 int side_of(const std::string& word) {
-  if (word == "l" || word == "left" || word == "lf" || word == "lft") return 0;
-  if (word == "r" || word == "right" || word == "rt" || word == "rgt") return 1;
-  return -1;
-}
-
-bool is_noise(const std::string& word) {
-  for (const char* noise :
-       {"mixamorig", "bip",      "biped",    "valve",     "valvebiped", "def", "j",
-        "jnt",       "jt",       "joint",    "bone",      "bones",      "c",   "cc",
-        "base",      "armature", "skeleton", "sk",        "b",          "rig", "bend",
-        "f",         "bind",     "char",     "character", "human",      "main"})
-    if (word == noise) return true;
-  return false;
-}
-
-bool is_helper(const std::string& word) {
-  for (const char* helper :
-       {"twist",    "roll",   "ik",     "fk",         "pole",    "target",   "end",
-        "tip",      "nub",    "ctrl",   "control",    "mch",     "prop",     "weapon",
-        "attach",   "socket", "hair",   "skirt",      "bust",    "breast",   "sec",
-        "cloth",    "tail",   "wing",   "corrective", "helper",  "share",    "dummy",
-        "effector", "goal",   "camera", "mesh",       "sleeve",  "coat",     "ear",
-        "tongue",   "teeth",  "volume", "muscle",     "org",     "ribbon",   "hood",
-        "hat",      "tie",    "site",   "phys",       "physics", "collider", "accessory"})
-    if (word == helper) return true;
-  return false;
-}
-
-const std::unordered_map<std::string, BonePart>& parts() {
-  using P = BonePart;
-  static const std::unordered_map<std::string, BonePart> table = {{"root", P::root},
-                                                                  {"hips", P::hips},
-                                                                  {"pelvis", P::hips},
-                                                                  {"humanoidroot", P::hips},
-                                                                  {"cog", P::hips},
-                                                                  {"spine", P::spine},
-                                                                  {"torso", P::spine},
-                                                                  {"abdomen", P::spine},
-                                                                  {"abdomenlower", P::spine},
-                                                                  {"abdomenupper", P::spine},
-                                                                  {"lowerback", P::spine},
-                                                                  {"upperback", P::spine},
-                                                                  {"back", P::spine},
-                                                                  {"waist", P::spine},
-                                                                  {"belly", P::spine},
-                                                                  {"stomach", P::spine},
-                                                                  {"trunk", P::spine},
-                                                                  {"spinelower", P::spine},
-                                                                  {"spinemid", P::spine},
-                                                                  {"spineupper", P::spine},
-                                                                  {"chest", P::spine},
-                                                                  {"upperchest", P::spine},
-                                                                  {"chestupper", P::spine},
-                                                                  {"chestlower", P::spine},
-                                                                  {"lowerchest", P::spine},
-                                                                  {"thorax", P::spine},
-                                                                  {"ribcage", P::spine},
-                                                                  {"lumbar", P::spine},
-                                                                  {"neck", P::neck},
-                                                                  {"necklower", P::neck},
-                                                                  {"neckupper", P::neck},
-                                                                  {"lowerneck", P::neck},
-                                                                  {"upperneck", P::neck},
-                                                                  {"head", P::head},
-                                                                  {"skull", P::head},
-                                                                  {"jaw", P::jaw},
-                                                                  {"lowerjaw", P::jaw},
-                                                                  {"mandible", P::jaw},
-                                                                  {"eye", P::eye},
-                                                                  {"eyeball", P::eye},
-                                                                  {"faceeye", P::eye},
-                                                                  {"eyelid", P::lid},
-                                                                  {"eyelidupper", P::lid},
-                                                                  {"upperlid", P::lid},
-                                                                  {"uppereyelid", P::lid},
-                                                                  {"eyebrow", P::brow},
-                                                                  {"brow", P::brow},
-                                                                  {"clavicle", P::collar},
-                                                                  {"collar", P::collar},
-                                                                  {"collarbone", P::collar},
-                                                                  {"clavicula", P::collar},
-                                                                  {"shoulder", P::shoulder},
-                                                                  {"shldr", P::shoulder},
-                                                                  {"upperarm", P::upper_arm},
-                                                                  {"uparm", P::upper_arm},
-                                                                  {"armupper", P::upper_arm},
-                                                                  {"bicep", P::upper_arm},
-                                                                  {"humerus", P::upper_arm},
-                                                                  {"arm", P::arm},
-                                                                  {"elbow", P::forearm},
-                                                                  {"forearm", P::forearm},
-                                                                  {"lowerarm", P::forearm},
-                                                                  {"lowarm", P::forearm},
-                                                                  {"armlower", P::forearm},
-                                                                  {"ulna", P::forearm},
-                                                                  {"wrist", P::wrist},
-                                                                  {"hand", P::hand},
-                                                                  {"hip", P::hip},
-                                                                  {"thigh", P::thigh},
-                                                                  {"upperleg", P::thigh},
-                                                                  {"upleg", P::thigh},
-                                                                  {"legupper", P::thigh},
-                                                                  {"femur", P::thigh},
-                                                                  {"leg", P::leg},
-                                                                  {"shin", P::shin},
-                                                                  {"calf", P::shin},
-                                                                  {"lowerleg", P::shin},
-                                                                  {"lowleg", P::shin},
-                                                                  {"leglower", P::shin},
-                                                                  {"tibia", P::shin},
-                                                                  {"knee", P::shin},
-                                                                  {"ankle", P::ankle},
-                                                                  {"foot", P::foot},
-                                                                  {"feet", P::foot},
-                                                                  {"toe", P::toe},
-                                                                  {"toes", P::toe},
-                                                                  {"toebase", P::toe},
-                                                                  {"ball", P::toe},
-                                                                  {"thumb", P::thumb},
-                                                                  {"handthumb", P::thumb},
-                                                                  {"thumbfinger", P::thumb},
-                                                                  {"index", P::index},
-                                                                  {"handindex", P::index},
-                                                                  {"indexfinger", P::index},
-                                                                  {"fingerindex", P::index},
-                                                                  {"middle", P::middle},
-                                                                  {"handmiddle", P::middle},
-                                                                  {"mid", P::middle},
-                                                                  {"middlefinger", P::middle},
-                                                                  {"fingermiddle", P::middle},
-                                                                  {"ring", P::ring},
-                                                                  {"handring", P::ring},
-                                                                  {"ringfinger", P::ring},
-                                                                  {"fingerring", P::ring},
-                                                                  {"little", P::little},
-                                                                  {"pinky", P::little},
-                                                                  {"pinkie", P::little},
-                                                                  {"handpinky", P::little},
-                                                                  {"littlefinger", P::little},
-                                                                  {"pinkyfinger", P::little},
-                                                                  {"fingerpinky", P::little},
-                                                                  {"handlittle", P::little},
-                                                                  {"finger", P::finger}};
-  return table;
+  return vocabulary().left.contains(word) ? 0 : vocabulary().right.contains(word) ? 1 : -1;
 }
 
 bool is_finger(BonePart part) { return part >= BonePart::thumb && part <= BonePart::finger; }
@@ -196,12 +86,13 @@ void read_biped_finger(const std::string& digits, BoneWord& word) {
 }  // namespace
 
 BoneWord read_bone_name(std::string_view name) {
+  const Vocabulary& known = vocabulary();
   BoneWord result;
   std::vector<std::string> words = words_of(name), rest;
   std::string digits;
   int segment = -1;
   for (std::string& word : words) {
-    if (is_helper(word)) return {BonePart::helper, result.side, -1};
+    if (known.helpers.contains(word)) return {BonePart::helper, result.side, -1};
     // "leftupperarm", "rthigh" are left to the table, which knows no such word: cut the side off.
     for (const char* prefix : {"left", "right"}) {
       size_t length = std::char_traits<char>::length(prefix);
@@ -218,14 +109,14 @@ BoneWord read_bone_name(std::string_view name) {
     else if (word == "intermediate" || word == "medial") segment = 2;
     else if (word == "distal") segment = 3;
     else if (word == "metacarpal" || word == "carpal") segment = 0;
-    else if (!is_noise(word)) rest.push_back(word);
+    else if (!known.noise.contains(word)) rest.push_back(word);
   }
   // A figure's own name may stand before the part, nothing but numbers behind it.
   for (size_t skip = 0; skip < rest.size() && result.part == BonePart::none; skip++) {
     std::string key;
     for (size_t i = skip; i < rest.size(); i++) key += rest[i];
-    auto found = parts().find(key);
-    if (found != parts().end()) result.part = found->second;
+    auto found = known.parts.find(key);
+    if (found != known.parts.end()) result.part = found->second;
   }
   if (result.part == BonePart::none) return {};
   if (result.part == BonePart::finger) {

@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "avatar/figure/character.h"
-
 namespace wellspring::avatar {
 
 // "Joe_HumanoidRoot " -> "humanoid_root", "r_thumb2" -> "r_metacarpophalangeal_1". Blanks are
@@ -21,13 +19,5 @@ int hanim_joint_level(std::string_view joint);
 // even 0.
 int level_of_articulation(const std::vector<std::string_view>& joints);
 int hanim_joint_count(int level);  // 1, 18, 71, 94, 146
-
-// The face's controls under the names that Rig looks for, made from what a figure's author called
-// them: VRM presets, ARKit's 52 blend shapes, Oculus visemes, VRoid.
-
-// Adds displacers ("blink_l", "smile_r", "viseme_aa", ...) that the figure lacks and that can be
-// made from those it has: renamed, summed, or cut to one side or one region of the face. What the
-// figure has under our names stays as it is.
-void complete_face(Character& character);
 
 }  // namespace wellspring::avatar

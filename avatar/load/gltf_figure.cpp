@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "avatar/figure/figure_check.h"
-#include "avatar/figure/hanim_names.h"
+#include "avatar/figure/face_names.h"
 #include "avatar/figure/joint_constraints.h"
 
 namespace wellspring::avatar {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages as JSON text, and JSON text as a tree of values, stopping at the first value beyond the limits.
+// Writes messages as JSON text, and reads JSON text as a tree of values that stops at the limits.
 #include "wire/json.h"
 
 #include <algorithm>

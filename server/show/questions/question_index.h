@@ -24,6 +24,7 @@ struct Word {
 // In order. Words that questions share, whatever they ask for ("what", "is", "the"), are left out,
 // by the language's list: of en, de, sk, fr and es; others have none.
 std::vector<Word> words_of(const std::string& text, const std::string& lang);
+std::string_view stop_words_json();  // show/questions/stop_words.json
 
 // Something that can be said in answer.
 struct Passage {
