@@ -80,7 +80,7 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
   const float focal = focal_length(mount, room.width);
   const mat3 head =
       rotation_matrix(pose.rotation);  // head axes in screen axes; z points away from the screen
-  // Head frame (figure_head.h): z out of the face, towards the screen; x stays the visitor's right.
+  // Head frame (figure.h): z out of the face, towards the screen; x stays the visitor's right.
   const mat3 to_head = glm::transpose(mat3(head[0], head[1], -head[2]));
   const vec3 center = pose.position + glm::transpose(to_head) * eyes_to_center;
   const vec3 lens = mount.offset;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The synthetic camera's world: a room with a wall and a picture frame, and a visitor who walks in,
-// stands, looks about and leaves. The head is ray-cast (figure_head.h, one lamp), so its position
+// stands, looks about and leaves. The head is ray-cast (figure.h, one lamp), so its position
 // and rotation are known exactly and what finds people finds it.
 #pragma once
 #include <optional>

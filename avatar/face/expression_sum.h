@@ -24,7 +24,7 @@ namespace wellspring::avatar {
 // noise once a frame; here the same is an integral over time, so the tick rate does not matter:
 //   dv/dt = rate (target - v) + 30 amplitude noise(3.6 frequency t),  rate = ln 20 / settle
 // (30 frames a second, in which the applet's time advances by 3.6). Say_ah counts from shut lips
-// (the applet's -1); blinks have a rhythm of their own (blink.h), since the applet's is too quick
+// (the applet's -1); blinks have a rhythm of their own (face.h), since the applet's is too quick
 // for people.
 
 enum class Flex : uint8_t {

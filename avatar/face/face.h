@@ -24,7 +24,7 @@ struct EmpathyState {
 
 // Critically damped: 90 % of an answer after 3.9 / rate = 1.3 s.
 inline constexpr float empathy_rate = 3;
-// Weight of this layer near the storyteller; 0 in the other zones (lod.h).
+// Weight of this layer near the storyteller; 0 in the other zones (character.h).
 inline constexpr float empathy_weight = 0.6f;
 
 // The face that answers `seen` once it has settled. Weak signals (below 0.2) are prior variance,

@@ -97,7 +97,7 @@ const std::set<std::string>& vrm_extensions();
 // Adds to file.warnings what is not done. Throws LoadError.
 Vrm read_vrm(gltf::File& file);
 // Parts of it: expressions of either version (vrm_expression.cpp; `object` is the version's
-// extension), springs (vrm_spring.cpp), constraints (vrm_constraint.cpp).
+// extension), springs (vrm_motion.cpp), constraints (vrm_motion.cpp).
 void read_vrm_expressions(gltf::File& file, const gltf::json& object, Vrm& vrm);
 void read_vrm_springs(gltf::File& file, Vrm& vrm);
 void read_vrm_constraints(gltf::File& file, Vrm& vrm);

@@ -47,7 +47,7 @@ struct StorytellerInput {
   bool telling =
       false;  // a story is being told (Mood::telling while no greeting or farewell is due)
   float viewer_distance =
-      0;           // metres to the nearest who sees it: how much of it needs to run (lod.h)
+      0;           // metres to the nearest who sees it: how much of it needs to run (character.h)
   StoryCue story;  // what its text asks of face, eyes and hands
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mouth of a speaker over time: fifteen weights (the MPEG-4 set in Oculus' naming) that glide
-// from one held shape to the next. make_visemes.h makes it from sounds.
+// from one held shape to the next. visemes.h makes it from sounds.
 //
 // Laws, at every time: each weight in [0, 1]; their sum is 1, `sil` being the rest; a closure (p b
 // m) holds PP = 1 from the beginning of its sound until it opens. Evaluation keeps no state, so it

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hand of somebody whose face is followed. Skin has the colour of the face: a Gaussian over Cb
 // and Cr that follows the light. A hand is a region of skin that moves within the arms' reach and
-// is not the head; mean shift then follows it (mean_shift.h) until it no longer looks like it. One
+// is not the head; mean shift then follows it (skin.h) until it no longer looks like it. One
 // hand is followed, the one that moved first. Neither a depth map nor a network is needed; short
 // sleeves are a hard case: a bare forearm looks like a hand.
 #pragma once

@@ -62,7 +62,7 @@ class Network {
 inline constexpr int detector_cell = 32, detector_anchors = 5;
 // Sides: multiples of 32. Output: 25 planes of height/32 rows and width/32 columns; those of anchor
 // a begin at 5a: x, y, logarithms of width and height, score, all before the sigmoid
-// (face_boxes.h).
+// (face_marks.h).
 Network load_face_detector(const std::string& folder);
 
 inline constexpr int marks_side = 112, landmark_count = 68;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The log: one line an event on stderr, or where log_output.h says. WELLSPRING_LOG=debug shows
+// The log: one line an event on stderr, or where log.h says. WELLSPRING_LOG=debug shows
 // more. Usage: log::info("exhibit {} loaded in {:.1f} s", id, seconds); Formats are checked when
 // they are compiled; lines are put together in log.cpp alone, since what does that takes seconds to
 // compile.

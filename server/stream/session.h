@@ -102,7 +102,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::optional<Caller> find_caller(const Request& request) const;
   HttpReply judge_caller(const Request& request);  // 200, or the refusal; sets caller_
   HttpReply judge_host(const Request& request) const;
-  bool is_from_here(const Request& request) const;  // as origin.h has it
+  bool is_from_here(const Request& request) const;  // as target.h has it
   bool is_local(const Request& request) const;      // likewise
   HttpReply judge_post(const Request& request) const;
   HttpReply judge_upgrade(const HttpQuestion& question, const Request& request);

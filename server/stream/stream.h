@@ -3,7 +3,7 @@
 // rendering: questions go to Doors::answer, connected peers to Doors::joined as Links.
 //
 // What a stranger gets (limits not in StreamSettings are in session.h):
-// - Names: a request whose Host is none of HostNames (origin.h) gets 421, whatever it asks.
+// - Names: a request whose Host is none of HostNames (target.h) gets 421, whatever it asks.
 // - Limits by address and in all, a reserve for trusted addresses: admission.h. What is too much is
 //   429 or 503 with Retry-After.
 // - TLS where there is a certificate; plain requests are then sent to https:// (308), but for those
@@ -11,10 +11,10 @@
 // - HTTP/1.1 with keep-alive, GET and HEAD only (405); header 16 KiB (431), body 64 KiB and ignored
 //   (413), no Transfer-Encoding but chunked (501); targets as in target.h. /api/v1/admin/announce
 //   takes a POST and nothing else: a body of at most 16 KiB (413) of application/json (415), Origin
-//   as in origin.h (403). Every reply carries the headers of reply.h; ETag and If-None-Match make a
-//   304. Text goes as gzip to who accepts that (encoding.h).
+//   as in target.h (403). Every reply carries the headers of reply.h; ETag and If-None-Match make a
+//   304. Text goes as gzip to who accepts that (reply.h).
 // - WebSocket at /api/v1/visit and /api/v1/eye; a plain GET there is told 426. Origin as in
-// origin.h (403).
+// target.h (403).
 //   Subprotocol wellspring.v1 is echoed when offered; offering none is fine, offering only others
 //   is a 400.
 // - A WebSocket becomes a Link with its first message, which must come within

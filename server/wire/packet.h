@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary messages to the browser, little-endian: pictures (magic WSF1); sound_packet.h has sound
+// Binary messages to the browser, little-endian: pictures (magic WSF1); packet.h has sound
 // (WSA1). Picture: 0 magic, 4 u32 frame number, 8 u32 last input/camera seq this picture shows, 12
 // u64 server time in microseconds, 20 u16 width, 22 u16 height, 24 u8 quality, 25 u8 flags, 26 u16
 // header length, payload: a JPEG. A complete picture may be smaller than was asked for: it is shown

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The show's own way to keep a picture up, a picture a frame: what show/draw/picture.cpp and
-// picture_samples.cpp do for one visitor, without warps.
+// late_samples.cpp do for one visitor, without warps.
 #include <algorithm>
 
 #include "base/rng.h"

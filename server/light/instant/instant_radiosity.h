@@ -12,7 +12,7 @@
 //                                   clipping took is gathered by a ray or missing
 //   rough, then sharp ..., a light  caustic photons (section 4.1; caustic_photons.h)
 //   rough, then sharp ..., rough    gathered by a ray
-// Differs from the paper: lights are chosen by their effect on the view (view_probes.h) and of
+// Differs from the paper: lights are chosen by their effect on the view (region_lights.h) and of
 // those a few for each region of the picture (region_lights.h), so that there are many more lights
 // than shadow rays of a pixel, in lists that interleave in a pattern of their own, twice as wide as
 // that of sets; the first passes' irradiance is averaged over that pattern, too, which later passes
@@ -36,7 +36,7 @@ namespace wellspring::light {
 // For any view: every walk's lights are kept.
 InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
                               int picture_width, uint64_t seed, uint32_t index);
-// For this view: of more walks, the lights that do something to it (view_probes.h).
+// For this view: of more walks, the lights that do something to it (region_lights.h).
 InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
                               const View& view, uint64_t seed, uint32_t index);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a surface scatters light: glTF 2.0 appendix B with KHR_materials_transmission, volume, ior,
 // specular, clearcoat, sheen, anisotropy and dispersion. From the top:
-//   clearcoat   GGX of index 1.5 with a normal of its own (bsdf_layers.h)
+//   clearcoat   GGX of index 1.5 with a normal of its own (bsdf_gloss.h)
 //   sheen       cloth fibres (Estevez and Kulla 2017)
 //   reflection  GGX: exact Fresnel for the dielectric, Schlick for the metal (bsdf_gloss.h)
 //   beneath     Lambert, or transmission - thickness > 0: refraction (Walter et al. 2007); 0: a

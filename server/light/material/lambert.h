@@ -10,7 +10,7 @@
 namespace wellspring::light {
 
 struct LambertLobe {
-  vec3 normal, geometric_normal;  // the viewer's side; the shading normal as bsdf_frame.h turns it
+  vec3 normal, geometric_normal;  // the viewer's side; the shading normal as bsdf_types.h turns it
   vec3 reflectance;
 };
 inline LambertLobe make_lambert(const LambertSurface& surface, vec3 direction) {

@@ -13,7 +13,7 @@
 // Differs from the paper: rays find the maps, also of area lights and the sky; planes seen at a
 // steep angle are not refined (min_max_pyramid.h); light near a virtual light is bounded
 // (virtual_lights.h); neighbours on the two sides of an edge are never mixed (upsample.h); shadows
-// of virtual lights (splat_visibility.h, mean_visibility.h), which the paper leaves out.
+// of virtual lights (splat_visibility.h, splat_visibility.h), which the paper leaves out.
 #pragma once
 #include <span>
 #include <vector>

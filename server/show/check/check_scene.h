@@ -42,7 +42,7 @@ void check_sides(const Exhibit& exhibit, const World& world, std::vector<Problem
 // A note where the light that the package carries (light.maps) is of another scene, or damaged.
 void check_shipped_light(const Exhibit& exhibit, std::vector<Problem>& problems);
 
-// Notes about lamps and exposure; draws coarse pictures, as exhibit_light.h has it. `world` is of
+// Notes about lamps and exposure; draws coarse pictures, as exhibit_lights.h has it. `world` is of
 // exhibit.scene alone.
 void check_light(const Exhibit& exhibit, World& world, std::vector<Problem>& problems);
 

@@ -48,7 +48,7 @@ class StillRoom {
  public:
   // Borrows `show`'s exhibit for its lifetime (not its world, which moves). The storyteller who is
   // there stands in its first pose, and lamps are as at first. Bounds of an order: see
-  // still_question.cpp.
+  // still.cpp.
   // `clock`: seconds that its time is taken by.
   explicit StillRoom(const Show& show, std::function<double()> clock = thread_seconds_now);
   // A JPEG, whose comment says what it has, on at most `cores`. Empty: given up, as `given_up` (any
