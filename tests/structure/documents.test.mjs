@@ -2,7 +2,7 @@
 // Documents are short, and what they name exists.
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync, readdirSync } from 'node:fs';
-import { join } from 'node:path';
+import { basename, join, relative } from 'node:path';
 import { test } from 'node:test';
 
 const root = process.env.WELLSPRING_SOURCE;
@@ -13,9 +13,10 @@ function files(folder, kind) {
       .filter((entry) => entry.isFile() && kind.test(entry.name))
       .map((entry) => join(entry.parentPath ?? entry.path, entry.name));
 }
-const code = ['server', 'avatar', 'kiosk', 'tests/unit', 'tests/benchmark']
-    .flatMap((top) => files(top, /\.(h|cpp)$/)).map((file) => readFileSync(file, 'utf8'))
-    .join('\n');
+const sources = ['server', 'avatar', 'kiosk', 'voice', 'tests']
+    .flatMap((top) => files(top, /\.(h|cpp)$/))
+    .map((file) => ({ name: relative(root, file), text: readFileSync(file, 'utf8') }));
+const code = sources.map(({ text }) => text).join('\n');
 
 const tops = 'server|avatar|kiosk|tests|docs|base|wire|frame|attention|denoise|gltf|world|light|' +
     'cache|picture|show|stream';
@@ -80,4 +81,33 @@ test('slow tests that are listed exist, each with a reason', () => {
     assert.ok(reason, line);
     assert.ok(new RegExp(`TEST(_F|_P)?\\(${suite},\\s*${name}\\)`).test(code), line);
   }
+});
+
+test('every file that a comment names exists', () => {
+  const names = new Set(sources.map(({ name }) => basename(name)));
+  const wrong = [];
+  for (const { name, text } of sources)
+    for (const [, comment] of text.matchAll(/(?:^|\s)\/\/ (.*)/g))
+      for (const [file] of comment.matchAll(/(?<![\w/.*])[\w/]+\.(?:h|cpp)\b/g))
+        if (!(file.includes('/') ? is_place(file) : names.has(file))) wrong.push(`${name}: ${file}`);
+  assert.deepEqual(wrong, []);
+});
+
+test('a term stands in the header that docs/terms.md names', () => {
+  const plain = (text) => text.replace(/([a-z])([A-Z])/g, '$1 $2').replace(/\n\s*\/\/ ?/g, ' ')
+      .replace(/[-_]/g, ' ').toLowerCase();
+  const wrong = [];
+  let found = 0;
+  for (const row of read('docs/terms.md').split('\n').filter((line) => /^\| (?!-|term)/.test(line))) {
+    const [term, , from] = row.slice(1).split('|').map((cell) => cell.trim());
+    const headers = [...from.matchAll(/`([\w/]+)\.h`/g)].map(([, stem]) => `${stem}.h`);
+    if (headers.length === 0) continue;
+    const text = plain(sources.filter(({ name }) => headers.some((one) => name.endsWith(one)))
+        .map((one) => `${one.name}\n${one.text}`).join('\n'));
+    const words = plain(term.replace(/`/g, '').replace(/ \(.*\)/, '')).split(', ');
+    if (words.some((word) => text.includes(word.replace(/s$/, '')))) found++;
+    else wrong.push(`${term}: ${headers}`);
+  }
+  assert.ok(found > 100, `${found} terms`);
+  assert.deepEqual(wrong, []);
 });

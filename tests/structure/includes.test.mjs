@@ -86,7 +86,7 @@ const may_enter = {
 };
 // Files in a layer's own folder where that is no room.
 const at_home = { avatar: /^main[^/]*\.cpp$/ };
-const most_files_a_folder = 40;
+const most_files_a_folder = 30;
 
 // Heavy headers appear in .cpp files of these layers only.
 const heavy = [
