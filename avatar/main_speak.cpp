@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring speak "TEXT": the sound of a text, and when each word, phoneme and mouth shape of it
-// comes; or, with a recording of the text, when they come in the recording.
+// Runs `wellspring speak "TEXT"`: makes the sound of a text, and finds when each word, phoneme and
+// mouth shape of it comes; or, with a recording of the text, when they come in the recording.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -27,7 +27,7 @@ struct Options {
   std::string audio, marks, wav, json, vtt, story;
 };
 
-// The words with their phonemes, one line each.
+// Prints the words with their phonemes, one line each.
 void print(const Speech& speech) {
   std::printf("%.3f s, %zu words, %zu phonemes\n", speech.duration, speech.words.size(),
               speech.phonemes.size());
@@ -48,7 +48,7 @@ Speech speak_text(SpeechProcess& process, const SpeechRequest& request) {
   return *speech;
 }
 
-// The template at the narrator's own pace is nearer to the recording.
+// Marks one sentence; a template at the narrator's own pace is nearer to the recording.
 Speech mark_sentence(SpeechProcess& process, const Options& options, const Sound& recording) {
   Speech spoken = speak_text(process, options.request);
   SpeechRequest paced = options.request;
@@ -74,7 +74,7 @@ std::string read_text(const std::string& file, size_t most_bytes) {
   return text;
 }
 
-// A narrator's recording of a whole story.
+// Marks a narrator's recording of a whole story.
 Speech mark_story(SpeechProcess& process, const std::vector<StoryLine>& lines,
                   const Options& options) {
   Sound recording = load_sound(options.audio);
@@ -89,7 +89,7 @@ Speech mark_story(SpeechProcess& process, const std::vector<StoryLine>& lines,
   }
 }
 
-// All sentences of a story, one after the other.
+// Speaks all sentences of a story, one after the other.
 StorySpeech tell_story(const Options& options) {
   StoryScript script = load_story(options.story);
   for (const StoryNote& note : script.notes)
@@ -112,7 +112,7 @@ StorySpeech tell_story(const Options& options) {
   return story;
 }
 
-// A sentence for each subtitle of a text without a story's sentences.
+// Makes one subtitle a sentence for a text without a story's sentences.
 std::vector<SubtitleCue> cues_of(const Speech& speech) {
   std::vector<SubtitleCue> cues;
   for (TextSpan span : find_sentences(speech.text)) {

@@ -10,8 +10,8 @@ namespace wellspring::kiosk {
 namespace {
 
 constexpr double steady_for = 2;   // seconds
-constexpr float steady = 0.04f;    // metres to the middle of what was seen meanwhile
-constexpr float step_back = 1.4f;  // times as far as at the first mark, at least
+constexpr float steady = 0.04f;    // metres to the middle of the places seen meanwhile
+constexpr float step_back = 1.4f;  // factor to the first mark's distance, at least
 constexpr float most_aside = 5 * pi / 180;
 
 }  // namespace
@@ -23,7 +23,7 @@ Mount solve_mount(const Mount& mount, vec3 at_near, vec3 at_far, std::optional<f
     throw std::runtime_error("the second mark was not seen behind the first");
   if (std::abs(std::atan2(way.x, way.z)) > most_aside)
     throw std::runtime_error("the camera looks to the side; turn it to the middle and begin again");
-  // Distances grow with the focal length, what lies across does not.
+  // Distances grow with the focal length; ways across do not.
   const float longer = std::sqrt(length * length - aside2) / way.z;
   Mount solved = mount;
   solved.fov = 2 * std::atan(std::tan(0.5f * mount.fov) / longer);

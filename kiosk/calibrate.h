@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the camera sits, found out from a person who stands still at two marks straight before the
-// middle of the screen and looks at it.
+// Finds how the camera sits from a person who stands still at two marks straight before the middle
+// of the screen and looks at it.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,21 +11,21 @@
 
 namespace wellspring::kiosk {
 
-// Metres of the marks from the screen.
+// The marks are so many metres from the screen.
 inline constexpr float near_mark = 1, far_mark = 2;
 
-// What is observed at the marks through `mount`, in metres on the screen, tells field of view,
-// pitch and place of the camera; its height above the screen's centre only where the person's eyes
-// are known to be `eyes` above it. Throws std::runtime_error where no such camera could see that,
-// or where it looks to the side by more than 5 degrees.
+// Solves for the camera's field of view, pitch and place from observations at the marks through
+// `mount`, in metres on the screen. Its height above the screen's centre is solved for only if the
+// person's eyes are known to be `eyes` above it. Throws std::runtime_error if no such camera could
+// see that, or if it looks to the side by more than 5 degrees.
 Mount solve_mount(const Mount& mount, vec3 at_near, vec3 at_far, std::optional<float> eyes = {});
 
 // Waits for the person at one mark after the other. Time is that of the observations.
 class Calibration {
  public:
-  // The next observation. True: both marks are known.
+  // Takes the next observation. True: both marks are known.
   bool step(const Observation& seen);
-  // What the person is to do, in words for the terminal and as the kiosk's screen is told.
+  // Returns what the person is to do, in words for the terminal and as the kiosk's screen shows it.
   std::string advice() const;
   CalibrationStep now() const;
   vec3 at_near() const { return found_[0]; }

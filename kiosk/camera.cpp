@@ -25,7 +25,7 @@ namespace wellspring::kiosk {
 
 namespace {
 
-// The small picture in colour; none of a picture without.
+// Makes the small picture in colour; a grey picture gives none.
 void to_color(const cv::Mat& picture, GrayFrame& frame) {
   constexpr int width = 320;
   frame.color_width = frame.color_height = 0;
@@ -41,7 +41,7 @@ void to_color(const cv::Mat& picture, GrayFrame& frame) {
   small.copyTo(cv::Mat(small.rows, small.cols, CV_8UC3, frame.bgr.data()));
 }
 
-// Luminance at no more than `width` pixels across. False for what is not a picture.
+// Makes luminance at no more than `width` pixels across. False for data that is no picture.
 bool to_gray(const cv::Mat& picture, int width, GrayFrame& frame) {
   if (picture.empty() || picture.cols < 16 || picture.rows < 16) return false;
   if (picture.depth() != CV_8U) return false;
@@ -92,7 +92,7 @@ class FileCamera : public Camera {
  private:
   void open() {
     index_ = 0;
-    // By name: left to itself OpenCV would go on to look for cameras on the USB bus.
+    // Readers are named: left to itself OpenCV would go on to look for cameras on the USB bus.
     for (int reader : {cv::CAP_FFMPEG, cv::CAP_GSTREAMER, cv::CAP_OPENCV_MJPEG}) {
       try {
         if (capture_.open(settings_.source, reader)) break;
@@ -103,8 +103,8 @@ class FileCamera : public Camera {
   }
   double step() const { return 1 / fps_; }
 
-  // The next frame that can be decoded. Its time is the file's own where that grows, else the frame
-  // rate's.
+  // Reads the next frame that can be decoded. Its time is the file's own if that grows, else the
+  // frame rate's.
   bool read(GrayFrame& frame) {
     try {
       for (int bad = 0; bad < 100 && capture_.isOpened() && capture_.read(picture_); bad++) {
@@ -166,7 +166,7 @@ class FolderCamera : public Camera {
   }
 
  private:
-  // The next picture that can be read. Others are named once and left out.
+  // Reads the next picture that can be read. Others are named once and left out.
   bool read(GrayFrame& frame) {
     while (next_ < files_.size()) {
       cv::Mat picture;
@@ -212,7 +212,7 @@ class DeviceCamera : public Camera {
       return lose();
     }
     frame.time = seconds_now();
-    // A sensor's noise never repeats: a picture that does comes from a driver that has stopped.
+    // A sensor's noise never repeats: a picture that repeats comes from a driver that has stopped.
     if (frame.pixels == last_) {
       if (frame.time - changed_ > 2) return lose();
     } else {
@@ -259,7 +259,7 @@ class SyntheticCamera : public Camera {
     if (settings_.synthetic_ends && !live_ && time >= figure_round) return Got::end;
     frame = draw_figure(room_, settings_.mount, figure_at(time), time);
     if (!live_) return Got::frame;
-    // As a device: at its rate, and one that comes late is not made up for.
+    // It acts as a device: at its rate, and a late frame is not made up for.
     auto now = [] { return duration(std::chrono::steady_clock::now().time_since_epoch()).count(); };
     std::this_thread::sleep_for(duration(due_ - now()));
     frame.time = now();
@@ -274,13 +274,13 @@ class SyntheticCamera : public Camera {
   bool live_;
   FigureRoom room_;
   long index_ = 0;
-  double due_ = 0;  // steady clock
+  double due_ = 0;  // time of the next frame on the steady clock
 };
 
 }  // namespace
 
 std::unique_ptr<Camera> make_camera(const CameraSettings& settings) {
-  // Errors are told in our own words.
+  // Errors are reported in our own words.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   const std::string& source = settings.source;
@@ -296,9 +296,9 @@ std::unique_ptr<Camera> make_camera(const CameraSettings& settings) {
 
 namespace {
 
-constexpr int every = 4;         // pixel of both ways is looked at
-constexpr int darkest = 16;      // levels: black is what hardly any pixel exceeds
-constexpr double rate_over = 5;  // seconds
+constexpr int every = 4;         // pixels from one looked at to the next, both ways
+constexpr int darkest = 16;      // levels: in a black picture hardly any pixel exceeds this
+constexpr double rate_over = 5;  // seconds over which the rate is measured
 
 }  // namespace
 
@@ -350,7 +350,8 @@ struct Feed::Shared {
 
   void deliver(GrayFrame frame) {
     std::unique_lock lock(mutex);
-    // Paced and live cameras overwrite what nobody took; an unpaced one waits for its reader.
+    // Paced and live cameras overwrite frames that nobody took; an unpaced one waits for its
+    // reader.
     if (!camera->live() && !pace) changed.wait(lock, [&] { return stop || !slot; });
     if (stop) return;
     slot = std::move(frame);

@@ -43,13 +43,13 @@ json parse(const std::string& file, const std::string& text) {
   return root;
 }
 
-// One value at `where`.
+// Takes one value at `where`.
 using Take = std::function<void(const json& value, const std::string& where)>;
 
 struct Reader {
   const std::string &file, &written;
 
-  // What is missing has the line of what lacks it.
+  // Fails; a missing value has the line of the object that lacks it.
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
     int line = find_json_line(written, where);
     if (line == 0) line = find_json_line(written, where.substr(0, where.rfind('/')));
@@ -113,7 +113,7 @@ struct Reader {
   Take mount(Mount& to) const {
     return part({{"offset", place(to.offset)}, {"pitch", number(to.pitch, -80, 80, degree)}});
   }
-  // Those that the file lists; `common`: what they leave out.
+  // Reads the cameras that the file lists; `common` holds what they leave out.
   Take list(std::vector<CameraSettings>& cameras, const CameraSettings& common) const {
     return [this, &cameras, &common](const json& value, const std::string& where) {
       if (!value.is_array() || value.empty()) fail(where, "is not a list of cameras");
@@ -147,7 +147,8 @@ void load_config(const std::string& file, KioskConfig& config) {
             {"ca_file", r.text(config.ca_file)},
             {"camera", r.part(r.lens(camera))},
             {"mount", r.mount(camera.mount)},
-            {"cameras", [](const json&, const std::string&) {}},  // after what they have in common
+            // they are read after what they have in common
+            {"cameras", [](const json&, const std::string&) {}},
             {"presence", r.part({{"wake_after", r.number(presence.wake_after, 0, longest)},
                                  {"confirm_after", r.number(presence.confirm_after, 0, longest)},
                                  {"hold_person", r.number(presence.hold_person, 0, longest)},
@@ -177,7 +178,7 @@ namespace {
 
 constexpr float one_degree = pi / 180;
 
-// What --config names, before anything else is read.
+// Returns the file that --config names, before anything else is read.
 std::string config_of(int argc, char** argv) {
   constexpr std::string_view name = "--config";
   for (int i = 1; i < argc; i++) {
@@ -189,7 +190,7 @@ std::string config_of(int argc, char** argv) {
   return "";
 }
 
-// Cameras as people write them: of what is a list, one value for all, or one for each.
+// Holds cameras as people write them; each list has one value for all, or one for each.
 struct Written {
   std::vector<std::string> sources, offsets;
   std::vector<double> fovs, pitches;
@@ -234,7 +235,8 @@ void add_camera(CLI::App& app, KioskOptions& options, Written& written) {
       ->capture_default_str();
 }
 
-// Of the file those that are asked for, else all; one that it does not list is as it has them all.
+// Chooses the file's cameras that are asked for, else all; one that the file does not list has its
+// common values.
 std::vector<CameraSettings> choose(const std::vector<std::string>& sources,
                                    const KioskConfig& config) {
   if (sources.empty()) return config.cameras;
@@ -258,7 +260,7 @@ void put_each(std::vector<CameraSettings>& cameras, const char* option,
   for (size_t i = 0; i < cameras.size(); i++) set(cameras[i], values[values.size() > 1 ? i : 0]);
 }
 
-// As long as a message may have it, and without what cannot be printed.
+// Cuts a name to what a message may have, and replaces what cannot be printed.
 std::string printable(std::string name) {
   for (char& c : name)
     if (uint8_t(c) < 32 || c == 127) c = ' ';
@@ -271,7 +273,7 @@ std::string printable(std::string name) {
   return name;
 }
 
-// "kiosk", or "kiosk, camera"; no two alike.
+// Names cameras "kiosk", or "kiosk, camera"; no two are alike.
 void put_names(std::vector<CameraSettings>& cameras, std::string kiosk) {
   char machine[256] = "kiosk";
   if (kiosk.empty() && gethostname(machine, sizeof machine - 1) == 0) kiosk = machine;
@@ -312,7 +314,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   const std::string file = config_of(argc, argv);
   bool calibrates = false;
   for (int i = 1; i < argc; i++) calibrates |= std::string_view(argv[i]) == "--calibrate";
-  // --calibrate may make it.
+  // --calibrate may create the file.
   if (!file.empty() && (!calibrates || std::ifstream(file))) load_config(file, config);
   options.observer.presence = config.presence;
   options.hands = config.hands;
@@ -380,7 +382,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   if (const WireError* error = std::get_if<WireError>(&read))
     throw CLI::ValidationError("--name", error->message);
   options.server_given = server->count() > 0 || !config.server.empty();
-  // An eye needs none, and the environment has none for it.
+  // An eye needs no token, and its environment has none.
   if (options.observe_to < 0) options.token = read_token(token_file, "WELLSPRING_KIOSK_TOKEN");
   options.eyes_given = eyes->count() > 0;
   put_each(options.cameras, "--fov", written.fovs,

@@ -10,8 +10,8 @@ namespace wellspring::kiosk {
 
 namespace {
 
-const vec3 eyes_to_center{0, -0.012f, -0.085f};  // from between the eyes to the head's middle
-// Metres of distance per row and column of rays in a pixel: what is far away must not flicker.
+const vec3 eyes_to_center{0, -0.012f, -0.085f};  // way from between the eyes to the head's middle
+// A pixel has so many rows and columns of rays a metre of distance: a far figure must not flicker.
 constexpr float rays_per_metre = 1;
 constexpr int most_rays = 4;
 
@@ -24,7 +24,7 @@ struct Ray {
   vec3 origin, direction;
 };
 
-// Nearest hit of the unit sphere scaled by `radii` about `center`; negative: none.
+// Returns the nearest hit of the unit sphere scaled by `radii` about `center`; negative: none.
 float hit_ellipsoid(const Ray& ray, vec3 center, vec3 radii) {
   vec3 o = (ray.origin - center) / radii, d = ray.direction / radii;
   float a = glm::dot(d, d), b = glm::dot(o, d), c = glm::dot(o, o) - 1;
@@ -32,7 +32,7 @@ float hit_ellipsoid(const Ray& ray, vec3 center, vec3 radii) {
   return disc < 0 ? -1 : (-b - std::sqrt(disc)) / a;
 }
 
-// Grey level 0..1 of the empty room behind (u, v), each 0..1 over the picture.
+// Returns the grey level 0..1 of the empty room behind (u, v), each 0..1 over the picture.
 float room_at(float u, float v) {
   float wall = 0.52f + 0.10f * (1 - v) - 0.14f * u;
   if (v > 0.82f) wall = 0.32f + 0.1f * (v - 0.82f);        // floor
@@ -44,8 +44,8 @@ float room_at(float u, float v) {
   return wall;
 }
 
-// Standard normal numbers (Box and Muller 1958), a table to draw from: a picture needs 300,000 of
-// them.
+// Returns a table of standard normal numbers (Box and Muller 1958) to draw from: a picture needs
+// 300,000 of them.
 const std::vector<float>& normal_numbers() {
   static const std::vector<float> numbers = [] {
     std::vector<float> out(1 << 13);
@@ -80,7 +80,8 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
   const float focal = focal_length(mount, room.width);
   const mat3 head =
       rotation_matrix(pose.rotation);  // head axes in screen axes; z points away from the screen
-  // Head frame (figure.h): z out of the face, towards the screen; x stays the visitor's right.
+  // The head's frame is that of figure.h: z out of the face, towards the screen; x stays the
+  // visitor's right.
   const mat3 to_head = glm::transpose(mat3(head[0], head[1], -head[2]));
   const vec3 center = pose.position + glm::transpose(to_head) * eyes_to_center;
   const vec3 lens = mount.offset;
@@ -99,7 +100,7 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
     left = std::min(left, u), right = std::max(right, u);
     top = std::min(top, v), bottom = std::max(bottom, v);
   }
-  // What a ray through the picture at (x, y) sees of the figure; below 0: nothing.
+  // Returns what a ray through the picture at (x, y) sees of the figure; below 0: nothing.
   auto look = [&](float x, float y) {
     vec3 camera{(x - room.width / 2.f) / focal, (y - room.height / 2.f) / focal, 1};
     Ray ray{lens, camera_to_screen(mount, camera) - lens};
@@ -145,7 +146,7 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
 namespace {
 
 constexpr vec3 bound_center{0, -0.005f, -0.085f}, bound_radii{0.095f, 0.135f, 0.130f};
-constexpr float touch = 2e-4f;  // metres: nearer is on the surface
+constexpr float touch = 2e-4f;  // metres: anything nearer is on the surface
 constexpr int most_steps = 48;
 
 float smooth_between(float a, float b, float x) {
@@ -153,18 +154,18 @@ float smooth_between(float a, float b, float x) {
   return t * t * (3 - 2 * t);
 }
 
-// Distances, nearly: below the true one near the surface.
+// These functions return distances, nearly: below the true one near the surface.
 float ellipsoid(vec3 p, vec3 center, vec3 radii) {
   const vec3 q = p - center;
   const float near = glm::length(q / radii), steep = glm::length(q / (radii * radii));
   return steep > 0 ? near * (near - 1) / steep : -std::min({radii.x, radii.y, radii.z});
 }
-// A round cone about the line from a to b.
+// Returns the distance to a round cone about the line from a to b.
 float cone(vec3 p, vec3 a, vec3 b, float radius_a, float radius_b) {
   const float t = glm::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.f, 1.f);
   return glm::length(p - a - t * (b - a)) - glm::mix(radius_a, radius_b, t);
 }
-// The union of two bodies, rounded where they are nearer than k.
+// Returns the union of two bodies, rounded where they are nearer than k.
 float join(float a, float b, float k) {
   const float h = std::max(k - std::abs(a - b), 0.f) / k;
   return std::min(a, b) - h * h * k / 4;
@@ -190,13 +191,13 @@ float distance(vec3 p) {
   return d;
 }
 
-// 1 inside the ellipse about (x, y), 0 outside, with a soft rim.
+// Returns 1 inside the ellipse about (x, y), 0 outside, with a soft rim.
 float blob(vec2 p, float x, float y, float rx, float ry) {
   const float d = glm::length((p - vec2(x, y)) / vec2(rx, ry));
   return 1 - smooth_between(0.8f, 1.2f, d);
 }
 
-// Reflectance of skin, hair and what is painted on them.
+// Returns the reflectance of skin, hair and paint on them.
 float albedo_at(vec3 p) {
   float out = 0.66f;
   const vec2 q{std::abs(p.x), p.y};
@@ -205,10 +206,10 @@ float albedo_at(vec3 p) {
         0.0052f * std::sqrt(std::max(0.f, 1 - std::pow((q.x - 0.0305f) / 0.0150f, 2.f)));
     const float in_eye = std::abs(q.y) < lids ? 1.f : 0.f;
     const float iris = blob(q, 0.0315f, 0.0005f, 0.0058f, 0.0058f);
-    out -= 0.10f * blob(q, 0.031f, 0.002f, 0.023f, 0.015f);  // about the eye
+    out -= 0.10f * blob(q, 0.031f, 0.002f, 0.023f, 0.015f);  // surroundings of the eye
     if (in_eye > 0) out = glm::mix(0.80f, 0.10f, iris);
     else if (lids > 0 && std::abs(q.y) < lids + 0.0016f) out -= q.y > 0 ? 0.42f : 0.14f;  // lashes
-    const float along = (q.x - 0.014f) / 0.038f;  // of the brow, 0 to 1
+    const float along = (q.x - 0.014f) / 0.038f;  // place along the brow, 0 to 1
     if (along > 0 && along < 1) {
       const float arch = 0.0195f + 0.006f * std::sin(pi * (0.15f + 0.7f * along)) - 0.004f * along;
       out -= 0.42f * (1 - smooth_between(0.0022f, 0.0052f - 0.002f * along, std::abs(q.y - arch)));
@@ -218,7 +219,7 @@ float albedo_at(vec3 p) {
     out -= 0.30f * (1 - smooth_between(0.0004f, 0.0018f, std::abs(p.y + 0.0685f))) * (lip > 0.2f);
     if (p.z > 0.002f) out -= 0.45f * blob(q, 0.0065f, -0.0455f, 0.0042f, 0.0024f);  // nostrils
   }
-  // Hair: above the forehead, behind the temples.
+  // Hair grows above the forehead and behind the temples.
   const float line = 0.068f - 6 * p.x * p.x;
   const float hair =
       std::max(smooth_between(line - 0.004f, line + 0.004f, p.y),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring_kiosk: watches who stands in front of the kiosk and tells the server in numbers.
+// Runs wellspring_kiosk: watches who stands in front of the kiosk and sends the server numbers.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -38,19 +38,19 @@ using namespace wellspring::program;
 std::atomic<bool> stop_asked{false};
 void ask_to_stop(int) { stop_asked = true; }
 
-// False when stdout is gone: whoever read us has left.
+// Prints a line; false when stdout is gone: its reader has left.
 bool print(const std::string& line) {
   return std::fputs(line.c_str(), stdout) >= 0 && std::fputc('\n', stdout) != EOF &&
          std::fflush(stdout) == 0;
 }
 
-// Who gets observations besides the server: stdout, a file. For one camera's thread or another.
+// Gives observations to all but the server: stdout, a file. Any camera's thread may call.
 class Readers {
  public:
   explicit Readers(const KioskOptions& given) : options_(given) {
     if (!given.record.empty()) recorder_ = std::make_unique<Recorder>(given.record);
   }
-  // False: whoever reads stdout has left.
+  // Writes an observation. False: the reader of stdout has left.
   bool tell(const std::string& text) {
     std::lock_guard lock(mutex_);
     if (options_.print && !print(text)) return false;
@@ -67,7 +67,7 @@ class Readers {
   std::unique_ptr<Recorder> recorder_;
 };
 
-// Null: observations go to stdout alone.
+// Makes the link to the server; null: observations go to stdout alone.
 std::unique_ptr<ServerLink> make_link(const KioskOptions& options) {
   if (!options.server_given && options.print) return nullptr;
   ServerLinkSettings settings;
@@ -76,7 +76,7 @@ std::unique_ptr<ServerLink> make_link(const KioskOptions& options) {
   return std::make_unique<ServerLink>(*parse_address(options.server), settings);
 }
 
-// What the camera shows, as numbers, until it ends.
+// Watches a camera until it ends: its pictures become numbers.
 void watch(const KioskOptions& options, const CameraSettings& settings, Observer& observer,
            Feed& feed) {
   constexpr double patience = 2;       // seconds without a picture before nobody is seen
@@ -129,7 +129,7 @@ void watch(const KioskOptions& options, const CameraSettings& settings, Observer
   }
 }
 
-// 42 of each gesture, as many as the paper trains with; learnt from within a second.
+// Makes 42 of each gesture, as many as the paper trains with; learnt from within a second.
 std::vector<HandPath> generated_set() { return write_set(WriterGroup::training, 21, 2, 1); }
 
 int learn(const KioskOptions& options) {
@@ -150,7 +150,7 @@ int learn(const KioskOptions& options) {
   return 0;
 }
 
-// The eye: sees pictures; what it has opened by then is all that it may use.
+// Runs the eye, which sees pictures; what it has opened by then is all that it may use.
 void look(KioskOptions options) {
   const CameraSettings& settings = options.cameras[options.eye];
   GestureModels gestures;
@@ -184,15 +184,16 @@ int replay(const KioskOptions& options) {
   return 0;
 }
 
-// An observation as it came, and its text. False: nothing more is wanted.
+// Takes an observation as it came, and its text. False: nothing more is wanted.
 using Tell = std::function<bool(const Observation& seen, const std::string& text)>;
 
-// A camera's eye in a process of its own, begun again when it dies: a codec that crashes, a driver
-// that takes it along. `link`: who says what is needed of it; may be null. Returns its exit status.
+// Runs a camera's eye in a process of its own, and starts it again when it dies: a codec crashes, a
+// driver takes it along. `link` says what is needed of the eye; may be null. Returns its exit
+// status.
 int supervise(const std::vector<std::string>& arguments, size_t which, const std::string& name,
               ServerLink* link, const Tell& tell) {
   constexpr double longest_pause = 30;  // seconds
-  std::string order;                    // the server's last
+  std::string order;                    // the server's last order
   for (int deaths = 0; !stop_asked;) {
     EyeProcess eye(arguments, which);
     if (!order.empty()) eye.tell(order);
@@ -205,7 +206,7 @@ int supervise(const std::vector<std::string>& arguments, size_t which, const std
       if (stop_asked) return 0;
       if (heard == EyeProcess::Heard::ended) break;
       if (heard != EyeProcess::Heard::line) continue;
-      // Numbers as they ought to be, and nothing else, go on.
+      // Only numbers that are valid are passed on.
       const auto read = read_observation(text);
       const Observation* seen = std::get_if<Observation>(&read);
       if (seen && !tell(*seen, text)) return 0;
@@ -222,8 +223,8 @@ int supervise(const std::vector<std::string>& arguments, size_t which, const std
   return 0;
 }
 
-// All cameras, each in a thread of its own with its own way to the server: what happens to one is
-// nothing to the others. Until the last of them ends.
+// Runs all cameras, each in a thread of its own with its own way to the server, so that a fault of
+// one does not touch the others. Returns when the last of them ends.
 int watch_all(const KioskOptions& options, const std::vector<std::string>& arguments) {
   Readers readers(options);
   std::atomic<int> worst{0};
@@ -314,14 +315,14 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
   std::signal(SIGPIPE, SIG_IGN);
-  cv::setNumThreads(1);  // one core for the eyes; the others belong to the museum
+  cv::setNumThreads(1);  // one core for the eyes; the others are left to the museum's programs
   try {
     if (!options.recordings.empty()) return learn(options);
     if (!options.replay.empty()) return replay(options);
     const std::vector<std::string> arguments{argv, argv + argc};
     if (options.observe_to < 0)
       return options.calibrate ? calibrate(options, arguments) : watch_all(options, arguments);
-    prctl(PR_SET_PDEATHSIG, SIGTERM);  // not left over by who started it
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // must not outlive its parent
     look(options);
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

@@ -29,7 +29,7 @@ Presence step_presence(PresenceState& state, const PresenceSettings& settings, d
     state.started = true;
     state.since = state.last_time = time;
   }
-  if (time < state.last_time) {  // the clock was set back: keep every age as it is
+  if (time < state.last_time) {  // the clock was set back, so every age is kept as it is
     double shift = time - state.last_time;
     state.since += shift;
     state.last_motion += shift;
@@ -43,7 +43,7 @@ Presence step_presence(PresenceState& state, const PresenceSettings& settings, d
   if (moving) state.last_motion = time;
   if (face) state.last_face = time;
 
-  // Sums of frame times carry rounding; a tick of the clock must not decide.
+  // Sums of frame times carry rounding, which must not decide about a tick of the clock.
   constexpr double rounding = 1e-6;
   const bool woken = state.motion_evidence >= settings.wake_after - rounding;
   const bool confirmed = state.face_evidence >= settings.confirm_after - rounding;
@@ -99,7 +99,7 @@ struct Observer::Impl {
   std::map<uint32_t, Head> heads;
   double last_time = -1e9;
   std::optional<ClassReader> classes;  // only while expressions are asked for
-  bool read_classes = false;           // in this frame: one look a frame
+  bool read_classes = false;           // whether this frame reads them: one look a frame
 
   explicit Impl(const ObserverSettings& s)
       : settings(s),
@@ -130,7 +130,7 @@ struct Observer::Impl {
         face_plane(marks, pose, focal, frame.width, frame.height), read ? &now : nullptr);
   }
 
-  // Without landmarks: of somebody who looks at the screen, but for what eyes and profiles tell.
+  // Guesses without landmarks: somebody looks at the screen, but for what eyes and profiles show.
   vec3 crude_rotation(const Person& person, const Followed& who, vec3 camera) {
     const Mount& mount = settings.mount;
     constexpr float profile_yaw = 0.9f;  // radians
@@ -181,7 +181,7 @@ struct Observer::Impl {
     const double hold = settings.presence.hold_person;
     if (out.state == Presence::person)
       for (const auto& [id, head] :
-           heads) {  // one just lost stays where it was, less and less surely
+           heads) {  // a person just lost stays where they were, less and less surely
         double age = time - head.seen_time;
         if (age < 0 || age > hold) continue;
         Person person = head.person;
@@ -240,7 +240,7 @@ Observation Observer::step_blind(double time) {
 
 namespace {
 
-constexpr double told_for = 0.5;  // seconds: observations may be thinned out
+constexpr double told_for = 0.5;  // seconds a gesture is reported: observations may be thinned out
 
 struct Arm {
   HandTracker hand;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One frame in, one observation out: motion, faces, heads, hands, presence, in that order. What
-// leaves is numbers.
+// Turns one frame into one observation: motion, faces, heads, hands, presence, in that order. It
+// returns numbers only.
 #pragma once
 #include <memory>
 #include <string>
@@ -14,34 +14,34 @@
 
 namespace wellspring::kiosk {
 
-// absent -> motion -> person and back, with evidence that must gather and holds that must run out,
-// so that a flickering detector never makes the state flicker. Time is an argument: seconds, from
-// the frames.
+// Decides between absent -> motion -> person and back, with evidence that must gather and holds
+// that must run out, so that a flickering detector never makes the state flicker. Time is an
+// argument: seconds, from the frames.
 
 struct PresenceSettings {
   double wake_after = 0.4;     // seconds of movement before absent becomes motion
   double confirm_after = 0.7;  // seconds of a face before anything becomes person
   double hold_person = 2.0;    // seconds without a face before person is given up
   double hold_motion = 3.0;    // seconds without movement or face before motion becomes absent
-  double longest_step = 0.25;  // one frame is no more evidence than this, however late it comes
+  double longest_step = 0.25;  // seconds of evidence in one frame at most, however late it comes
 };
 
 struct PresenceState {
   Presence now = Presence::absent;
   double since = 0;  // time of the last change
-  // Evidence in seconds: grows with the time a cue is there, falls as fast while it is not, never
-  // below 0.
+  // Evidence in seconds: it grows with the time a cue is there, falls as fast while the cue is
+  // away, and is never below 0.
   double motion_evidence = 0, face_evidence = 0;
   double last_time = 0, last_motion = -1e9, last_face = -1e9;
   bool started = false;
 };
 
-// One frame: `moving` as motion.h says, `face` as a face is followed. A time that runs backwards (a
-// file that starts again) counts as no time passed. Returns state.now.
+// Takes one frame: `moving` as motion.h says, `face` if a face is followed. A time that runs
+// backwards (a file that starts again) counts as no time passed. Returns state.now.
 Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
                        bool moving, bool face);
 
-// Of a head's rotation, radians; docs/benchmarks/kiosk.eye.md compares it.
+// Filters a head's rotation, radians; docs/benchmarks/kiosk.eye.md compares it.
 inline constexpr OneEuroSettings rotation_filter{0.6f, 6.f, 1.f};
 
 struct ObserverSettings {
@@ -60,11 +60,11 @@ class Observer {
   // Throws LoadError when a cascade is missing.
   explicit Observer(const ObserverSettings& settings = {});
   ~Observer();
-  // Called for every frame in order; about 10 ms for 640x480 on one core.
+  // Takes every frame in order; about 10 ms for 640x480 on one core.
   Observation step(const GrayFrame& frame);
-  // What is not needed is not computed from the next frame on; at first all of it is.
+  // Says what is needed; the rest is not computed from the next frame on; at first all of it is.
   void need(const EyeNeeds& needs);
-  // The camera gave nothing up to `time`: nobody is seen, and holds run out.
+  // Notes that the camera gave nothing up to `time`: nobody is seen, and holds run out.
   Observation step_blind(double time);
 
  private:
@@ -72,7 +72,7 @@ class Observer {
   std::unique_ptr<Impl> impl_;
 };
 
-// What the hands of those who are followed say: a hand and a spotter for each person
+// Reads the gestures of people who are followed: with a hand and a spotter for each person
 // (kiosk/gesture).
 
 class PersonGestures {
@@ -81,8 +81,8 @@ class PersonGestures {
   // camera delivers a mirror image.
   PersonGestures(const GestureModels* models, bool mirrored);
   ~PersonGestures();
-  // Called once a frame for each person whose face is followed. Returns the gesture that was
-  // recognised within the last half second, or nothing; about 2 ms.
+  // Takes a frame for each person whose face is followed. Returns the gesture that was recognised
+  // within the last half second, or nothing; about 2 ms.
   std::string step(const GrayFrame& frame, uint32_t id, const Box& face);
   void forget(uint32_t id);
 

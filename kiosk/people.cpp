@@ -12,8 +12,8 @@ namespace {
 
 constexpr int patch_side = 28;          // pixels of the remembered texture
 constexpr float same_texture = 0.72f;   // correlation from which a patch is the same face
-constexpr float stirred_share = 0.01f;  // of the face's surroundings: less is noise
-constexpr int hits_to_count = 3;        // detections before a face is believed
+constexpr float stirred_share = 0.01f;  // share of the face's surroundings; less is noise
+constexpr int hits_to_count = 3;        // number of detections before a face counts
 
 float distance(const Box& a, const Box& b) {
   return std::hypot(a.center_x() - b.center_x(), a.center_y() - b.center_y());
@@ -63,7 +63,7 @@ struct People::Impl {
     track.patch = cut(frame, face.box, patch_side / face.box.width);
   }
 
-  // The face turned away: find its texture near where it was.
+  // Finds the texture of a face that turned away near its last place.
   void carry(Track& track, const GrayFrame& frame) {
     Followed& who = track.who;
     who.visible = false;
@@ -129,14 +129,14 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
   for (Impl::Track& track : m.tracks) {
     Followed& who = track.who;
     who.seen = false;
-    // A face long lost is left to the search; its window would only meet others.
+    // A face lost for long is left to the search; its window would only meet others.
     auto face = time - who.seen_time < m.settings.carry
                     ? m.finder.follow(frame, who.face, track.roll)
                     : std::optional<Face>();
     if (face) m.see(track, frame, *face);
     else m.carry(track, frame);
   }
-  // Two windows that slid onto one face: the older number stays.
+  // If two windows slide onto one face, the older number stays.
   for (size_t i = 0; i < m.tracks.size(); i++)
     for (size_t j = m.tracks.size(); j-- > i + 1;)
       if (m.tracks[i].who.visible && m.tracks[j].who.visible &&
@@ -155,7 +155,7 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
       time - m.searched_thoroughly >= (somebody ? m.settings.thorough_more : m.settings.thorough)) {
     m.searched_thoroughly = time;
     Box zone{0, 0, float(frame.width), float(frame.height)};
-    if (!motion.zones.empty()) {  // with room for the head above a body in plain clothes
+    if (!motion.zones.empty()) {  // the box leaves room for the head above a body in plain clothes
       const Box& z = motion.zones.front();
       zone = {z.x - 0.1f * z.width, z.y - 0.2f * z.height, 1.2f * z.width, 1.25f * z.height};
     }
@@ -186,7 +186,7 @@ constexpr float changed_levels = 12;  // grey levels between two frames that noi
 constexpr double changed_memory = 1;  // seconds a change is remembered
 constexpr int smallest_region = 40;   // pixels of the working picture
 
-double median(cv::Mat values) {  // of an 8-bit picture
+double median(cv::Mat values) {  // takes an 8-bit picture
   int counts[256] = {};
   for (int y = 0; y < values.rows; y++)
     for (int x = 0; x < values.cols; x++) counts[values.at<uint8_t>(y, x)]++;
@@ -200,9 +200,9 @@ double median(cv::Mat values) {  // of an 8-bit picture
 struct MotionWatch::Impl {
   MotionSettings settings;
   cv::Ptr<cv::BackgroundSubtractorMOG2> model;
-  cv::Mat reference;    // float: slow mean of the corrected pictures, what brightness is matched to
-  cv::Mat previous;     // the last corrected picture
-  cv::Mat changed_at;   // double: when each pixel last changed
+  cv::Mat reference;   // float: slow mean of the corrected pictures, to which brightness is matched
+  cv::Mat previous;    // the last corrected picture
+  cv::Mat changed_at;  // double: time at which each pixel last changed
   cv::Mat changed_now;  // 8 bit
   double last_time = 0;
   float scale = 1;  // working pixels per frame pixel
@@ -219,8 +219,8 @@ struct MotionWatch::Impl {
     last_time = time;
   }
 
-  // The gain that brings most pixels of `small` to the reference: the median of their ratios, which
-  // people covering less than half of the picture do not move.
+  // Returns the gain that brings most pixels of `small` to the reference: the median of their
+  // ratios, which people covering less than half of the picture do not move.
   double gain(const cv::Mat& small) const {
     cv::Mat now, ratio;
     small.convertTo(now, CV_32F, 1, 4);

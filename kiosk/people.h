@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is there: faces followed from frame to frame under a number each. A followed face is sought
-// in a small window; the whole frame only now and then, for newcomers. A face that turns away is
-// carried on for a moment by its own texture. A face that never stirs is a picture on the wall and
-// does not count as a person.
+// Follows faces from frame to frame, under a number each. A followed face is sought in a small
+// window; the whole frame only now and then, for newcomers. A face that turns away is carried on
+// for a moment by its own texture. A face that never stirs is a picture on the wall and does not
+// count as a person.
 #pragma once
 #include <memory>
 #include <vector>
@@ -12,33 +12,35 @@
 
 namespace wellspring::kiosk {
 
-// Is something moving in front of the camera, and where? A background model of the empty room
-// (Zivkovic's mixture of Gaussians, ICPR 2004) on a small picture whose brightness was first
-// brought to that of the background, so lamps, clouds and the camera's own exposure are not taken
-// for people. A region counts only if it both differs from the background and has changed within
-// the last second: a bag left behind or a ghost of somebody gone does not.
+// Finds whether something moves in front of the camera, and where. A background model of the empty
+// room (Zivkovic's mixture of Gaussians, ICPR 2004) runs on a small picture whose brightness was
+// first brought to that of the background, so lamps, clouds and the camera's own exposure are not
+// taken for people. A region counts only if it both differs from the background and has changed
+// within the last second: a bag left behind or a ghost of somebody gone does not.
 
 struct MotionSettings {
   int width = 160;              // pixels of the working picture's longer side
   double adapt = 15;            // seconds until a changed background is believed
-  float moving_share = 0.015f;  // of the picture: less is not motion
-  float light_share = 0.7f;     // more at once is a change of light: the background starts anew
+  float moving_share = 0.015f;  // share of the picture; less is not motion
+  // share of the picture; more at once is a change of light: the background starts anew
+  float light_share = 0.7f;
 };
 
 struct Motion {
-  float share = 0;      // of the picture that belongs to moving regions, 0 to 1
+  float share = 0;      // share of the picture that belongs to moving regions, 0 to 1
   bool moving = false;  // share >= moving_share
   bool light_changed = false;
-  std::vector<Box> zones;  // of the frame, largest first, at most 4
+  std::vector<Box> zones;  // boxes in the frame, largest first, at most 4
 };
 
 class MotionWatch {
  public:
   explicit MotionWatch(const MotionSettings& settings = {});
   ~MotionWatch();
-  // Called once a frame, about 1 ms. Frames may change size; the background then starts anew.
+  // Takes a frame, about 1 ms. Frames may change size; the background then starts anew.
   Motion step(const GrayFrame& frame);
-  // Share of `box` (of the frame last seen) that changed from one frame to the next, 0 to 1.
+  // Returns the share of `box` (in the frame last seen) that changed from one frame to the next, 0
+  // to 1.
   float changed(const Box& box) const;
 
  private:
@@ -48,19 +50,19 @@ class MotionWatch {
 
 struct PeopleSettings {
   double search_alone = 0.1;  // seconds between searches of the frame while nobody is followed
-  double search_more = 0.5;   // ... while somebody is
-  double thorough = 0.6;      // ... with the slower detector, while nobody is followed
-  double thorough_more = 2;   // ... while somebody is and something moves
+  double search_more = 0.5;   // the same while somebody is followed
+  double thorough = 0.6;      // the same with the slower detector, while nobody is followed
+  double thorough_more = 2;   // the same while somebody is followed and something moves
   double carry = 1.2;         // seconds a face is carried on by texture alone
   double recall = 4;          // seconds after which a lost face's number is forgotten
-  double still = 20;          // seconds without any movement: a picture
+  double still = 20;          // seconds without any movement; then it is a picture
   int most = 6;               // faces followed at once
 };
 
 struct Followed {
   uint32_t id = 0;
   Face face;
-  bool seen = false;     // in this frame, by a detector
+  bool seen = false;     // a detector saw it in this frame
   bool visible = false;  // seen or carried on
   bool picture = false;  // has not stirred for too long
   double first_time = 0, seen_time = 0, moved_time = 0;
@@ -72,10 +74,10 @@ class People {
   // `finder` is borrowed and must outlive this.
   explicit People(FaceFinder& finder, const PeopleSettings& settings = {});
   ~People();
-  // Called once a frame after motion.step(frame). The result is nearest (largest) first.
+  // Takes a frame after motion.step(frame). The result is nearest (largest) first.
   const std::vector<Followed>& step(const GrayFrame& frame, const Motion& motion,
                                     const MotionWatch& watch);
-  // How far that head is tilted, radians, for the next frame's search (FaceFinder::follow).
+  // Sets how far that head is tilted, radians, for the next frame's search (FaceFinder::follow).
   void tilt(uint32_t id, float roll);
 
  private:

@@ -10,8 +10,8 @@ export const data = process.env.WELLSPRING_DATA ?? '';
 const bin = process.env.WELLSPRING_BIN;
 const require = createRequire(join(process.env.WELLSPRING_NODE, 'index.js'));
 
-// A package of npm. Where it could not be installed the script ends, and CTest calls it skipped by
-// what it says (tests.cmake).
+// Loads a package of npm. If it is not installed the script ends, and CTest calls it skipped
+// because of this text (tests.cmake).
 export function load_module(name) {
   try {
     return require(name);
@@ -23,25 +23,26 @@ export function load_module(name) {
 }
 export const WebSocket = load_module('ws');
 
-// How many times longer than usual a deadline is: programs built with a sanitizer are slower.
+// Says how many times longer than usual a deadline is: programs built with a sanitizer are slower.
 export const patience = Number(process.env.WELLSPRING_PATIENCE ?? 1);
-// What has not happened by then never will, however busy the machine is.
+// An event that has not happened by then never will, however busy the machine is.
 export const deadline = 180000 * patience;  // ms
-// What such programs take of memory says nothing of others'.
+// The memory of such programs says nothing of others'.
 export const judges_memory = patience === 1;
-// Where these keep what would take each of them minutes.
+// The programs keep results here that would take each of them minutes.
 const cache = process.env.WELLSPRING_CACHE;
 
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
-// Until `holds` says so. `what` it is, text or what makes it, is told when it never does.
+// Waits until `holds` says so. `what` it is, text or a function that makes it, is told when it
+// never does.
 export async function until(holds, what = String(holds)) {
   for (const end = performance.now() + deadline; performance.now() < end; await sleep(50))
     if (await holds()) return;
   assert.fail(`never: ${what instanceof Function ? what() : what}`);
 }
 
-// For tests that judge no picture: the server leaves the cores to the browser.
+// These arguments are for tests that judge no picture: the server leaves the cores to the browser.
 export const little_light = ['--technique', 'direct', '--still-technique', 'direct', '--no-bake',
   '--fps', '10'];
 
@@ -118,7 +119,7 @@ export function start_server(words = [],
   });
 }
 
-// Of a picture that is not complete: [{x, y, width, height, jpeg}]; else null.
+// Returns the parts of a picture that is not complete: [{x, y, width, height, jpeg}]; else null.
 function read_parts(bytes) {
   if (bytes[25] & 2) return null;
   let at = bytes.readUInt16LE(26);

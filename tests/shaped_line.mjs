@@ -5,8 +5,8 @@
 import { createServer, connect } from 'node:net';
 import { pathToFileURL } from 'node:url';
 
-// From one socket to the other. line: {rate: bytes a second, delay: ms one way, queue: bytes},
-// read anew for each piece.
+// Carries bytes from one socket to the other. line: {rate: bytes a second, delay: ms one way,
+// queue: bytes}, read anew for each piece.
 function carry(from, to, line) {
   let free = 0, queued = 0;  // when the line has sent all that it was given; bytes
   const pieces = [];         // in their order, whichever timer comes first

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring_voice: speaks texts for other programs through eSpeak NG, over the protocol of
-// avatar/speech/protocol.h.
+// Speaks texts for other programs through eSpeak NG, over the protocol of avatar/speech/protocol.h.
 //
 // Licence. eSpeak NG is GPL-3.0-or-later. This file is the only one that includes its header and
 // this program the only one that links it; the source of this file is offered under Apache-2.0,
@@ -67,7 +66,7 @@ bool answer(const json& head, const std::vector<short>& sound = {}) {
          write_all(reinterpret_cast<const char*>(sound.data()), bytes);
 }
 
-// What the library's callback collects; it takes no pointer of ours.
+// Collects what the library's callback gets; it takes no pointer of ours.
 struct Spoken {
   std::vector<short> sound;
   struct Word {
@@ -106,7 +105,7 @@ int initialise(bool ipa) {
 }
 
 struct Language {
-  std::string tag, voice, name;  // BCP 47 in small letters; file of the voice; what it calls itself
+  std::string tag, voice, name;  // BCP 47 in small letters; file of the voice; the voice's own name
   int priority = 0;              // lower is preferred
 };
 
@@ -128,8 +127,8 @@ std::string small(std::string text) {
   return text;
 }
 
-// The voice of a language tag, else of the tag without its last part (de-AT: de), else null. "en"
-// is the tag of English; regions that have a voice of their own are found as written.
+// Finds the voice of a language tag, else of the tag without its last part (de-AT: de), else null.
+// "en" is the tag of English; regions that have a voice of their own are found as written.
 const Language* find_language(const std::vector<Language>& languages, std::string tag) {
   for (tag = small(tag); !tag.empty();) {
     const Language* best = nullptr;
@@ -144,7 +143,8 @@ const Language* find_language(const std::vector<Language>& languages, std::strin
   return nullptr;
 }
 
-// Manners of speaking that go with every voice: "f3" of "!v/f3".
+// Returns whether there is a manner of speaking by this name; they go with every voice: "f3" of
+// "!v/f3".
 bool has_variant(const std::string& name) {
   espeak_VOICE wanted{};
   wanted.languages = "variant";
@@ -205,7 +205,7 @@ json make_answer(const json& request, const std::vector<Language>& languages, in
 
 void limit_child() {
   rlimit memory{memory_bytes, memory_bytes}, none{0, 0};
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they reserve terabytes
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitisers reserve terabytes
   setrlimit(RLIMIT_AS, &memory);
 #else
   (void)memory;
@@ -235,7 +235,7 @@ json id_of(const std::string& text) {
   return request.is_object() && request.contains("id") ? request["id"] : json(nullptr);
 }
 
-// False when the connection is of no more use.
+// Serves one request; returns false when the connection is of no more use.
 bool serve_one(const std::vector<Language>& languages, int rate) {
   unsigned char bytes[protocol::header_bytes];
   if (!read_all(reinterpret_cast<char*>(bytes), sizeof bytes)) return false;
@@ -267,7 +267,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   std::vector<Language> languages = list_languages();
-  // What every child would read from disk is read once.
+  // Files that every child would read from disk are read once, here.
   if (const Language* language = find_language(languages, "en"))
     espeak_SetVoiceByName(language->voice.c_str());
 

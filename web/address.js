@@ -26,7 +26,7 @@ export function read_place(hash) {
 }
 export const asked_place = () => (fresh ? read_place(location.hash) : null);
 
-// Of this page and exhibit alone.
+// Leaves only this page and its exhibit in the address.
 function clean_address() {
   const url = new URL(location.href);
   const exhibit = url.searchParams.get('exhibit');
@@ -39,7 +39,7 @@ export function group_address(code) {
   url.searchParams.set('group', code);
   return url.href;
 }
-// To a centimetre, and a twentieth of a degree.
+// Returns the address of a place, to a centimetre and a twentieth of a degree.
 export function place_address({ position, yaw, pitch, roll }) {
   const url = clean_address();
   const numbers = [...position.map((v) => v.toFixed(2)), yaw.toFixed(3), pitch.toFixed(3),

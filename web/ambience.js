@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a museum sounds like where nobody speaks: fire, water, wind, the room itself, steps. All of
-// it is made here from noise; quiet, each from its place, and quieter still while somebody speaks.
+// Makes a museum's sounds while nobody speaks: fire, water, wind, the room itself, steps. All of
+// them are made here from noise; quiet, each from its place, and quieter still while somebody
+// speaks.
 import { in_front_of } from './sound.js';
 
-const under_speech = 0.25;   // of its loudness
+const under_speech = 0.25;   // share of the usual loudness
 const step_length = 0.72;    // metres
 const overlap = 4096;        // samples in which the end of a noise runs into its beginning
-const most_gain = 0.35;      // of the loudest of them: never above a voice
+const most_gain = 0.35;      // gain of the loudest place at most: never above a voice
 
 function noise_of(context, seconds, brown) {
   const buffer = context.createBuffer(1, Math.round(seconds * context.sampleRate),
@@ -51,7 +52,7 @@ export function make_ambience(sound) {
     tone.start(at);
     tone.stop(at + 0.2);
   };
-  // What each kind adds to its steady noise, for the second from `at` on.
+  // Each kind adds sounds to its steady noise, for the second from `at` on.
   const kinds = {
     fire: { low: 60, high: 420, gain: 0.9, brown: true, live(context, to, at) {
       for (let n = 3 + 9 * Math.random(); n > 0; n--)

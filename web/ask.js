@@ -42,7 +42,7 @@ export function make_ask(orders) {
       first = 0;
       offer();
     },
-    // Where nobody speaks it is to be read.
+    // The answer is shown as text if there is no storyteller to speak it.
     reply(message) {
       by_id('answer').textContent = speaks ? '' : message.text;
       by_id('answer').hidden = speaks;

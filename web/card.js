@@ -40,7 +40,7 @@ export function make_card(orders) {
     door.hidden = false;
   }
 
-  // What a touch of the object starts.
+  // Offers the animations that a touch of the object starts.
   function offer_animations(object) {
     const own = animations.filter((animation) => animation.object === object.id);
     by_id('card-animations').replaceChildren(...own.map((animation) => {
@@ -101,7 +101,7 @@ export function make_card(orders) {
       card.hidden = false;
       document.body.classList.add('reads');
       card.scrollTop = 0;
-      // Whoever chose it by a button reads on here; who walks goes on walking.
+      // A visitor who opened the card by a button reads on here; one who walks goes on walking.
       if (opener?.closest('button')) by_id('card-title').focus({ preventScroll: true });
     },
     close,

@@ -49,7 +49,8 @@ export function make_controls(canvas, stick, knob,
       look[1] += y * per_pixel;
     },
     pull(right, forward) { pulled[0] += right; pulled[1] += forward; },
-    // What was turned before the tap is sent before it: a later turn would end the way it begins.
+    // A turn made before the tap is sent before it: a later turn would end the way that the tap
+    // begins.
     tap(at, event) {
       if (look[0] !== 0 || look[1] !== 0) tell(last_move, true);
       tap?.(at, event);

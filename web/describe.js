@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture in words, for those who do not see it: where one is, and what is in view on which
-// side. Said anew where the visitor has come to rest.
+// Describes the picture in words, for those who do not see it: the visitor's place, and objects in
+// view on either side. The words are renewed when the visitor has come to rest.
 import { by_id } from './element.js';
 import { text_in, word } from './words.js';
 
 const rest = 1200;        // milliseconds in which nothing moves
 const here = 0.6;         // metres from a place that still are that place
-const farthest = 15;      // metres, of what is named
+const farthest = 15;      // metres to objects that are named
 const most = 4;           // objects at a time, the nearest ones
-const middle = 1 / 3;     // of half the picture's width: straight ahead
+const middle = 1 / 3;     // share of half the picture's width: straight ahead
 
 const turn = (from, to) => Math.atan2(Math.sin(to - from), Math.cos(to - from));
 
-// In view: [{object, side: left, ahead or right}], nearest first. view: {position, yaw, fov}; fov:
-// radians of the height, `aspect` times as wide.
+// Returns objects in view: [{object, side: left, ahead or right}], nearest first. view: {position,
+// yaw, fov}; fov: radians of the height, `aspect` times as wide.
 export function in_view(objects, { position, yaw, fov }, aspect) {
   const half = Math.atan(Math.tan(fov / 2) * aspect);
   return objects.filter((object) => object.position)
@@ -27,7 +27,8 @@ export function in_view(objects, { position, yaw, fov }, aspect) {
         side: Math.abs(angle) < half * middle ? 'ahead' : angle > 0 ? 'left' : 'right' }));
 }
 
-// The viewpoint that is nearest: {place, here: whether one is there}; undefined: there is none.
+// Returns the viewpoint that is nearest: {place, here: whether the visitor is there}; undefined:
+// there is none.
 export function nearest(viewpoints, position) {
   const away = (one) => Math.hypot(...one.position.map((v, i) => v - position[i]));
   const place = [...viewpoints].sort((a, b) => away(a) - away(b))[0];

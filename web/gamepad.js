@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A gamepad of the standard layout: the left stick walks, the right one looks; A goes on to the
 // next place, B opens and closes the menu, in which the cross and A choose.
-const dead = 0.16;  // of a stick's way: it never rests quite in the middle
+const dead = 0.16;  // share of a stick's way: it never rests quite in the middle
 const buttons = { a: 0, b: 1, up: 12, down: 13 };
 
 const bent = (v = 0) => (Math.abs(v) < dead ? 0

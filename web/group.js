@@ -68,7 +68,7 @@ export function make_group(orders) {
       else if (before && message.resumed) orders.group('rejoin');
       else if (before?.role === 'follower') follow(before.code);
     },
-    // As the server tells it; what it leaves out has not changed.
+    // Takes the server's news of the group; missing fields have not changed.
     message(news) {
       const before = now.role, focused = document.activeElement;
       now = { ...now, away: false, ...news };
@@ -90,7 +90,7 @@ export function make_group(orders) {
         place?.focus();
       }
     },
-    // Whether the error is one of groups, which is said.
+    // Says whether the error is one of groups, of which the visitor is told here.
     error({ code }) {
       if (code === 'unknown_group') {
         const text = word(lang, 'group_unknown').replace('{asked}', wish ?? '');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the browser keeps of a visitor's choices. Where it may keep nothing, the page itself does,
+// Keeps a visitor's choices in the browser. If the browser may keep nothing, the page itself does,
 // for as long as it is open.
 function make_store(kind) {
   const own = new Map();

@@ -67,7 +67,7 @@ export function make_menu(orders) {
 
   const hour = make_hour(orders.hour);
   return {
-    // As the visitor chose, now or earlier; null: never.
+    // Returns what the visitor chose, now or earlier; null: never.
     attention: () => (kept.get('attention') === null ? null : Number(attention.value)),
     welcome(message) {
       lang = message.lang;
@@ -132,7 +132,8 @@ export function make_menu(orders) {
     figures(text) { if (!menu.hidden) by_id('figures').textContent = text; },
     is_open: () => !menu.hidden,
     toggle: () => open(menu.hidden),
-    // For those without pointer and keys: the focus to the next control, or the one before.
+    // Moves the focus to the next control, or the one before, for visitors without pointer and
+    // keys.
     step(by) {
       const all = [...menu.querySelectorAll('button, input')]
           .filter((element) => !element.closest('[hidden]'));

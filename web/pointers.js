@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pointers on the picture: one drags it, a tap points at something, two pull the visitor along.
 const tap_pixels = { mouse: 5, pen: 9, touch: 12 }, tap_milliseconds = 600;
-const pull_metres = 5;  // that two fingers move the visitor on the height of the picture
+const pull_metres = 5;  // way of the visitor when two fingers cross the picture's height
 
-// Where a pointer is in the picture, 0 to 1 from its upper left; the canvas cuts what does not fit.
+// Returns where a pointer is in the picture, 0 to 1 from its upper left; the canvas cuts off the
+// margins that do not fit.
 export function place_in_picture(canvas, event) {
   const box = canvas.getBoundingClientRect();
   const scale = Math.max(box.width / canvas.width, box.height / canvas.height);
@@ -41,7 +42,7 @@ export function make_pointers(canvas, { turn, pull, tap }) {
     if (!last) return;
     const { clientX: x, clientY: y } = event;
     if (began) {
-      // Until it is a drag it is no look round either.
+      // A small movement is no drag yet, and does not look round either.
       if (Math.hypot(x - began.x, y - began.y) <= (tap_pixels[event.pointerType] ?? 5)) return;
       began = null;
     }

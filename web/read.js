@@ -65,7 +65,7 @@ function link_to(article) {
       element('a', { href: `#${article.id}`, textContent: title.textContent, lang: title.lang }));
 }
 
-// Of one section: its heading stays, the rest is put anew.
+// Fills a section: its heading stays, the rest is put anew.
 function fill(section, children) {
   section.replaceChildren(section.firstElementChild, ...children);
   section.hidden = children.length === 0;

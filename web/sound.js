@@ -8,19 +8,19 @@ import { read_sound } from './packet.js';
 const near = 1.5, faintest = 0.1;  // metres of full loudness; a far voice stays audible
 const slip = 0.06;                 // seconds a piece may be off before it is put right
 
-// How loud a voice is at `distance` metres: inverse distance, with a floor.
+// Returns how loud a voice is at `distance` metres: inverse distance, with a floor.
 export const loudness = (distance) => Math.max(faintest, near / Math.max(near, distance));
 
-// Where a world position is for somebody at `state` {position, yaw}: [right, up, back] metres.
-// `behind`: metres that the listener stands behind that place.
+// Returns where a world position is for a listener at `state` {position, yaw}: [right, up, back]
+// metres. `behind`: metres that the listener stands behind that place.
 export function in_front_of(state, position, behind = 0) {
   const [x, y, z] = position.map((v, i) => v - state.position[i]);
   const c = Math.cos(state.yaw), s = Math.sin(state.yaw);
   return [x * c - z * s, y, x * s + z * c - behind];
 }
 
-// How long after its server time a picture is seen, on performance.now()'s clock: the median of the
-// last ones, since single pictures are late but none is early.
+// Measures how long after its server time a picture is seen, on performance.now()'s clock: the
+// median of the last ones, since single pictures are late but none is early.
 export function make_delay(most = 31) {
   const seen = [];
   return {
@@ -169,21 +169,21 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     stop,
     shown: (picture) => delay.shown(picture.time_us, performance.now()),
     moved(to) { state = to; place(); },
-    // Who listens stands so many metres behind the picture's camera.
+    // Says how many metres the listener stands behind the picture's camera.
     stands_behind(metres) { behind = metres; place(); },
     // A new line: numbers of utterances begin anew, and the server must be told again.
     joined() { stop(); ended = 0; wanted = null; show(); },
     relabel: show,
     // 0..1, of everything that this page plays.
     volume(value) { volume = value; set_loudness(); },
-    // As a new guest finds it: sound is on.
+    // Resets sound as a new guest finds it: sound is on.
     reset() {
       muted = false;
       kept.remove('sound');
       set_loudness();
       show();
     },
-    // Where other sounds go: {context, to}; null until the browser allows any.
+    // Returns where other sounds go: {context, to}; null until the browser allows any.
     output: () => (context?.state === 'running' ? { context, to: master } : null),
     is_heard: () => !!current && current.at > context.currentTime,
   };

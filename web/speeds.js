@@ -15,7 +15,7 @@ const element = (name, attributes, text) => {
 export const time_text = (seconds) => seconds < 1
   ? `${Number((1000 * seconds).toPrecision(2))} ms` : `${Number(seconds.toPrecision(2))} s`;
 
-// Where points lie in a picture of that size: across by the logarithm of seconds, up by FLIP.
+// Makes the scales of a picture of that size: across the logarithm of seconds, up FLIP.
 // {x(seconds), y(flip), ticks_x: [seconds], ticks_y: [flip]}
 export function make_scale(points, width, height) {
   const seconds = points.map((point) => point.seconds);

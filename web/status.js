@@ -102,7 +102,8 @@ function show_kiosks({ kiosks, cameras }) {
   by_id('cameras-section').hidden = cameras.length === 0;
 }
 
-// What is counted of all exhibits together; of what is measured the largest.
+// Returns a reader of metrics over all exhibits: counts are added, of other values the largest is
+// taken.
 const reader = (metrics) => (name) => {
   const values = metrics.filter((metric) => metric.name === name).map(({ value }) => value);
   if (values.length === 0) return undefined;
@@ -189,7 +190,7 @@ function show_figures(metrics) {
   ]);
 }
 
-// From another machine the server tells all of this to who has the admin token alone. It stays in
+// From another machine the server tells all of this only with the admin token. The token stays in
 // the tab.
 function ask(path) {
   const token = of_tab.get('admin-token');

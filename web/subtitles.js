@@ -21,7 +21,7 @@ export function make_subtitles(element) {
       left = (seconds + 1) * 1000;
       if (!held) start();
     },
-    // What is told rests, or goes on: its line stays as long.
+    // Speech rests, or goes on: the line stays as long.
     hold(value) {
       if (held === value) return;
       held = value;

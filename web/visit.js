@@ -32,10 +32,10 @@ const canvas = by_id('picture');
 let lang = first_language(), seq = 0, state = null, walk_speed = 1.4, full = false;
 let connection = null, place = null;  // place: the viewpoint where the visitor was last
 let exhibit = asked_exhibit, unknown_exhibit = '';
-// What the address asks for, until it is there; null: nothing. told: the story that a kiosk's guest
-// took along.
+// These hold what the address asks for, until the visitor has it; null: nothing. told: the story
+// that a kiosk's guest took along.
 let start = asked_viewpoint, start_place = asked_place(), told = asked_story;
-const visit_key = `visit.${exhibit}`;  // where a visit that goes on is, sealed
+const visit_key = `visit.${exhibit}`;  // key of the sealed visit that goes on
 translate_page(lang);
 by_id('veil-text').textContent = word(lang, 'opening');
 
@@ -61,7 +61,7 @@ const sound = make_sound(by_id('sound-button'), {
 
 const ambience = make_ambience(sound);
 
-// For some seconds, if it says how many.
+// Shows a notice, for some seconds if it says how many.
 let notice_timer = 0;
 function notice(text, seconds) {
   clearTimeout(notice_timer);
@@ -76,7 +76,7 @@ const leap = () => dark.begin(seq);
 const hello = () => ({ type: 'hello', exhibit, lang, role: 'visitor', parts: true,
   ...comfort.size(), resume: of_tab.get(visit_key) ?? '', ...screen.hello() });
 
-// What the address asked for that is not there.
+// Says which wish of the address is unknown.
 function say_what_is_unknown(message) {
   const tag = asked_language(), spoken = message.languages;
   if (unknown_exhibit) {
@@ -245,7 +245,7 @@ function next() {
   return seq;
 }
 
-// What is broken off falls silent at once, not only when the server says so.
+// A tour that is broken off falls silent at once, not only when the server says so.
 function tour_action(action, name) {
   if (action !== 'play') sound.stop();
   connection.send({ type: 'tour', action, ...(name && { name }) });
@@ -326,7 +326,7 @@ function wake() {
 }
 for (const event of ['pointermove', 'pointerdown', 'keydown', 'touchstart'])
   addEventListener(event, wake, { passive: true });
-// Who goes on by keys sees where he is, on the picture too.
+// A visitor who goes on by keys sees the focus, on the picture too.
 addEventListener('keydown',
     (event) => { if (event.key === 'Tab') document.body.classList.add('keys'); });
 addEventListener('pointerdown', () => document.body.classList.remove('keys'));

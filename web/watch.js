@@ -7,7 +7,7 @@ import { word } from './words.js';
 
 const degrees = (radians) => Math.round(radians * 1800 / Math.PI) / 10;
 
-// Of a message `state`, as one of exhibit.json's "viewpoints"; names that nobody has are given.
+// Writes a message `state` as one of exhibit.json's "viewpoints"; names that nobody has are given.
 export function viewpoint_text({ position, yaw, pitch, roll, fov }, lang, names) {
   let number = 1;
   while (names.includes(`view-${number}`)) number++;

@@ -31,21 +31,22 @@ export function translate_page(lang) {
     element.placeholder = word(lang, element.dataset.wordHint);
 }
 
-// In the address; null: none.
+// Returns the language that the address asks for; null: none.
 export const asked_language = () => new URLSearchParams(location.search).get('lang');
 
-// Of a text in languages: `lang`, else the first of the `spoken` ones that it has; undefined: none.
+// Returns a language that the text has: `lang`, else the first of the `spoken` ones; undefined:
+// none.
 export const tag_in = (text, lang, spoken) =>
   [lang, lang.split('-')[0], ...spoken].find((one) => text?.[one]);
 
-// The text in that language.
+// Returns the text in that language.
 export const text_in = (text, lang, spoken) => text?.[tag_in(text, lang, spoken)] ?? '';
 
-// Whether one of the `spoken` languages is that one, whatever its country.
+// Says whether one of the `spoken` languages is that one, whatever its country.
 export const knows = (tag, spoken) =>
   spoken.some((one) => one.split('-')[0] === tag.toLowerCase().split('-')[0]);
 
-// The visitor's language: asked for in the address, chosen before, or the browser's.
+// Returns the visitor's language: asked for in the address, chosen before, or the browser's.
 export function first_language() {
   return asked_language() ?? kept.get('lang') ?? navigator.language ?? 'en';
 }

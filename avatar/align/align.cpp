@@ -16,16 +16,17 @@ namespace wellspring::avatar {
 
 namespace {
 
-constexpr size_t band_frames = 150;              // either side of the way before
-constexpr int rounds = 10, whitening_round = 4;  // of learning and dividing anew
+constexpr size_t band_frames = 150;              // frames on either side of the earlier way
+constexpr int rounds = 10, whitening_round = 4;  // rounds of learning and dividing anew
 
-// Costs of dividing by the learnt models, where a right frame costs 1/2 more than the constant.
-// Chosen with synthetic narrators who stutter; within factors of two the shares barely change.
+// These are the costs of dividing by the learnt models; a right frame costs 1/2 more than the
+// constant. They were chosen with synthetic narrators who stutter; within factors of two the shares
+// barely change.
 constexpr float model_gap_of_sound = 0.4f, model_enter_gap = 1, model_stay_cost = 0.01f;
 constexpr float model_enter_block = 2, model_return = 3, model_return_word = 3;
 
-// The states that a way of other states comes by, of both the same phonemes in the same order; for
-// a band, where only the neighbourhood counts. Gaps stand at the state that follows.
+// Returns the state at each frame of a way, in gaps the state that follows. The way may have other
+// states of the same phonemes in the same order: a band needs the neighbourhood alone.
 std::vector<int32_t> positions(const std::vector<int32_t>& way) {
   std::vector<int32_t> list;
   for (int32_t at : way) list.push_back(at < 0 ? -1 - at : at);
@@ -45,7 +46,7 @@ void set_band(WarpTask& task, const std::vector<int32_t>& position) {
     if (t + reach < frames)
       task.last[t] = uint32_t(std::min(size_t(position[t + reach]) + reach + 1, task.templates));
   }
-  // Where the way goes back the band is wide enough for both.
+  // A way that goes back gets a band wide enough for both places.
   for (size_t t = 1; t < frames; t++) task.last[t] = std::max(task.last[t], task.last[t - 1]);
   for (size_t t = frames; t-- > 1;) task.first[t - 1] = std::min(task.first[t], task.first[t - 1]);
 }
@@ -65,7 +66,7 @@ std::vector<int32_t> warp_finely(const SoundPair& pair, const std::vector<SoundS
   return warp(task).way;
 }
 
-// A way over frames of the template as a way over pieces of its phonemes.
+// Turns a way over frames of the template into a way over pieces of its phonemes.
 std::vector<int32_t> to_pieces(const std::vector<int32_t>& way,
                                const std::vector<SoundState>& states,
                                const std::vector<SoundState>& pieces) {
@@ -100,7 +101,7 @@ WarpResult divide(const SoundPair& pair, const std::vector<SoundState>& pieces,
   for (size_t t = 0; t < task.frames; t++) {
     const float* frame = pair.recorded.frame(t);
     task.silence_cost.push_back(silence_cost(model, frame));
-    // What is not in the text is made of the same sounds in any order.
+    // Sound that is not in the text is taken for the same sounds in any order.
     float foreign = nearest_cost(model, frame) + model_gap_of_sound;
     task.gap_cost.push_back(std::min(task.silence_cost[t], foreign));
   }
@@ -130,7 +131,7 @@ void refine(SoundPair& pair, const std::vector<SoundState>& pieces, uint32_t kin
   }
 }
 
-// Phonemes from `first` on that have a time become sounds of no word and are to be said again.
+// Makes phonemes from `first` on that have a time sounds of no word, since they are said again.
 void set_aside(size_t first, std::vector<double>& begin, std::vector<double>& end,
                const std::vector<SpeechPhoneme>& phonemes, std::vector<SpeechPhoneme>& in_vain) {
   for (size_t p = first; p < phonemes.size(); p++) {
@@ -140,7 +141,7 @@ void set_aside(size_t first, std::vector<double>& begin, std::vector<double>& en
   }
 }
 
-// Times of phonemes and words from the frames that were given to their states.
+// Sets the times of phonemes and words from the frames that were given to their states.
 void time_phonemes(const std::vector<SoundState>& states, const std::vector<int32_t>& way,
                    Speech& speech) {
   std::vector<double> begin(speech.phonemes.size(), -1), end(speech.phonemes.size(), -1);
@@ -149,7 +150,7 @@ void time_phonemes(const std::vector<SoundState>& states, const std::vector<int3
   for (size_t t = 0; t < way.size(); t++) {
     if (way[t] < 0) continue;
     size_t p = states[size_t(way[t])].phoneme;
-    // Of what is said more than once, the last time counts.
+    // If something is said more than once, the last time counts.
     if (way[t] < before) set_aside(p, begin, end, speech.phonemes, in_vain);
     before = way[t];
     if (begin[p] < 0) begin[p] = std::max(0.0, (double(t) - 0.5) * feature_hop);
@@ -214,9 +215,9 @@ Speech align_speech(const Speech& spoken, const Sound& recording) {
 
 namespace {
 
-// The states with their words in another order.
+// Returns the states with their words in another order.
 std::vector<SoundState> reorder(const std::vector<SoundState>& states, Rng& rng) {
-  std::vector<std::pair<size_t, size_t>> words;  // first state, past the last
+  std::vector<std::pair<size_t, size_t>> words;  // first state of each word, one past its last
   for (size_t i = 0; i < states.size(); i++) {
     if (states[i].word_begins || words.empty()) words.push_back({i, i});
     words.back().second = i + 1;
@@ -238,7 +239,7 @@ double eval_fit(const Speech& spoken, const Sound& recording) {
   auto states = make_states(spoken, pair.spoken.size(), 0);
   if (states.empty()) return unknown;
   CoarseWay own = warp_coarsely(pair, states);
-  if (own.way.empty()) return 0;  // far too short for it
+  if (own.way.empty()) return 0;  // the recording is far too short for the text
   Rng rng{1};
   double sum = 0, squares = 0, count = 0;
   for (int i = 0; i < fit_orders; i++) {

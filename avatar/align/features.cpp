@@ -14,13 +14,14 @@ namespace {
 
 constexpr int bands = 26;
 constexpr double window_seconds = 0.025;
-constexpr double lowest = 100, highest = 7000;  // Hz; the upper less where the rate is low
+constexpr double lowest = 100, highest = 7000;  // Hz; the upper one is less at low sampling rates
 
-constexpr float quietest = 1e-6f;  // power of a band that still counts
+constexpr float quietest = 1e-6f;  // least power of a band that counts
 
 using Complex = std::complex<float>;
 
-// Radix 2, in place (Cooley & Tukey 1965); `turns` holds exp(-2 pi i k / n) for k < n / 2.
+// Transforms `x` in place, radix 2 (Cooley & Tukey 1965); `turns` holds exp(-2 pi i k / n) for k <
+// n / 2.
 void transform(std::vector<Complex>& x, const std::vector<Complex>& turns) {
   size_t n = x.size();
   for (size_t i = 1, j = 0; i < n; i++) {
@@ -41,7 +42,7 @@ void transform(std::vector<Complex>& x, const std::vector<Complex>& turns) {
 double mel(double hertz) { return 1127 * std::log(1 + hertz / 700); }
 double hertz(double mel) { return 700 * (std::exp(mel / 1127) - 1); }
 
-// Triangles over the bins of a spectrum.
+// Holds triangles over the bins of a spectrum.
 struct Filters {
   std::array<std::vector<float>, bands> weights;
   std::array<size_t, bands> first{};
@@ -68,7 +69,7 @@ Filters make_filters(size_t bins, int rate) {
   return filters;
 }
 
-// Slopes by least squares over two frames on either side.
+// Computes slopes by least squares over two frames on either side.
 void fill_slopes(Features& features) {
   ptrdiff_t count = ptrdiff_t(features.size());
   auto value = [&](ptrdiff_t i, int c) {
@@ -142,7 +143,7 @@ std::vector<float> speech_chance(const Features& features) {
   double low = double(sorted[count / 10]), high = double(sorted[count - 1 - count / 10]);
   double variance[2] = {25, 25}, mean[2] = {low, high}, weight[2] = {0.5, 0.5};
   std::vector<float> chance(count, 1);
-  if (high - low < 6) return chance;  // nothing but speech, or nothing
+  if (high - low < 6) return chance;  // all is speech, or nothing is
   for (int round = 0; round < 30; round++) {
     double sum[2] = {}, first[2] = {}, second[2] = {};
     for (size_t i = 0; i < count; i++) {
@@ -264,7 +265,7 @@ std::vector<std::vector<WarpReturn>> find_returns(const std::vector<SoundState>&
                                                   float cost_of_word) {
   std::vector<std::vector<WarpReturn>> returns(states.size());
   constexpr size_t none = size_t(-1);
-  size_t word = none, before = none;  // where the word and the one before it begin
+  size_t word = none, before = none;  // first states of the word and of the one before it
   for (size_t i = 0; i < states.size(); i++) {
     if (states[i].word_begins) before = word, word = i;
     bool phoneme_ends = i + 1 == states.size() || states[i + 1].phoneme != states[i].phoneme;

@@ -10,11 +10,11 @@ namespace wellspring::avatar {
 
 namespace {
 
-constexpr int best_rate = 16000;           // Hz; of both sounds, less where one has less
+constexpr int best_rate = 16000;           // Hz for both sounds; less if one of them has less
 constexpr double most_coarse_cells = 2e7;  // bytes of the coarse way's table
 constexpr size_t least_coarse_step = 4;    // frames
 
-// Costs of warping, in units of a mean squared normalised feature: 2 between frames that have
+// Costs of warping are in units of a mean squared normalised feature: 2 between frames that have
 // nothing to do with each other, about 1 between the same sound of two voices.
 constexpr float gap_of_silence = 0.3f, gap_of_sound = 1.3f, enter_gap = 10;
 constexpr float stay_cost = 0.05f, skip_cost = 0.2f;
@@ -33,7 +33,7 @@ std::array<float, feature_count> make_weights() {
   return weights;
 }
 
-// Adds frame `from` of one to frame `to` of the other, `share` of it.
+// Adds `share` of frame `from` of `features` to frame `to` of `sum`.
 void add_frame(Features& sum, size_t to, const Features& features, size_t from, float share) {
   for (size_t c = 0; c < feature_count; c++) sum.frame(to)[c] += features.frame(from)[c] * share;
 }
@@ -86,7 +86,7 @@ CoarseWay warp_coarsely(const SoundPair& pair, const std::vector<SoundState>& fi
   double cells = double(fine.size()) * double(pair.recorded.size());
   size_t step =
       std::max(least_coarse_step, size_t(std::ceil(std::sqrt(cells / most_coarse_cells))));
-  std::vector<size_t> begins;  // of the coarse states, in fine ones
+  std::vector<size_t> begins;  // first fine state of each coarse state
   std::vector<SoundState> states;
   for (size_t i = 0; i < fine.size(); i++)
     if (fine[i].word_begins || i - begins.back() == step) {
@@ -129,7 +129,7 @@ CoarseWay warp_coarsely(const SoundPair& pair, const std::vector<SoundState>& fi
 }
 
 namespace {
-constexpr double prior_frames = 12;  // how many recorded frames the template's mean is worth
+constexpr double prior_frames = 12;  // number of recorded frames that the template's mean is worth
 constexpr double prior_variance_frames = 100;  // the same for the variance of all kinds
 constexpr double round_frames = 100;  // the same for the belief that features are independent
 
@@ -148,7 +148,7 @@ float gaussian_constant(const float* inverse) {
   return 0.5f * sum / feature_count;
 }
 
-// From the frames that were left out and are quiet; from all quiet ones where these are few.
+// Learns silence from the quiet frames that were left out, or from all quiet ones if these are few.
 void learn_silence(const Features& recorded, const std::vector<int32_t>& way,
                    const std::vector<float>& chance, SoundModel& model) {
   constexpr size_t n = feature_count;
@@ -174,7 +174,7 @@ void learn_silence(const Features& recorded, const std::vector<int32_t>& way,
     }
     return;
   }
-  // There is no silence in this recording: nothing is like it.
+  // This recording has no silence, so no frame is like it.
   model.silence_mean.assign(n, -10);
 }
 
@@ -205,7 +205,7 @@ SoundModel learn_sounds(const Features& spoken, const Features& recorded, const 
   model.mean.resize(kinds * n);
   model.inverse_variance.resize(kinds * n);
   for (size_t c = 0; c < n; c++) {
-    // The narrator's value of a feature as a line over the template's, over the kinds heard.
+    // Fits the narrator's values of a feature by a line over the template's, over the kinds heard.
     double w = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (uint32_t k = 0; k < kinds; k++) {
       double weight = std::min(heard_count[k], 50.0);
@@ -256,7 +256,7 @@ void whiten(Features& spoken, Features& recorded, const Hearing& hearing, const 
         scatter[a * n + b] += double((x[a] - mean[a]) * (x[b] - mean[b]));
     count++;
   }
-  // Cholesky's factor of the covariance; dividing by it makes the deviations independent.
+  // Computes Cholesky's factor of the covariance; dividing by it makes the deviations independent.
   for (size_t a = 0; a < n; a++)
     for (size_t b = 0; b <= a; b++) {
       double v = (scatter[a * n + b] + (a == b ? round_frames : 0)) / (count + round_frames);

@@ -11,23 +11,23 @@ namespace {
 
 constexpr float never = std::numeric_limits<float>::infinity();
 
-// How a state was reached, two states to a cell: the template itself (low bits) and the gap before
-// it; above them, how far back the way came from if it did.
+// A cell says how two states were reached: the template itself (low bits) and the gap before it;
+// the bits above say how far back the way came from, if it went back.
 enum From : uint16_t { stay = 0, advance = 1, skip = 2, from_gap = 3, back = 4, how_mask = 7 };
 constexpr uint16_t gap_entered = 8,
-                   gap_back = 16;  // came from template - 1, or back; else it went on
+                   gap_back = 16;  // bits: from template - 1, or back; neither: it went on
 constexpr int distance_shift = 5;
 constexpr size_t most_distance = 0xffff >> distance_shift;
 
 struct Row {
   size_t first = 0;
-  std::vector<uint16_t> from;  // for templates first, first + 1, ...; the last cell is a gap only
+  std::vector<uint16_t> from;  // one a template from `first` on; the last cell is a gap only
 };
 
-// Costs of all states at one frame, addressed by template with a border of `never`.
+// Holds the costs of all states at one frame, addressed by template with a border of `never`.
 struct Front {
   size_t first = 0;
-  std::vector<float> at, gap, spent;  // spent: frames at the template
+  std::vector<float> at, gap, spent;  // spent: frames spent at the template
   float template_cost(ptrdiff_t j) const { return get(at, j); }
   float gap_cost(ptrdiff_t j) const { return get(gap, j); }
   float get(const std::vector<float>& list, ptrdiff_t j) const {
@@ -36,7 +36,7 @@ struct Front {
   }
 };
 
-// The cheapest way back to template j: its cost and how many templates it goes back.
+// Returns the cheapest way back to template j: its cost and how many templates it goes back.
 std::pair<float, size_t> best_return(const WarpTask& task, const Front& before, size_t j) {
   std::pair<float, size_t> best{never, 0};
   if (task.returns.empty() || j >= task.templates) return best;
@@ -55,14 +55,14 @@ WarpResult warp(const WarpTask& task) {
   std::vector<Row> rows(task.frames);
   Front before, now;
   std::vector<float> costs;
-  // A frame before the first: nothing said, the gap before the first template is open.
+  // Before the first frame nothing is said, and the gap before the first template is open.
   before.at.assign(1, never);
   before.gap.assign(1, 0);
   before.spent.assign(1, 0);
 
   for (size_t t = 0; t < task.frames; t++) {
     size_t first = task.first.empty() ? 0 : task.first[t];
-    size_t last = task.last.empty() ? task.templates : task.last[t];  // past the templates
+    size_t last = task.last.empty() ? task.templates : task.last[t];  // one past the last template
     costs.assign(last - first, 0);
     task.costs(t, first, last, costs.data());
     now.first = first;

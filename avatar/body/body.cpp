@@ -28,7 +28,7 @@ void bend_chain(const Rig& rig, const std::vector<WeightedJoint>& chain, quat be
     pose.rotations[size_t(link.joint)] = glm::angleAxis(2 * half * link.share, axis);
     limited |= has_limits(joints[size_t(link.joint)]);
   }
-  // What one joint may not do the others do as far as they may.
+  // If one joint is limited, the others do its share as far as their limits allow.
   for (int round = 0; limited && round < 6; round++) {
     quat reached = below;
     float free = 0;
@@ -115,7 +115,7 @@ mat3 limb_frame(vec3 along, vec3 pole) {
   return mat3(side, along, cross(side, along));
 }
 
-// Two bones from the posed hip to the planted ankle.
+// Poses two bones from the posed hip to the planted ankle.
 void pose_leg(const Rig& rig, int side, const FootPlan& foot, Pose& pose) {
   const LegRig& leg = rig.leg[size_t(side)];
   const Character& character = *rig.character;
@@ -150,13 +150,13 @@ void pose_leg(const Rig& rig, int side, const FootPlan& foot, Pose& pose) {
   pose.rotations[size_t(leg.ankle)] = glm::conjugate(shin) * facing * about_x(4 * foot.lift);
 }
 
-// How far to turn where `angle`, from 0, is wanted and nobody said more than `limit`.
+// Returns how far to turn if `angle`, from 0, is wanted: by the figure's range, else up to `limit`.
 float in_range(const EyeRange& range, float angle, float limit) {
   return range.most > 0 ? std::min(angle / range.most, 1.0f) * range.output
                         : std::min(angle, limit);
 }
 
-// Each eye points at the same place.
+// Points one eye at `point`, which both eyes share.
 void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
   int joint = rig.eye[size_t(side)];
   pose.rotations[size_t(joint)] = quat(1, 0, 0, 0);
@@ -173,7 +173,7 @@ void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
   keep_limits(rig, joint, pose);
 }
 
-// Eyes drawn on the face look by shapes.
+// Makes eyes that are drawn on the face look, by shapes.
 void pose_drawn_eyes(const Rig& rig, vec3 point, Pose& pose) {
   int joint = rig.skull >= 0 ? rig.skull : rig.root;
   JointFrame head = eval_joint_frame(*rig.character, pose, joint);
@@ -205,7 +205,8 @@ void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose) {
   bool legs = rig.leg[0].complete() && rig.leg[1].complete();
   pose.translation = heading * plan.pelvis;
   if (!legs)
-    pose.translation = vec3(0), pelvis = heading;  // nothing to hold the feet in their place
+    // without legs nothing holds the feet in their place
+    pose.translation = vec3(0), pelvis = heading;
   pose.rotations[size_t(rig.root)] = pelvis;
 
   quat chest = heading * about_y(plan.torso.x) * about_x(plan.torso.y) * about_z(plan.torso.z);
@@ -248,8 +249,8 @@ int knuckle_of(const ArmRig& bones, int finger, int knuckle) {
   return -1;
 }
 
-// Towards the allowed part of the sphere of directions; `v` in the chest's frame, outwards along
-// +x.
+// Moves a direction into the allowed part of the sphere of directions; `v` is in the chest's frame,
+// outwards along +x.
 vec3 limited(vec3 v) {
   float up = std::asin(std::clamp(v.y, -1.0f, 1.0f)), flat = glm::length(vec2(v.x, v.z));
   float out = flat > 1e-4f ? std::atan2(v.x, v.z) : 0;
@@ -262,8 +263,8 @@ vec3 limited(vec3 v) {
   return {std::sin(out) * std::cos(up), std::sin(up), std::cos(out) * std::cos(up)};
 }
 
-// After a swing that did not know of the file's limits: each joint is brought into its own, and
-// what is missing to the target is done by those that still may, from the shoulder outwards (cyclic
+// Brings each joint into the file's limits after a swing that did not know of them; what is missing
+// to the target is done by joints that still may move, from the shoulder outwards (cyclic
 // coordinate descent). Returns the angle that is left.
 float point_within_limits(const Rig& rig, int side, Aim with, vec3 target, float weight,
                           Pose& pose) {
@@ -278,7 +279,7 @@ float point_within_limits(const Rig& rig, int side, Aim with, vec3 target, float
       PointingLine line = eval_pointing_line(rig, pose, side, with);
       vec3 way = target - line.from;
       if (weight < 1 || dot(way, way) < 1e-6f)
-        continue;  // on its way there: only kept within limits
+        continue;  // an arm on its way is only kept within limits
       quat frame = eval_joint_frame(character, pose, joint).rotation;
       quat more = between(line.direction, glm::normalize(way));
       turn = limit_turn(character.joints[size_t(joint)],
@@ -330,7 +331,7 @@ float point_arm(const Rig& rig, int side, Aim with, vec3 target, float weight, P
   float distance = glm::length(target - center);
   if (distance < 0.3f) return pi;
 
-  // Bend the elbow until the hand ends before the target. The forearm's plane stays.
+  // The elbow bends until the hand ends before the target. The forearm's plane stays.
   PointingLine line = eval_pointing_line(rig, pose, side, with);
   JointFrame fore = eval_joint_frame(character, pose, bones.elbow);
   float upper = glm::length(fore.center - center), rest = glm::length(line.from - fore.center);
@@ -343,14 +344,15 @@ float point_arm(const Rig& rig, int side, Aim with, vec3 target, float weight, P
   while (wanted < 2.3f && reach(wanted) < rest + 0.12f) wanted += 0.02f;
   vec3 axis = cross(u, f);
   if (wanted > bent && glm::length(axis) > 1e-3f) {
-    // In the frame of the elbow's own joint, which turns with the upper arm.
+    // The hinge is in the frame of the elbow's own joint, which turns with the upper arm.
     vec3 hinge = glm::conjugate(posed.rotation) * glm::normalize(axis);
     elbow = glm::angleAxis((wanted - bent) * weight, hinge) * elbow;
     line = eval_pointing_line(rig, pose, side, with);
     fore = eval_joint_frame(character, pose, bones.elbow);
   }
 
-  // Swing about the shoulder: the point of the line that is as far along as the target goes to it.
+  // The arm swings about the shoulder until the point of the line that is as far along as the
+  // target lies on it.
   quat swing(1, 0, 0, 0);
   vec3 from = line.from - center, along = line.direction, goal = target - center;
   for (int i = 0; i < 24; i++) {
@@ -361,7 +363,7 @@ float point_arm(const Rig& rig, int side, Aim with, vec3 target, float weight, P
     along = more * along;
     if (angle_of(along, goal - from) < 1e-5f) break;
   }
-  // Within the reach of the joint, as seen from the chest.
+  // Keeps the arm within the reach of the joint, as seen from the chest.
   int below = character.joints[size_t(bones.shoulder)].parent;
   if (bones.collar >= 0) below = character.joints[size_t(bones.collar)].parent;
   quat chest = below >= 0 ? eval_joint_frame(character, pose, below).rotation : quat(1, 0, 0, 0);

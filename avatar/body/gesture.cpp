@@ -10,19 +10,20 @@
 namespace wellspring::avatar {
 namespace {
 
-constexpr float settle_rate = 9;  // what a broken-off motion leaves is nine tenths gone in 0.43 s
-constexpr float head_start = 0.15f;  // the least of a clip that is played before its stroke
+// 1/s; nine tenths of a broken-off motion's rest are gone in 0.43 s
+constexpr float settle_rate = 9;
+constexpr float head_start = 0.15f;  // seconds of a clip that are played before its stroke at least
 
 GestureRow row_of(const GestureMotion& motion) { return std::bit_cast<GestureRow>(motion); }
 GestureMotion motion_of(const GestureRow& row) { return std::bit_cast<GestureMotion>(row); }
 
-// Time inside the clip: the held moment lasts `hold` seconds longer.
+// Returns the time inside the clip; the held moment lasts `hold` seconds longer.
 float clip_time(const GestureClip& clip, float time, float hold) {
   if (clip.hold < 0 || time <= clip.hold) return time;
   return time <= clip.hold + hold ? clip.hold : time - hold;
 }
 
-// The running clip alone, with arms as they are to be.
+// Evaluates the running clip alone, with arms as they are to be.
 GestureMotion eval_clip(const GestureState& state, const GestureLibrary& library,
                         const std::array<ArmPose, 2>& rest, float time) {
   GestureMotion motion;
@@ -45,7 +46,7 @@ GestureMotion eval_clip(const GestureState& state, const GestureLibrary& library
   return motion;
 }
 
-// A new clip takes over: the difference to what was shown, in place and speed, is left to springs.
+// Starts a new clip; the difference to the pose shown, in place and speed, is left to springs.
 void begin(GestureState& state, const GestureLibrary& library, const GestureOrder& order,
            const std::array<ArmPose, 2>& rest) {
   constexpr float h = 1e-3f;
@@ -188,7 +189,7 @@ GestureMotion eval_gesture(const GestureClip& clip, float t) {
   while (i + 1 < last && t > clip.times[i + 1]) i++;
   GestureRow row = clip.rows[0];
   if (last > 0) {
-    // Cubic Hermite between two keys.
+    // Interpolates by a cubic Hermite curve between two keys.
     float length = clip.times[i + 1] - clip.times[i];
     float u = std::clamp((t - clip.times[i]) / length, 0.0f, 1.0f), v = 1 - u;
     float a = v * v * (1 + 2 * u), b = u * u * (1 + 2 * v);

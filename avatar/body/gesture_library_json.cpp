@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON of a gesture library, both ways.
+// Reads the JSON of a gesture library.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -50,7 +50,7 @@ struct Reader : LibraryReader {
     }
   }
 
-  // Channels that this key names, over those of the key before.
+  // Reads the channels that this key names over those of the key before.
   void read_arm(const json& arm, const std::string& where, const std::string& side, GestureRow& row,
                 std::vector<bool>& said) const {
     auto set = [&](const std::string& field, float value) {
@@ -62,7 +62,7 @@ struct Reader : LibraryReader {
       if (field != "pose") continue;
       auto pose = value.is_string() ? poses.find(value.get<std::string>()) : poses.end();
       if (pose == poses.end()) fail(where + "/pose", "no pose of this name in /poses");
-      for (const char* angle : arm_fields) {  // a pose says all of the arm
+      for (const char* angle : arm_fields) {  // a pose sets the whole arm
         auto given = pose->second.find(angle);
         set(angle, given == pose->second.end() ? 0 : given->second);
       }
@@ -112,7 +112,7 @@ struct Reader : LibraryReader {
         row[channel_of("shoulders")] = degrees(*value, place + "/shoulders");
         said[channel_of("shoulders")] = true;
       }
-      // An angle of an arm that nobody spoke of yet was the same from the beginning: it is not seen
+      // An arm's angle that is named here first was the same from the beginning: it is not seen
       // while the arm has no weight.
       for (size_t c = 0; c < channel_of("left.weight"); c++)
         if (said[c] && !ever[c]) {
@@ -154,8 +154,8 @@ struct Reader : LibraryReader {
   }
 };
 
-// Monotone slopes (Fritsch, Carlson 1980; weights of Brodlie): no value between two keys leaves the
-// range of the two, and a motion does not stop at a key that it passes.
+// Makes monotone slopes (Fritsch, Carlson 1980; weights of Brodlie): no value between two keys
+// leaves the range of the two, and a motion does not stop at a key that it passes.
 void make_slopes(GestureClip& clip) {
   clip.slopes.assign(clip.rows.size(), GestureRow{});
   for (size_t i = 1; i + 1 < clip.rows.size(); i++)

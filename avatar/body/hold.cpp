@@ -34,10 +34,10 @@ void tick_hold(HoldState& state, const GestureLibrary& library, const HeldThing&
   }
   state.wanted = same(state.held, wanted);
   const float left = clip->seconds - state.time;
-  if (state.time > clip->hold) state.time += std::min(dt, left);  // on its way back
+  if (state.time > clip->hold) state.time += std::min(dt, left);  // the thing is on its way back
   else if (state.wanted) state.time = std::min(state.time + dt, clip->hold);
   else if (state.time == clip->hold) state.time += std::min(std::max(dt, 1e-4f), left);
-  else state.time = std::max(state.time - dt, 0.0f);  // it was not up yet: back the same way
+  else state.time = std::max(state.time - dt, 0.0f);  // the thing was not up yet: back the same way
   if (state.time >= clip->seconds || (state.time <= 0 && !state.wanted)) state = {};
 }
 
@@ -77,7 +77,7 @@ std::optional<mat4> eval_grip(const Rig& rig, const Pose& pose, int side) {
   const ArmRig& arm = rig.arm[size_t(side)];
   if (arm.wrist < 0) return std::nullopt;
   const Character& character = *rig.character;
-  // Of the hand at rest, which hangs with its palm inwards when turned by hand_hangs.
+  // These are directions at rest; the hand hangs with its palm inwards when turned by hand_hangs.
   const quat to_rest = glm::conjugate(arm.hand_hangs);
   const vec3 fingers = to_rest * vec3(0, -1, 0), thumb = to_rest * vec3(0, 0, 1);
   const vec3 palm = to_rest * vec3(side == 0 ? -1 : 1, 0, 0);
@@ -90,7 +90,7 @@ std::optional<mat4> eval_grip(const Rig& rig, const Pose& pose, int side) {
   constexpr float usual_palm = 0.085f;  // metres from the wrist to the knuckles
   knuckles = count > 0 ? knuckles / float(count) : wrist + usual_palm * fingers;
   // A rod lies in the bend of the fingers, before the palm.
-  constexpr float before_palm = 0.30f, behind_knuckles = 0.06f;  // of the palm's length
+  constexpr float before_palm = 0.30f, behind_knuckles = 0.06f;  // shares of the palm's length
   const float length = glm::length(knuckles - wrist);
   const vec3 place = knuckles + length * (before_palm * palm - behind_knuckles * fingers);
 

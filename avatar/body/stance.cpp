@@ -61,7 +61,7 @@ IdleMotion tick_idle(IdleState& state, Rng& rng, float lively, bool hands_busy, 
   double pace = 0.23 + 0.07 * double(lively);  // breaths a second
   if (humanlike) pace *= 1 + 0.12 * double(smooth_noise(1, now * 0.1));
   state.breath = std::fmod(state.breath + pace * double(dt), 1.0);
-  // In a little faster than out, with a rest at the end.
+  // Breathing in is a little faster than out, and a rest follows.
   float b = float(state.breath);
   motion.breath = b < 0.4f ? smooth_step(0, 0.4f, b) : 1 - smooth_step(0.4f, 0.92f, b);
   motion.torso_turn.y = 0.7_deg * motion.breath;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the body faces and where its feet stand. A turn is made in steps, one foot at a time; a
-// foot that does not step does not move.
+// Finds where the body faces and where its feet stand. A turn is made in steps, one foot at a time;
+// a foot that does not step does not move.
 #pragma once
 #include <array>
 
@@ -19,21 +19,20 @@ struct Foot {
 
 struct StanceState {
   std::array<Foot, 2> foot;  // left, right
-  Spring heading;            // of the pelvis
+  Spring heading;            // facing of the pelvis, radians about +Y
   Spring lean;  // weight towards the standing foot while the other steps, metres to its left
   float wanted = 0;
-  double turned_away =
-      -1e30;  // since when what is looked at has been far to the side; < 0: it is not
+  double turned_away = -1e30;  // time since the aim has been far to the side, s; < 0: it is not
 };
 
-// `aim`: yaw of what is looked at. `prior weight`: seconds and `reach`: angle before the body turns
-// to it; reach < 0: nobody is looked at, and the body turns back to the front after `prior weight`.
-// Without legs it just turns.
+// Advances by dt. `aim` is the yaw of the place that is looked at; once it has been farther than
+// `reach` from the heading for `patience` seconds, the body turns to it. reach < 0: nobody is
+// looked at, and the body turns back to the front after `patience`. Without legs it just turns.
 void tick_stance(StanceState& state, bool has_legs, float aim, float reach, float patience,
                  double now, float dt);
 
-// What a standing person does without meaning to: breathes, sways, shifts the weight, moves the
-// hands a little.
+// Moves a standing person as it moves without meaning to: it breathes, sways, shifts the weight,
+// moves the hands a little.
 
 struct IdleState {
   double breath = 0;  // cycles, 0..1
@@ -44,9 +43,9 @@ struct IdleState {
   float fold_wanted = 0;
 };
 
-// Offsets to be added, radians and metres.
+// Holds offsets to be added, radians and metres.
 struct IdleMotion {
-  float breath = 0;     // chest filled, 0..1
+  float breath = 0;     // share to which the chest is filled, 0..1
   vec3 pelvis{0};       // humanoid space
   vec3 pelvis_turn{0};  // yaw, pitch, roll
   vec3 torso_turn{0}, head_turn{0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON of expressions, both ways.
+// Reads the JSON of expressions.
 #include <algorithm>
 
 #include "avatar/face/expression.h"
@@ -12,7 +12,7 @@ using nlohmann::json;
 
 constexpr const char* kind_names[] = {"plain", "mouth",      "parts_lips",
                                       "blink", "opens_lids", "viseme"};
-// The list of parts of each kind of expression, and the field of a part that names what it weights.
+// Each kind of expression has a list of parts, and each part a field that names what it weights.
 constexpr const char* list_names[] = {"rotate", "deform", "group"};
 constexpr const char* part_names[] = {"rotator", "control", "expression"};
 constexpr double limit = double(largest_expression_weight);

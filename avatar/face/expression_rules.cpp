@@ -9,8 +9,8 @@ namespace {
 
 float clamp_weight(float v) { return v > 0 ? std::min(v, 1.0f) : 0; }  // NaN: 0
 
-// How much is left of a group: nothing where an expression blocks it or several together fade it
-// out.
+// Returns how much is left of a group: nothing if an expression blocks it or several together fade
+// it out.
 float left_of(const Character& character, size_t group, const Pose& pose) {
   float taken = 0;
   for (const ExpressionRule& rule : character.expression_rules) {

@@ -17,21 +17,23 @@ const std::array<const char*, flex_count> flex_names = {"turn",  "nod",   "tilt"
 
 namespace {
 
-// The applet's table. Turn, nod and looks are stirred by the body's and the eyes' own noise.
+// These rows are the applet's. Turn, nod and looks are stirred by the body's and the eyes' own
+// noise.
 struct Stir {
   Flex flex;
   float amplitude, frequency;
 };
 constexpr Stir stirs[] = {{Flex::brows, 0.10f, 0.5f}, {Flex::lids, 0.15f, 0.5f}};
 constexpr double frames_a_second = 30, applet_time = 3.6;
-constexpr double longest_step = 1.0 / 50;  // of the integral; noise has about two cells a second
+// seconds, for the integral; noise has about two cells a second
+constexpr double longest_step = 1.0 / 50;
 
 double noise_at(Flex flex, size_t side, float frequency, double time) {
   return double(smooth_noise(100 + 2 * uint32_t(flex) + uint32_t(side),
                              applet_time * double(frequency) * time));
 }
 
-// e^(-rate t) inside the integral, Simpson's rule outside.
+// Integrates noise: e^(-rate t) is taken inside the integral, Simpson's rule outside.
 double integrate(const Stir& stir, size_t side, double value, double rate, double scale,
                  double from, double to, int& drawn) {
   int steps = int(std::ceil((to - from) / longest_step));
@@ -95,7 +97,7 @@ int tick_perlin(PerlinFace& face, float stir, float settle_seconds, double now, 
         value.noise = std::abs(value.noise) < 1e-4f ? 0 : value.noise * left;
         continue;
       }
-      // What lies further back than e^-30 is forgotten.
+      // Noise that lies further back than e^-30 is forgotten.
       double span = std::min(double(dt), 30 / rate);
       double before = span < double(dt) ? 0 : double(value.noise);
       double scale = double(stir) * frames_a_second * double(given.amplitude);
@@ -112,7 +114,7 @@ std::string small(std::string_view text) {
   return result;
 }
 
-// Joints that have flesh on them or below: turning another one shows nothing.
+// Finds joints that have flesh on them or below: turning another one shows nothing.
 std::vector<bool> joints_seen(const Character& character) {
   std::vector<bool> seen(character.joints.size(), false);
   for (const JointWeight& weight : character.weights)
@@ -133,7 +135,7 @@ void add_parts(std::vector<ExpressionPart>& to, const std::vector<ExpressionPart
   }
 }
 
-// Everything nested is multiplied out. Expressions use only earlier ones, so one pass in order will
+// Multiplies out everything nested. Expressions use only earlier ones, so one pass in order will
 // do.
 void flatten(ExpressionRig& rig) {
   const ExpressionSet& set = *rig.set;
@@ -161,7 +163,7 @@ void flatten(ExpressionRig& rig) {
       rig.rotations[e] = rig.rotations[size_t(expression.otherwise)];
       nothing = rig.controls[e].empty() && rig.rotations[e].empty();
     }
-    // What is only there to be fallen back on or grouped ("_name") is not missed.
+    // A name like "_name" is only a fallback or a member of groups; nobody misses it.
     if (nothing && expression.name[0] != '_') rig.missing.push_back(expression.name);
   }
 }
@@ -182,7 +184,7 @@ quat turn_by(vec3 v) {
   return angle < 1e-9f ? quat(1, 0, 0, 0) : glm::angleAxis(angle, v / angle);
 }
 
-// Other kinds of lips and lids are scaled by what the protected movement leaves.
+// Scales other kinds of lips and lids by what the protected movement leaves.
 void scale_kind(ExpressionSum& sum, const ExpressionRig& rig, ControlKind kind, float scale) {
   for (size_t c = 0; c < sum.controls.size(); c++)
     if (rig.set->controls[c].kind == kind) sum.controls[c] *= scale;
@@ -316,7 +318,8 @@ void protect(ExpressionSum& sum, const ExpressionRig& rig, const Protected& what
 }
 
 void apply_rotators(const ExpressionSum& sum, const ExpressionRig& rig, Pose& pose) {
-  // Rotators of one joint stand in any order: their rotation vectors are summed, and turn it once.
+  // Rotators of one joint may come in any order: their rotation vectors are summed, and turn it
+  // once.
   size_t count = std::min(sum.rotators.size(), rig.joints.size());
   for (size_t r = 0; r < count; r++) {
     int joint = rig.joints[r];

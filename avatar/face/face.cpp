@@ -11,13 +11,14 @@ namespace {
 
 constexpr double syllables_a_second = 4.6;
 constexpr float emotion_rate =
-    7;  // critically damped: an emotion is nine tenths there after 0.56 s
+    7;  // 1/s, critically damped: an emotion is nine tenths there after 0.56 s
 constexpr float situation_settle = 0.8f;
-constexpr float stir = 0.3f;  // of Perlin's noise: his face is a cartoon's, this one a person's
+// share of Perlin's noise: his face is a cartoon's, this one a person's
+constexpr float stir = 0.3f;
 
 float blend(float low, float high, float x) { return smooth_step(low, high, x); }
 
-// Each syllable: a consonant, then a vowel; the vowel carries over into the next consonant.
+// Makes up syllables, each a consonant and a vowel; the vowel carries over into the next consonant.
 void make_up_syllables(double syllables, float talking, std::array<float, 15>& viseme) {
   auto of = [](double index, uint64_t salt) { return mix64(uint64_t(int64_t(index)) * 2 + salt); };
   double index = std::floor(syllables);
@@ -37,7 +38,7 @@ void tick_talk(FaceState& state, const FaceInput& input, float dt, Protected& wo
   if (state.talking < 1e-4f) state.talking = 0;
   words.talking = state.talking;
   if (state.talking > 0) {
-    // The head's emphasis keeps time with the syllables, made up or not.
+    // The head's emphasis keeps time with the syllables, whether they are made up or not.
     double pace = syllables_a_second * (1 + 0.2 * double(smooth_noise(40, state.syllables * 0.7)));
     state.syllables = std::fmod(state.syllables + pace * double(dt), 1e6);
   }
@@ -66,7 +67,7 @@ void add_flexes(const PerlinFace& face, const ExpressionRig& rig, ExpressionSum&
 
 Emotions layered(const Emotions& story, const Emotions& visitor, float weight,
                  float override_amount) {
-  // A farewell is absolute: of the story nothing is left to combine with.
+  // A farewell is absolute: it leaves nothing of the story to combine with.
   return bounded(add(mix(story, Emotions{}, override_amount), visitor, weight));
 }
 
@@ -90,7 +91,7 @@ void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& inpu
                                input.beat > 0 ? std::min(input.beat, 1.0f) : 0);
   settle(state.beat, state.beat_wanted, 14, dt);
 
-  // The situation: mood and noise by Perlin's flexes; farther away all of the face.
+  // The situation moves Perlin's flexes by mood and noise; farther away they make all of the face.
   PerlinFace& perlin = state.perlin;
   for (auto& sides : perlin.flex)
     for (PerlinFace::Value& value : sides) value.target = 0;
@@ -106,7 +107,7 @@ void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& inpu
     for (size_t side = 0; side < 2; side++)
       add(sum, rig, rig.flex[size_t(Flex::brows)][side][1], 0.45f * state.beat.value);
 
-  // Emotions by their own expressions, near by.
+  // Emotions show by their own expressions, near by.
   for (size_t i = 0; i < emotion_count; i++) {
     Spring& shown = state.emotion[i];
     settle(shown, full ? wanted.weight[i] : 0, emotion_rate, dt);
@@ -122,7 +123,7 @@ constexpr float down = 0.07f, held = 0.035f, up = 0.12f;
 
 float tick_blink(BlinkState& state, Rng& rng, double now, bool humanlike) {
   if (now >= state.next) {
-    // After a long pause between ticks there is nothing to make up for.
+    // After a long pause between ticks no blinks are made up for.
     state.begun = now - state.next < 0.5 ? state.next : now;
     state.count++;
     if (!humanlike) {
@@ -164,7 +165,7 @@ Emotions answer_to(const Emotions& seen) {
   Emotions answer;
   for (size_t s = 0; s < emotion_count; s++) {
     float weight = seen.weight[s];
-    if (!(weight > 0)) continue;  // NaN too
+    if (!(weight > 0)) continue;  // skips NaN, too
     weight = std::min(weight, 1.0f) * smooth_step(0.2f, 0.4f, weight);
     for (size_t a = 0; a < emotion_count; a++) answer.weight[a] += weight * answers[s][a];
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checked reading of the JSON of expressions and gestures: the first thing wrong is thrown as a
-// LoadError with its JSON pointer. For the readers of this folder, in .cpp files only.
+// Reads the JSON of expressions and gestures with checks: the first error is thrown as a LoadError
+// with its JSON pointer. For the readers of this folder, in .cpp files only.
 #pragma once
 #include <cmath>
 #include <initializer_list>
@@ -12,7 +12,8 @@
 
 namespace wellspring::avatar {
 
-// The data in avatar/library/ as compiled into the program, so that no installation lacks it.
+// Returns the data in avatar/library/ as compiled into the program, so that no installation lacks
+// it.
 
 std::string_view default_gestures_json();
 std::string_view default_expressions_json();
@@ -24,10 +25,10 @@ struct LibraryReader {
     throw LoadError(file, where, what);
   }
 
-  // The whole text: an object that calls itself `format`, version 1. Nesting, size and syntax are
-  // checked.
+  // Parses the whole text: an object that calls itself `format`, version 1. Nesting, size and
+  // syntax are checked.
   nlohmann::json parse(std::string_view text, const char* format) const;
-  // Fields nobody reads are misspelt ones.
+  // Refuses fields that nobody reads: they are misspelt ones.
   void only(const nlohmann::json& object, const std::string& where,
             std::initializer_list<std::string_view> known) const;
   const nlohmann::json* find(const nlohmann::json& object, const char* name) const {
@@ -38,14 +39,14 @@ struct LibraryReader {
     if (!value.is_object()) fail(where, "an object is expected");
     return value;
   }
-  // A list of at most `most` entries; absent: empty.
+  // Returns a list of at most `most` entries; an absent one is empty.
   const nlohmann::json& list(const nlohmann::json& object, const std::string& where,
                              const char* name, size_t most) const;
   float number(const nlohmann::json& value, const std::string& where, double low,
                double high) const;
   float number(const nlohmann::json& object, const std::string& where, const char* name,
                double otherwise, double low, double high) const;
-  // Letters, digits, '_', '-' and '.'; 1 to 64 of them.
+  // Returns a name: letters, digits, '_', '-' and '.'; 1 to 64 of them.
   std::string name(const nlohmann::json& object, const std::string& where,
                    const char* field = "name") const;
 };

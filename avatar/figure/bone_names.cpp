@@ -23,7 +23,7 @@ struct Namer {
     if (bone >= 0 && joints[size_t(bone)].empty() && used.insert(joint).second)
       joints[size_t(bone)] = joint;
   }
-  // The topmost bone of this part, below `above` (-1: anywhere).
+  // Finds the topmost bone of this part, below `above` (-1: anywhere).
   int find(BonePart part, int side, int above = -1) const {
     for (size_t i = 0; i < bones.size(); i++)
       if (words[i].part == part && words[i].side == side && (above < 0 || is_below(int(i), above)))
@@ -42,7 +42,7 @@ struct Namer {
 
   struct Limb {
     int first = -1, second = -1, third = -1,
-        fourth = -1;  // collar shoulder elbow wrist; or hip ...
+        fourth = -1;  // collar, shoulder, elbow, wrist; or hip ...
   };
   Limb name_arm(int side);
   Limb name_leg(int side);
@@ -56,8 +56,8 @@ std::string sided(int side, const char* joint) {
   return name.append(joint);
 }
 
-// "Shoulder" is the collar bone where the arm has a bone of its own, "Arm" the forearm where
-// another bone is the upper one.
+// Names an arm. "Shoulder" is the collar bone if the arm has a bone of its own, "Arm" the forearm
+// if another bone is the upper one.
 Namer::Limb Namer::name_arm(int side) {
   int collar = find(BonePart::collar, side), shoulder = find(BonePart::shoulder, side);
   int upper = find(BonePart::upper_arm, side), arm = find(BonePart::arm, side);
@@ -100,7 +100,7 @@ Namer::Limb Namer::name_leg(int side) {
   return {thigh, shin, ankle, toe};
 }
 
-// Three bones a finger from the palm; a fourth before them lies within it.
+// Names a hand: three bones a finger from the palm; a fourth before them lies within it.
 void Namer::name_hand(int side, int wrist) {
   constexpr const char* names[] = {"carpometacarpal_", "metacarpophalangeal_",
                                    "carpal_proximal_interphalangeal_",
@@ -126,7 +126,7 @@ void Namer::name_hand(int side, int wrist) {
   }
 }
 
-// The way from the hips to the head: below the arms it is spine, above them neck.
+// Names the way from the hips to the head: below the arms it is spine, above them neck.
 void Namer::name_trunk(const std::array<Limb, 2>& arms, const std::array<Limb, 2>& legs) {
   int hips = find(BonePart::hips, -1);
   int legs_meet = common_ancestor(legs[0].first, legs[1].first);
@@ -176,7 +176,7 @@ void Namer::name_face() {
 }  // namespace
 
 std::vector<std::string> spine_names(size_t count) {
-  // The vertebrae in the order in which more of them are worth having.
+  // These vertebrae are in the order in which more of them are worth having.
   constexpr const char* wanted[] = {"vl5",  "vt10", "vt6", "vl1", "vl3", "vt1",
                                     "vt12", "vt8",  "vt4", "vl4", "vl2", "vt11",
                                     "vt9",  "vt7",  "vt5", "vt3", "vt2"};
@@ -203,7 +203,7 @@ std::vector<std::string> neck_names(size_t count) {
 
 BoneNames name_bones(const std::vector<Bone>& bones) {
   Namer namer(bones);
-  // H-Anim's own names first.
+  // H-Anim's own names come first.
   size_t own = 0;
   for (size_t i = 0; i < bones.size(); i++) {
     std::string joint = hanim_joint_name(bones[i].name);

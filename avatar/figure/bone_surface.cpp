@@ -23,7 +23,7 @@ void add_triangle(Character& character, Part& part, int joint, vec3 a, vec3 b, v
   part.triangles.push_back({first, first + 1, first + 2});
 }
 
-// From joint to joint, thickest at a fifth of the way.
+// Adds a bone from joint to joint, thickest at a fifth of the way.
 void add_bone(Character& character, Part& part, int joint, vec3 from, vec3 to, float thickness) {
   vec3 along = to - from;
   float length = glm::length(along);
@@ -65,7 +65,7 @@ void add_bone_surface(Character& character) {
     add_bone(character, part, parent, character.joints[size_t(parent)].center,
              character.joints[j].center, 0.03f * size);
   }
-  // The last bones go a little on, the way they came.
+  // The last bones go on a little in the same direction.
   for (size_t j = 0; j < character.joints.size(); j++) {
     int parent = character.joints[j].parent;
     if (!ends[j]) continue;
@@ -81,7 +81,7 @@ void add_bone_surface(Character& character) {
   character.parts.push_back(std::move(part));
 }
 
-// A person's skeleton known by its shape: two like legs that reach the floor, above them two like
+// Knows a person's skeleton by its shape: two like legs that reach the floor, above them two like
 // arms and something between.
 
 namespace {
@@ -89,8 +89,9 @@ namespace {
 struct Shape {
   const std::vector<Bone>& bones;
   std::vector<std::vector<int>> children;
-  std::vector<float> low, high;  // of what hangs below
-  std::vector<int> size, depth;  // bones below and the longest chain of them, itself included
+  std::vector<float> low, high;  // least and greatest y of each bone and all below it
+  // number of bones below and length of their longest chain, the bone itself included
+  std::vector<int> size, depth;
   float height = 0;
 
   explicit Shape(const std::vector<Bone>& from) : bones(from), children(from.size()) {
@@ -111,7 +112,7 @@ struct Shape {
   }
   vec3 place(int bone) const { return bones[size_t(bone)].place; }
 
-  // From a bone along the longest chain; ends where a hand spreads.
+  // Returns the longest chain from a bone; it ends where a hand spreads.
   std::vector<int> chain(int bone) const {
     std::vector<int> result;
     while (bone >= 0) {
@@ -128,7 +129,7 @@ struct Shape {
   struct Pair {
     int parent = -1, a = -1, b = -1;
   };
-  // Two children with as many bones each whose ends lie level and apart.
+  // Finds pairs of children with as many bones each whose ends lie level and apart.
   template <class Fits>
   std::vector<Pair> like_pairs(int parent, const Fits& fits) const {
     std::vector<Pair> pairs;
@@ -164,7 +165,7 @@ std::vector<std::string> name_bones_by_shape(const std::vector<Bone>& bones) {
     }
   if (legs.parent < 0) return names;
 
-  // Up from the hips along what reaches highest, to where two arms part.
+  // The spine goes up from the hips along what reaches highest, to where two arms part.
   std::vector<int> spine;
   Shape::Pair arms;
   int at = legs.parent;
@@ -185,7 +186,7 @@ std::vector<std::string> name_bones_by_shape(const std::vector<Bone>& bones) {
     }
   }
 
-  // Feet point ahead; so left is known.
+  // Feet point ahead, which tells left from right.
   std::vector<int> leg_a = shape.chain(legs.a), leg_b = shape.chain(legs.b);
   vec3 ahead(0);
   for (const auto& leg : {leg_a, leg_b})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Something to look at where a file has only a skeleton: a slender double pyramid for each bone.
+// Gives a surface to files that have only a skeleton: a slender double pyramid for each bone.
 #pragma once
 #include "avatar/figure/character.h"
 

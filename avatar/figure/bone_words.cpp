@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one bone's name says: "mixamorig:LeftForeArm", "upperarm_l", "Bip01 R Finger11",
+// Reads what one bone's name says: "mixamorig:LeftForeArm", "upperarm_l", "Bip01 R Finger11",
 // "f_index.02.L".
 #include <algorithm>
 #include <cctype>
@@ -13,7 +13,7 @@
 namespace wellspring::avatar {
 namespace {
 
-// Words of a name: cut at punctuation, at small-to-capital and letter-to-digit borders.
+// Splits a name into words: at punctuation, at small-to-capital and letter-to-digit borders.
 std::vector<std::string> words_of(std::string_view name) {
   for (char cut : {':', '|'}) {
     size_t at = name.rfind(cut);
@@ -93,7 +93,7 @@ BoneWord read_bone_name(std::string_view name) {
   int segment = -1;
   for (std::string& word : words) {
     if (known.helpers.contains(word)) return {BonePart::helper, result.side, -1};
-    // "leftupperarm", "rthigh" are left to the table, which knows no such word: cut the side off.
+    // Words like "leftupperarm" or "rthigh" are in no table, so the side is cut off.
     for (const char* prefix : {"left", "right"}) {
       size_t length = std::char_traits<char>::length(prefix);
       if (word.size() > length && word.compare(0, length, prefix) == 0) {
@@ -111,7 +111,7 @@ BoneWord read_bone_name(std::string_view name) {
     else if (word == "metacarpal" || word == "carpal") segment = 0;
     else if (!known.noise.contains(word)) rest.push_back(word);
   }
-  // A figure's own name may stand before the part, nothing but numbers behind it.
+  // A figure's own name may stand before the part, and nothing but numbers behind it.
   for (size_t skip = 0; skip < rest.size() && result.part == BonePart::none; skip++) {
     std::string key;
     for (size_t i = skip; i < rest.size(); i++) key += rest[i];

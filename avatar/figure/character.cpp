@@ -14,7 +14,7 @@ const char* to_string(Detail detail) {
 
 Detail next_detail(Detail before, float distance, const DetailWalls& walls) {
   if (!(distance == distance)) return before;
-  // Each wall stands nearer to somebody who is outside of it.
+  // Each wall stands nearer to a viewer who is outside of it.
   float near = walls.near + (before == Detail::full ? walls.hysteresis : -walls.hysteresis);
   float far = walls.far + (before == Detail::none ? -walls.hysteresis : walls.hysteresis);
   return distance < near ? Detail::full : distance < far ? Detail::medium : Detail::none;

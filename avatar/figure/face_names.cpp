@@ -13,7 +13,8 @@ namespace wellspring::avatar {
 
 namespace {
 
-// Which vertices of a shape a control takes: a side, or a region told by what lids and mouth move.
+// Says which vertices of a shape a control takes: a side, or a region given by what lids and mouth
+// move.
 enum class Cut : uint8_t {
   all,
   left,
@@ -57,7 +58,7 @@ const std::vector<Recipe>& face_recipes() {
   return recipes;
 }
 
-// "Wolf3D_Head.eyeBlink_L", "EyeBlinkLeft" -> "eyeblinkleft".
+// Makes the key of a name: "Wolf3D_Head.eyeBlink_L", "EyeBlinkLeft" -> "eyeblinkleft".
 std::string key_of(std::string name) {
   size_t dot = name.rfind('.');
   if (dot != std::string::npos && dot + 1 < name.size()) name.erase(0, dot + 1);
@@ -112,12 +113,14 @@ struct Face {
       if (size_t(rule.displacer) == displacer) return &rule;
     return nullptr;
   }
-  // What of a shape's effect on materials a control takes: those have no sides and no regions.
+  // Returns the share of a shape's effect on materials that a control takes: materials have no
+  // sides and no regions.
   static float share_of(Cut cut) {
     return cut == Cut::all ? 1 : cut == Cut::left || cut == Cut::right ? 0.5f : 0;
   }
 
-  // `changes` and `binary`: what the control does to looks, and whether it is all or nothing.
+  // Makes a displacer. `changes` and `binary` say what the control does to looks, and whether it is
+  // all or nothing.
   bool make(const Recipe& recipe, Displacer& made, std::vector<AppearanceChange>& changes,
             bool& binary) const {
     std::map<uint32_t, vec3> sum;
@@ -128,7 +131,7 @@ struct Face {
       const Displacer& shape = character.displacers[found->second];
       float weight = part, share = share_of(recipe.cut);
       if (const ExpressionRule* rule = rule_of(found->second); rule && rule->binary && share > 0) {
-        if (weight <= 0.5f) return false;  // there is no little of it
+        if (weight <= 0.5f) return false;  // an all-or-nothing shape cannot show a little
         weight = 1, binary = true;
       }
       for (size_t i = 0; i < shape.vertices.size(); i++)
@@ -151,7 +154,7 @@ struct Face {
   }
 };
 
-// The group a control or a VRM preset belongs to; -1: none.
+// Returns the group a control or a VRM preset belongs to; -1: none.
 int group_of(const std::string& name) {
   static const std::unordered_set<std::string> vowels = {"aa", "ih", "ou", "ee", "oh"};
   if (name.rfind("blink", 0) == 0) return int(ExpressionGroup::blink);
@@ -159,7 +162,7 @@ int group_of(const std::string& name) {
   return name.rfind("viseme_", 0) == 0 || vowels.count(name) ? int(ExpressionGroup::mouth) : -1;
 }
 
-// Rules for all that is forbidden by some.
+// Adds rules for all that is forbidden by some.
 void complete_rules(Character& character) {
   auto& rules = character.expression_rules;
   if (rules.empty()) return;

@@ -25,7 +25,7 @@ std::string centimetres(float metres) {
   return std::to_string(int(std::lround(metres * 100))) + " cm";
 }
 
-// Where the head is: around the vertices that follow the skull; for a skull without surface, around
+// Finds the head: around the vertices that follow the skull; for a skull without surface, around
 // its joint by the figure's size.
 Box head_box(const Character& character, int skull, float height) {
   Box box;
@@ -78,10 +78,10 @@ void check_face_joints(Character& character, float height) {
   }
 }
 
-// H-Anim figures stand on y = 0; some files put their origin elsewhere.
+// Puts the figure on y = 0, as H-Anim figures stand; some files put their origin elsewhere.
 void stand_on_floor(Character& character) {
   if (find_joint(character, "l_talocrural") < 0 && find_joint(character, "l_knee") < 0) return;
-  if (character.parts.empty() && !character.motions.empty()) return;  // where a recording has it
+  if (character.parts.empty() && !character.motions.empty()) return;  // a recording keeps its place
   float low = INFINITY;
   for (vec3 p : character.positions) low = std::min(low, p.y);
   // Surfaces may be missing, or stand on legs that have none.
@@ -122,7 +122,7 @@ void check_figure(Character& character) {
 
 namespace {
 
-// Displacers that change materials, each once.
+// Lists displacers that change materials, each once.
 std::vector<std::string> painting(const Character& character) {
   std::vector<std::string> names;
   for (const AppearanceChange& change : character.appearance_changes) {
@@ -143,7 +143,7 @@ size_t triangle_count(const Character& character) {
   return count;
 }
 
-// Most joints that move one vertex.
+// Returns the greatest number of joints that move one vertex.
 size_t most_weights(const Character& character) {
   size_t most = 0;
   for (size_t v = 0; v + 1 < character.first_weight.size(); v++)

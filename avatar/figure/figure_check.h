@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every figure is held to, whatever file it comes from.
+// Checks every figure, whatever file it comes from.
 #pragma once
 #include <string>
 
@@ -11,7 +11,7 @@ namespace wellspring::avatar {
 // where no face is, a size no person has. Called once, at the end of loading.
 void check_figure(Character& character);
 
-// What a character consists of, for people (text) and for programs (JSON).
+// Describes a character's contents, for people (text) and for programs (JSON).
 
 std::string describe_text(const Character& character);
 std::string describe_json(const Character& character);

@@ -109,7 +109,7 @@ struct Known {
   int level;
 };
 
-// Every name and alias to its joint.
+// Maps every name and alias to its joint.
 const std::unordered_map<std::string, Known>& known_joints() {
   static const auto table = [] {
     std::unordered_map<std::string, Known> made;
@@ -141,7 +141,8 @@ std::string hanim_joint_name(std::string_view text) {
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && blank(text.back())) text.remove_suffix(1);
   const auto& table = known_joints();
-  // The whole name first, then what follows each underscore: the longest known remainder wins.
+  // The whole name is tried first, then what follows each underscore: the longest known remainder
+  // wins.
   for (size_t start = 0; start < text.size();) {
     auto found = table.find(std::string(text.substr(start)));
     if (found != table.end()) return found->second.name;

@@ -10,7 +10,7 @@ namespace {
 using Kind = JointConstraint::Kind;
 constexpr quat no_turn(1, 0, 0, 0);
 
-// The smallest turn from one unit vector to another.
+// Returns the smallest turn from one unit vector to another.
 quat turn_from_to(vec3 from, vec3 to) {
   float w = 1 + dot(from, to);
   vec3 axis = cross(from, to);
@@ -23,16 +23,16 @@ quat turn_from_to(vec3 from, vec3 to) {
 
 bool is_turn(quat q) {
   float square = glm::dot(q, q);
-  return square > 1e-12f && square < 1e12f;  // not for NaN
+  return square > 1e-12f && square < 1e12f;  // false for NaN
 }
 
-// Which joints' turns a constraint reads, each once.
+// Calls `body` with each joint whose turn a constraint reads, once.
 template <class Body>
 void each_dependency(const std::vector<Joint>& joints, const JointConstraint& constraint,
                      Body&& body) {
   if (constraint.kind != Kind::aim || constraint.source == constraint.joint)
     return body(constraint.source);
-  for (int of : {constraint.source, constraint.joint})  // places hang on what lies above
+  for (int of : {constraint.source, constraint.joint})  // places depend on the joints above
     for (int j = joints[size_t(of)].parent; j >= 0; j = joints[size_t(j)].parent) body(j);
 }
 
@@ -55,7 +55,7 @@ quat eval_constraint(const Character& character, const JointConstraint& constrai
     if (!is_turn(source)) return no_turn;
     const quat& between = constraint.between;
     target = between * glm::normalize(source) * glm::conjugate(between);
-    // What of the turn is left when the axis has been brought to where the turn takes it.
+    // A roll is what is left of the turn when the axis has been brought to where the turn takes it.
     if (constraint.kind == Kind::roll)
       target =
           glm::conjugate(turn_from_to(constraint.axis, glm::normalize(target * constraint.axis))) *
@@ -75,12 +75,12 @@ void follow_constraints(const Character& character, Pose& pose) {
 
 std::vector<JointConstraint> sort_constraints(const std::vector<Joint>& joints,
                                               std::vector<JointConstraint>& constraints) {
-  // Rounds of taking what waits for nothing (Kahn 1962); each joint is turned by one constraint at
+  // Each round takes what waits for nothing (Kahn 1962); each joint is turned by one constraint at
   // most.
   size_t count = constraints.size();
   std::vector<int> turned_by(joints.size(), -1);
   for (size_t k = 0; k < count; k++) turned_by[size_t(constraints[k].joint)] = int(k);
-  std::vector<std::vector<size_t>> waiting(count);  // for each: who waits for it
+  std::vector<std::vector<size_t>> waiting(count);  // for each constraint those that wait for it
   std::vector<size_t> waits(count, 0);
   for (size_t k = 0; k < count; k++)
     each_dependency(joints, constraints[k], [&](int joint) {

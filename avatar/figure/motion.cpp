@@ -16,7 +16,7 @@ quat unit(quat q) {
   return length > 1e-6f && length < 1e6f ? q * (1 / length) : quat(1, 0, 0, 0);
 }
 
-// Values between the two keys around `time`; glTF 2.0, appendix C, has the same three curves.
+// Interpolates between the two keys around `time`; glTF 2.0, appendix C, has the same three curves.
 void eval_track(const MotionTrack& track, float time, float* out) {
   size_t width = width_of(track.kind), keys = track.times.size();
   bool cubic = track.curve == TrackCurve::cubic;

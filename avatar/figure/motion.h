@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded movement, wherever it comes from (BVH, HAnimMotion, interpolators of X3D, animations
-// of glTF and VRM): key frames of a skeleton that the motion brings along, so that it can be shown
-// on any other. Plain data, immutable once loaded.
+// Holds a recorded movement, wherever it comes from (BVH, HAnimMotion, interpolators of X3D,
+// animations of glTF and VRM): key frames of a skeleton that the motion brings along, so that it
+// can be shown on any other. It is plain data, immutable once loaded.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace wellspring::avatar {
 
-// A joint of the motion's own skeleton at rest: +Y up, facing +Z, standing on y = 0.
+// This is a joint of the motion's own skeleton at rest: +Y up, facing +Z, standing on y = 0.
 struct MotionJoint {
-  std::string name;  // H-Anim's where it is one of these
+  std::string name;  // H-Anim's name if it has one
   int parent = -1;
   vec3 center{0};
 };
@@ -21,31 +21,31 @@ struct MotionJoint {
 enum class TrackKind : uint8_t { rotation, translation, scale, displacer };
 enum class TrackCurve : uint8_t { step, linear, cubic };
 
-// Key frames of one joint or displacer. Turns are relative to the parent and to rest, about axes of
-// the humanoid space at rest, as in a Pose; translations are added to the place at rest; scales are
-// factors along the axes of `frame`.
+// Holds key frames of one joint or displacer. Turns are relative to the parent and to rest, about
+// axes of the humanoid space at rest, as in a Pose; translations are added to the place at rest;
+// scales are factors along the axes of `frame`.
 struct MotionTrack {
   TrackKind kind = TrackKind::rotation;
   TrackCurve curve = TrackCurve::linear;
-  int target = 0;            // of Motion::joints or Motion::displacers
+  int target = 0;            // index into Motion::joints or Motion::displacers
   std::vector<float> times;  // seconds, not decreasing, at least one
   std::vector<float>
       values;  // a key: x y z w, x y z or one weight; cubic: in-tangent, value, out-tangent
   quat frame{1, 0, 0, 0};
 };
 
-inline constexpr size_t most_motions = 512;  // that a figure keeps
+inline constexpr size_t most_motions = 512;  // a figure keeps no more
 
 struct Motion {
   std::string name;
   float duration = 0;  // seconds
-  bool loop = false;   // as the file wishes
+  bool loop = false;   // the file's wish
   std::vector<MotionJoint> joints;
   std::vector<std::string> displacers;
   std::vector<MotionTrack> tracks;
 };
 
-// The motion's skeleton at one moment; joints and displacers without a track are at rest.
+// Holds the motion's skeleton at one moment; joints and displacers without a track are at rest.
 struct MotionPose {
   std::vector<quat> rotations;
   std::vector<vec3> translations;
@@ -53,7 +53,7 @@ struct MotionPose {
   std::vector<float> displacers;
 };
 
-// Where in the motion `time` lies: around again if `loop`, else held at both ends. 0 for NaN.
+// Returns `time` within the motion: around again if `loop`, else held at both ends. 0 for NaN.
 double motion_time(const Motion& motion, double time, bool loop);
 void eval_motion(const Motion& motion, double time, bool loop, MotionPose& pose);
 

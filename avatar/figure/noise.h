@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smooth noise over time: a function of (channel, time) alone, so there is nothing to drift.
-// Gradient noise in one dimension (Perlin 1985, with the quintic fade of Perlin 2002).
+// Makes smooth noise over time: a function of (channel, time) alone, so it cannot drift. It is
+// gradient noise in one dimension (Perlin 1985, with the quintic fade of Perlin 2002).
 #pragma once
 #include <cmath>
 
@@ -8,8 +8,8 @@
 
 namespace wellspring::avatar {
 
-// About -1..1 with mean 0; changes about once a second. `time` in seconds times the wanted
-// frequency.
+// Returns about -1..1 with mean 0; changes about once a second. `time` is in seconds times the
+// wanted frequency.
 inline float smooth_noise(uint32_t channel, double time) {
   double cell = std::floor(time);
   float t = float(time - cell);

@@ -15,7 +15,7 @@ int find(const Index& index, const std::string& name) {
   return found == index.end() ? -1 : found->second;
 }
 
-// The joint a limb's bone leads to; empty where rest poses are alike anyway (feet stand flat,
+// Returns the joint a limb's bone leads to; empty if rest poses are alike anyway (feet stand flat,
 // spines are upright).
 std::string next_in_limb(const std::string& joint) {
   if (joint.size() < 3 || joint[1] != '_') return "";
@@ -59,15 +59,15 @@ Trunk trunk_of(const std::string& joint) {
                                             : Trunk::none;
 }
 
-// The vertebrae of one kind from below, with what carries them in front; the neck ends in the
-// skull.
+// Returns the vertebrae of one kind from below, with what carries them in front; the neck ends in
+// the skull.
 template <class Joints>
 std::vector<int> trunk_chain(const Joints& joints, Trunk kind) {
   std::vector<int> chain;
   for (size_t j = 0; j < joints.size(); j++)
     if (trunk_of(joints[j].name) == kind) chain.push_back(int(j));
   if (chain.empty()) return chain;
-  std::vector<int> path;  // only those above one another
+  std::vector<int> path;  // only vertebrae above one another
   for (int j = chain.back(); j >= 0; j = joints[size_t(j)].parent)
     if (trunk_of(joints[size_t(j)].name) == kind) path.push_back(j);
   std::reverse(path.begin(), path.end());
@@ -77,7 +77,7 @@ std::vector<int> trunk_chain(const Joints& joints, Trunk kind) {
   return path;
 }
 
-// Each vertebra of the figure turns as the motion's trunk does at the same height of it.
+// Makes each vertebra of the figure turn as the motion's trunk does at the same height.
 void link_trunk(const Motion& motion, const Character& character, Trunk kind, Retarget& retarget) {
   std::vector<int> ours = trunk_chain(character.joints, kind),
                    theirs = trunk_chain(motion.joints, kind);
@@ -85,7 +85,7 @@ void link_trunk(const Motion& motion, const Character& character, Trunk kind, Re
   size_t last = ours.size() - 1;
   for (size_t k = 1; k <= last; k++) {
     if (trunk_of(character.joints[size_t(ours[k])].name) == Trunk::none)
-      continue;  // the skull itself
+      continue;  // leaves the skull itself out
     float place = float(k) / float(last) * float(theirs.size() - 1);
     size_t below = std::min(size_t(place), theirs.size() - 2);
     Retarget::Link& link = retarget.links[size_t(ours[k])];
@@ -136,7 +136,7 @@ Retarget make_retarget(const Motion& motion, const Character& character) {
     link.moves = other >= 0 && tracked[size_t(other)];
   }
   if (!retarget.same) {
-    // All of a trunk moves or none of it.
+    // A trunk moves as a whole or not at all.
     for (Trunk kind : {Trunk::spine, Trunk::neck}) {
       bool moves = false;
       for (size_t j = 0; j < motion.joints.size(); j++)
@@ -204,7 +204,7 @@ void apply_motion(const Motion& motion, const Retarget& retarget, const Characte
     }
     return;
   }
-  // How far each joint of the motion has turned from its rest, in humanoid space.
+  // `turned` says how far each joint of the motion has turned from its rest, in humanoid space.
   std::vector<quat> turned(motion.joints.size());
   for (size_t j = 0; j < motion.joints.size(); j++) {
     int parent = motion.joints[j].parent;
@@ -227,7 +227,7 @@ void apply_motion(const Motion& motion, const Retarget& retarget, const Characte
           blend(pose.rotations[j], glm::normalize(glm::conjugate(above) * wanted[j]), weight);
   }
   if (retarget.root < 0 || retarget.motion_root < 0) return;
-  // The hips go where the motion's hips go, as high as the figure is.
+  // The hips go where the motion's hips go, scaled to the figure's height.
   vec3 place(0);
   for (int j = retarget.motion_root; j >= 0; j = motion.joints[size_t(j)].parent) {
     const MotionJoint& joint = motion.joints[size_t(j)];

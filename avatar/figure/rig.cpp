@@ -38,7 +38,7 @@ void eval_joints(const Character& character, const Pose& pose, std::vector<mat4>
 }
 
 JointFrame eval_joint_frame(const Character& character, const Pose& pose, int joint) {
-  // From the joint up to the root: p' = c + r (p - c).
+  // The loop goes from the joint up to the root: p' = c + r (p - c).
   quat rotation(1, 0, 0, 0);
   vec3 place = character.joints[size_t(joint)].center;
   for (int j = joint; j >= 0; j = character.joints[size_t(j)].parent) {
@@ -61,7 +61,7 @@ vec3 unit(vec3 v, vec3 otherwise) {
   return length > 1e-5f ? v / length : otherwise;
 }
 
-// The shortest turn from one unit vector to another; half turns go about `axis`.
+// Returns the shortest turn from one unit vector to another; half turns go about `axis`.
 quat turn_between(vec3 from, vec3 to, vec3 axis) {
   float c = dot(from, to);
   if (c < -0.9999f) return glm::angleAxis(pi, axis);

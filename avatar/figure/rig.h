@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A character seen by those who move it: which joints are its spine, neck, arms, legs and eyes, and
-// how its arms must turn to hang straight down, so that one gesture fits figures drawn in I-, A- or
-// T-pose. Whatever a figure lacks is -1 and stays still. Made once per character.
+// Describes a character for those who move it: which joints are its spine, neck, arms, legs and
+// eyes, and how its arms must turn to hang straight down, so that one gesture fits figures drawn in
+// I-, A- or T-pose. Parts that a figure lacks are -1 and stay still. It is made once per character.
 #pragma once
 #include <array>
 #include <vector>
@@ -10,25 +10,27 @@
 
 namespace wellspring::avatar {
 
-// A figure at one instant: joint rotations and displacer weights. Made afresh each tick.
+// Holds a figure at one instant: joint rotations and displacer weights. It is made afresh each
+// tick.
 
 struct Pose {
-  vec3 translation{0};            // of the root, humanoid space
+  vec3 translation{0};            // shift of the root, humanoid space
   std::vector<quat> rotations;    // one a joint, relative to its parent; identity is the rest pose
   std::vector<float> displacers;  // one a displacer, 0..1 nominal
-  // What motions of the figure's own file may ask for besides; empty, or one a joint. A way is
-  // about the axes of the parent's frame, a stretch is symmetric and comes before the turn.
+  // Shifts and stretches that motions of the figure's own file may have, too; empty, or one a
+  // joint. A translation is along the axes of the parent's frame; a stretch is symmetric and comes
+  // before the turn.
   std::vector<vec3> translations;
   std::vector<mat3> stretches;
 };
 
 Pose make_rest_pose(const Character& character);
 
-// Where each joint's frame is: `to_humanoid[j]` maps a rest-pose point moved by joint j into
-// humanoid space.
+// Finds each joint's frame: `to_humanoid[j]` maps a rest-pose point moved by joint j into humanoid
+// space.
 void eval_joints(const Character& character, const Pose& pose, std::vector<mat4>& to_humanoid);
 
-// A joint's frame as posed: rotation and place of its centre, humanoid space.
+// Holds a joint's frame as posed: rotation and place of its centre, humanoid space.
 struct JointFrame {
   quat rotation{1, 0, 0, 0};
   vec3 center{0};
@@ -37,7 +39,7 @@ JointFrame eval_joint_frame(const Character& character, const Pose& pose, int jo
 
 struct WeightedJoint {
   int joint = -1;
-  float share = 1;  // of the whole chain's turn; sums to 1
+  float share = 1;  // share of the whole chain's turn; shares sum to 1
 };
 
 struct FingerJoint {
@@ -45,7 +47,7 @@ struct FingerJoint {
   int finger = 0;   // 0 thumb .. 4 little
   int knuckle = 0;  // 0 at the palm, 1, 2
   float bent = 0;   // flexion at rest, radians
-  vec3 axis{0};     // humanoid space at rest: turning about it bends the joint
+  vec3 axis{0};     // axis that bends the joint, humanoid space at rest
 };
 
 struct ArmRig {
@@ -53,14 +55,14 @@ struct ArmRig {
   // Rotations of the rest pose (humanoid space) that make upper arm, forearm and hand hang straight
   // down, palm in.
   quat upper_hangs{1, 0, 0, 0}, fore_hangs{1, 0, 0, 0}, hand_hangs{1, 0, 0, 0};
-  float spread = 0;  // how far the upper arm stands off at rest, radians
+  float spread = 0;  // angle by which the upper arm stands off at rest, radians
   std::vector<FingerJoint> fingers;
-  vec3 curl_axis{0};  // humanoid space at rest: turning about it closes the fingers but the thumb
+  vec3 curl_axis{0};  // axis that closes the fingers but the thumb, humanoid space at rest
 };
 
 struct LegRig {
   int hip = -1, knee = -1, ankle = -1;
-  vec3 pole{0, 0, 1};  // where the knee points at rest
+  vec3 pole{0, 0, 1};  // direction of the knee at rest
   bool complete() const { return hip >= 0 && knee >= 0 && ankle >= 0; }
 };
 
@@ -68,15 +70,15 @@ struct Rig {
   const Character* character = nullptr;
   size_t joints = 0, displacers = 0;
   int root = 0;
-  std::vector<WeightedJoint> spine, neck;  // from below
+  std::vector<WeightedJoint> spine, neck;  // joints from below
   int skull = -1, jaw = -1;
   std::array<int, 2> eye{-1, -1}, lid{-1, -1};                   // left, right; joints
   bool jaw_moves = false, lids_move = false, eyes_move = false;  // the joint has vertices
   std::array<ArmRig, 2> arm;
   std::array<LegRig, 2> leg;
-  vec3 eyes_center{0};  // at rest, humanoid space
+  vec3 eyes_center{0};  // middle between the eyes at rest, humanoid space
 
-  // Displacers by name.
+  // These are displacers, found by name.
   std::array<int, 2> blink{-1, -1}, smile{-1, -1}, brow_up{-1, -1};
   int brow_inner_up = -1, mouth_open = -1, breathe = -1;
   std::array<int, 2> squint{-1, -1}, lid_wide{-1, -1};  // "squint_l" or, for both, "squint"

@@ -19,7 +19,7 @@ bool is_turn(const mat3& m) {
   return most < 1e-5f && glm::determinant(m) > 0;
 }
 
-// The turn of the polar decomposition by Newton's iteration.
+// Returns the turn of the polar decomposition by Newton's iteration.
 glm::dmat3 nearest_turn(glm::dmat3 m) {
   for (int i = 0; i < 40; i++) {
     double volume = glm::determinant(m);
@@ -31,7 +31,7 @@ glm::dmat3 nearest_turn(glm::dmat3 m) {
     if (change < 1e-12) break;
   }
   if (glm::determinant(m) < 0) m = -m;  // a mirror is part of the stretch
-  // What is left of a flattened space: two axes, squared up.
+  // A flattened space has two axes left, which are squared up.
   dvec3 x = m[0], y = m[1];
   double lx = glm::length(x);
   x = lx > 1e-9 ? x / lx : dvec3(1, 0, 0);
@@ -100,8 +100,8 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
   return squared > 1e-30f && squared < 1e30f ? v / std::sqrt(squared) : otherwise;
 }
 
-// Triangles around the vertices that displacers move, so that their normals can follow. Vertices
-// that were split for a texture seam share one sum.
+// Finds triangles around the vertices that displacers move, so that their normals can follow.
+// Vertices that were split for a texture seam share one sum.
 void make_folds(const Character& character, SkinFolds& folds) {
   folds = {};
   folds.character = &character;
@@ -167,8 +167,8 @@ bool is_rigid(const mat4& m) {
   return most < 1e-5f && glm::determinant(mat3(m)) > 0;
 }
 
-// Joints as dual quaternions. A rigid placement goes into them; the rest of it, `after`, is left to
-// be done to the blended vertex.
+// Turns joints into dual quaternions. A rigid placement goes into them; otherwise `after` holds
+// what is left to be done to the blended vertex.
 void split_joints(const mat4& placement, SkinScratch& scratch, mat4& after) {
   bool rigid = is_rigid(placement);
   after = rigid ? mat4(1) : placement;
@@ -202,7 +202,7 @@ void skin(const Character& character, const Pose& pose, const mat4& placement, S
   SkinFolds& folds = scratch.folds;
   eval_joints(character, pose, scratch.joints);
 
-  // Displacers, at rest.
+  // Displacers move vertices at rest.
   const std::vector<vec3>* rest = &character.positions;
   const std::vector<vec3>* rest_normals = &character.normals;
   bool displaced = false;

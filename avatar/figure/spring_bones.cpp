@@ -9,7 +9,7 @@ namespace {
 
 using Frame = SpringBonesState::Frame;
 
-constexpr float rule_rate = 60;      // of the steps that the format's numbers are meant for, Hz
+constexpr float rule_rate = 60;  // Hz, rate of the steps that the format's numbers are meant for
 constexpr float fastest_turn = 200;  // radians a second
 
 vec3 direction_or(vec3 v, vec3 otherwise) {
@@ -21,7 +21,7 @@ vec3 any_across(vec3 v) {
   return glm::normalize(cross(v, std::abs(v.x) < 0.7f ? vec3(1, 0, 0) : vec3(0, 1, 0)));
 }
 
-// The shortest turn from one direction to another, as axis times angle.
+// Returns the shortest turn from one direction to another, as axis times angle.
 vec3 turn_vector(vec3 from, vec3 to) {
   vec3 axis = cross(from, to);
   float sine = glm::length(axis), cosine = dot(from, to);
@@ -34,7 +34,7 @@ quat rotation_of(vec3 turn) {
   return angle > 1e-9f ? glm::angleAxis(angle, turn / angle) : quat(1, 0, 0, 0);
 }
 
-// x'' = -square x - drag x' over dt, exactly.
+// Solves x'' = -square x - drag x' over dt, exactly.
 void swing(vec3& x, vec3& v, float square, float drag, float dt) {
   float a = 0.5f * drag, apart = a * a - square, c, s;  // x' = c x + s (v + a x), damped already
   if (apart < -1e-4f) {
@@ -69,8 +69,8 @@ Frame frame_of(const Character& character, const Pose& pose, size_t j,
   return frame;
 }
 
-// A bone's end at `pivot + length * way`, and how it must turn to keep clear of a collider:
-// whatever its form, `way` must keep its share along some axis on one side of a border.
+// This is a bone's end at `pivot + length * way`, which must turn to keep clear of colliders: for
+// each form of collider, `way` must keep its share along some axis on one side of a border.
 struct Reach {
   vec3 pivot;
   float length, radius;
@@ -104,8 +104,8 @@ vec3 keep_clear(const SpringCollider& collider, const Character& character,
     if (square > 0) ball += along * std::clamp(dot(end - a, along) / square, 0.0f, 1.0f);
     vec3 axis = ball - reach.pivot;
     float distance = glm::length(axis);
-    if (!(distance > 1e-6f)) break;  // wherever it turns
-    // |length way - distance axis| against `apart`, by the law of cosines.
+    if (!(distance > 1e-6f)) break;  // the same wherever the bone turns
+    // The law of cosines compares |length way - distance axis| with `apart`.
     float border = (reach.length * reach.length + distance * distance - apart * apart) /
                    (2 * reach.length * distance);
     vec3 next = keep_side(way, axis / distance, border, collider.inside);
@@ -164,7 +164,8 @@ void tick_spring_bones(SpringBonesState& state, const Character& character, floa
                               {frame.center, length, bone.radius}, way);
       if (clear == way) continue;
       vec3 normal = direction_or(clear - way, vec3(0)), velocity = cross(turning, clear);
-      velocity -= normal * std::min(dot(velocity, normal), 0.0f);  // what met it goes no further in
+      // a bone that met it goes no further in
+      velocity -= normal * std::min(dot(velocity, normal), 0.0f);
       turning = cross(clear, velocity);
       way = clear;
     }

@@ -45,7 +45,7 @@ struct BvhReader {
   size_t at = 0;
   int line = 1;
   std::vector<BvhJoint> joints;
-  std::vector<std::pair<int, vec3>> ends;  // of a joint: where its last bone ends
+  std::vector<std::pair<int, vec3>> ends;  // joints, and where their last bones end
   std::vector<std::string> warnings;
   size_t channels = 0;
 
@@ -77,7 +77,7 @@ struct BvhReader {
     if (lower(got) != wanted)
       fail("expected " + std::string(wanted) + ", found '" + std::string(got.substr(0, 40)) + "'");
   }
-  // The rest of the line: names may have blanks in them.
+  // Returns the rest of the line: names may have blanks in them.
   std::string name() {
     size_t end = std::min(text.find_first_of("\n{", at), text.size());
     std::string_view rest = text.substr(at, end - at);
@@ -176,7 +176,7 @@ struct BvhReader {
 
   struct Frames {
     size_t count = 0;
-    double seconds = 0;  // a frame
+    double seconds = 0;  // length of a frame
     std::vector<float> values;
   };
   Frames read_motion() {
@@ -204,7 +204,7 @@ struct BvhReader {
       frames.seconds = 1.0 / 30;
     }
     frames.count = size_t(count);
-    // Room is made as numbers come: the file may promise what it does not have.
+    // Room is made as numbers come: the file may promise more than it has.
     for (size_t f = 0; f < frames.count; f++)
       for (size_t c = 0; c < channels; c++) {
         if (peek().empty())
@@ -224,8 +224,8 @@ quat turn_of(Channel channel, float degrees) {
   return glm::angleAxis(degrees * pi / 180, axis);
 }
 
-// Some programs write where a joint is into the motion alone: a skeleton whose OFFSETs are all zero
-// is that of the first frame.
+// Takes offsets from the first frame if all OFFSETs are zero: some programs write where a joint is
+// into the motion alone.
 void take_missing_offsets(BvhReader& reader, const BvhReader::Frames& frames) {
   auto& joints = reader.joints;
   auto has_length = [](const BvhJoint& joint) { return joint.offset != vec3(0); };
@@ -243,7 +243,7 @@ void take_missing_offsets(BvhReader& reader, const BvhReader::Frames& frames) {
             : "all OFFSETs are zero, and no frame says where a joint is: the skeleton has no size");
 }
 
-// Metres a unit of the file: people are between 1 and 2.5 m tall.
+// Returns metres a unit of the file: people are between 1 and 2.5 m tall.
 float unit_of(float height, std::vector<std::string>& warnings) {
   if (!(height > 1e-6f)) return 1;
   for (float unit : {1.0f, 0.01f, 0.0254f, 0.001f, 0.056444f})  // m, cm, inch, mm, CMU's database

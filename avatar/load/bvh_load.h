@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Biovision hierarchies (.bvh): a skeleton and one recorded motion of it. Order of channels, letter
-// case, line ends and blanks are as lax as files of many programs need; what has no meaning is
-// refused with its line.
+// Reads Biovision hierarchies (.bvh): a skeleton and one recorded motion of it. Order of channels,
+// letter case, line ends and blanks are as lax as files of many programs need; text without a
+// meaning is refused with its line.
 #pragma once
 #include <string>
 
@@ -11,7 +11,7 @@ namespace wellspring::avatar {
 
 bool is_bvh(const std::string& text);
 
-// A figure without surface whose motions[0] is the recording (none where the file has no frame).
+// Makes a figure without surface whose motions[0] is the recording (none if the file has no frame).
 // Sizes in other units than metres become metres by the skeleton's height. Throws LoadError.
 Character character_from_bvh(const std::string& path, const std::string& text);
 

@@ -29,7 +29,8 @@ std::string read_file(const std::string& path) {
   return text;
 }
 
-// A GLB container, or JSON whose first word is not X3D's and that has glTF's "asset".
+// Returns whether this is a GLB container, or JSON whose first word is not X3D's and that has
+// glTF's "asset".
 bool is_gltf(const std::string& text) {
   if (text.compare(0, 4, "glTF") == 0) return true;
   size_t brace = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");

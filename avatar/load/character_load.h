@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of figures to a Character, told apart by their content: H-Anim in X3D's encodings and
-// VRML97, glTF skins, VRM, BVH. Throws LoadError naming file and line (or node). Cost linear in the
-// file.
+// Loads files of figures, told apart by their content: H-Anim in X3D's encodings and VRML97, glTF
+// skins, VRM, BVH. Throws LoadError naming file and line (or node). The cost is linear in the file.
 #pragma once
 #include <string>
 

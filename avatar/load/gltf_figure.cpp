@@ -13,7 +13,7 @@
 namespace wellspring::avatar {
 namespace {
 
-// A figure brings no light and no eye of its own.
+// Notes cameras and lights: a figure brings none of its own.
 void note_left_out(gltf::File& file) {
   auto note = [&](size_t count, const char* where, const char* what) {
     if (count > 0)
@@ -59,8 +59,8 @@ Character character_from_gltf(const std::string& path) {
   return std::move(character);
 }
 
-// Constraints between a file's nodes as constraints between the figure's joints: axes in humanoid
-// space, in an order in which they can be followed.
+// Turns constraints between a file's nodes into constraints between the figure's joints: axes in
+// humanoid space, in an order in which they can be followed.
 
 void read_gltf_constraints(GltfFigure& figure) {
   Character& character = figure.character;
@@ -79,7 +79,7 @@ void read_gltf_constraints(GltfFigure& figure) {
     constraint.weight = asked.weight;
     constraint.axis = quat(turn_of(asked.node)) * asked.axis;
     // A rotation is carried from the source's own axes to the joint's own, a roll from the axes of
-    // what is above the one to those above the other.
+    // the source's parent to those of the joint's parent.
     if (asked.kind == JointConstraint::Kind::rotation)
       constraint.between =
           quat(glm::normalize(turn_of(asked.node) * glm::conjugate(turn_of(asked.source))));
@@ -99,7 +99,7 @@ void read_gltf_constraints(GltfFigure& figure) {
           names + (circular.size() > 8 ? ", ..." : ""));
 }
 
-// Springs of a VRM file as springs of the figure: by joint, in humanoid space, metres.
+// Turns springs of a VRM file into springs of the figure: by joint, in humanoid space, metres.
 
 void read_gltf_springs(GltfFigure& figure) {
   Character& character = figure.character;
@@ -110,7 +110,7 @@ void read_gltf_springs(GltfFigure& figure) {
     return float(
         std::cbrt(std::abs(glm::determinant(glm::dmat3(figure.to_humanoid * figure.rest[node])))));
   };
-  std::vector<int> collider_of;  // the figure's, of each of the file's
+  std::vector<int> collider_of;  // the figure's collider for each of the file's
   for (const VrmCollider& collider : figure.vrm.colliders) {
     SpringCollider made;
     made.joint = figure.nearest_joint[collider.node];
@@ -128,7 +128,7 @@ void read_gltf_springs(GltfFigure& figure) {
     collider_of.push_back(sound ? int(character.spring_colliders.size()) : -1);
     if (sound) character.spring_colliders.push_back(made);
   }
-  // Directions of gravity are those of the file's world; its strength does not scale.
+  // Gravity's directions are those of the file's world; its strength does not scale.
   glm::dmat3 turn(figure.to_humanoid);
   turn /= std::cbrt(std::abs(glm::determinant(turn)));
   for (const VrmSpringJoint& joint : figure.vrm.springs) {
@@ -148,7 +148,8 @@ void read_gltf_springs(GltfFigure& figure) {
     bone.drag = joint.drag;
     bone.radius = joint.hit_radius * size_at(joint.node);
     if (joint.center >= 0) bone.center = figure.nearest_joint[size_t(joint.center)];
-    if (bone.center >= bone.joint) bone.center = -1;  // not above it: it would turn with itself
+    // not above the joint: it would turn with itself
+    if (bone.center >= bone.joint) bone.center = -1;
     for (size_t c : joint.colliders)
       if (collider_of[c] >= 0) bone.colliders.push_back(collider_of[c]);
     character.springs.push_back(std::move(bone));
@@ -157,7 +158,7 @@ void read_gltf_springs(GltfFigure& figure) {
             [](const SpringBone& a, const SpringBone& b) { return a.joint < b.joint; });
 }
 
-// Whole expressions of a VRM file: sums of morph targets as displacers, what they change of
+// Reads whole expressions of a VRM file: sums of morph targets as displacers, their changes of
 // materials, and what they forbid.
 
 namespace {
@@ -169,7 +170,7 @@ struct MorphReader {
   GltfFigure& figure;
   Character& character = figure.character;
   size_t moved = 0;
-  std::vector<Displacer> made;  // of the expressions
+  std::vector<Displacer> made;  // displacers of the expressions
   std::unordered_set<std::string> names;
 
   void add_moves(const VrmExpression& expression, Displacer& displacer);
@@ -177,7 +178,7 @@ struct MorphReader {
   void add(const VrmExpression& expression);
 };
 
-// Nodes that a bind means: its own, or all that hold its mesh.
+// Returns the nodes that a bind means: its own, or all that hold its mesh.
 std::vector<size_t> nodes_of(const GltfFigure& figure, const VrmBind& bind) {
   std::vector<size_t> nodes;
   if (bind.node >= 0) return {size_t(bind.node)};
@@ -237,7 +238,7 @@ void MorphReader::add_changes(const VrmExpression& expression, int displacer) {
     change.emission += (vec3(bind.target) - factor) * strength;
   }
   for (const VrmPictureBind& bind : expression.pictures) {
-    // What it changes from: how the picture of the base colour lies (KHR_texture_transform).
+    // Changes start from the place of the base colour's picture (KHR_texture_transform).
     const json* pbr = gltf::find(materials[bind.material], "pbrMetallicRoughness");
     const json* picture = pbr ? gltf::find(*pbr, "baseColorTexture") : nullptr;
     const json* lies = picture ? gltf::extension(*picture, "KHR_texture_transform") : nullptr;
@@ -287,7 +288,7 @@ void read_gltf_expressions(GltfFigure& figure) {
   MorphReader reader{figure};
   for (const VrmExpression& expression : figure.vrm.expressions) reader.add(expression);
   if (reader.made.empty()) return;
-  // Expressions come first: of an expression and a morph target with one name, the expression
+  // Expressions come first: if an expression and a morph target have one name, the expression
   // counts.
   std::vector<Displacer>& all = figure.character.displacers;
   for (Displacer& target : all)

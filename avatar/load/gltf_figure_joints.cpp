@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes of a glTF file to joints: which of them, what they are called, and where they rest.
+// Turns nodes of a glTF file into joints: chooses them, names them, and puts them at rest.
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
@@ -17,7 +17,7 @@ using gltf::json;
 
 constexpr size_t joint_limit = 4096;
 
-// Inverse bind matrices of a skin; identities where it has none.
+// Returns the inverse bind matrices of a skin; identities if it has none.
 std::vector<dmat4> read_binds(GltfFigure& figure, size_t skin) {
   const json& object = items(figure.file.root, "skins")[skin];
   std::vector<dmat4> binds(object["joints"].size(), dmat4(1));
@@ -45,8 +45,8 @@ std::vector<dmat4> read_binds(GltfFigure& figure, size_t skin) {
   return binds;
 }
 
-// Nodes that bend the figure, parents first: joints of skins, bones of VRM, moving nodes above
-// these, and what lies between.
+// Chooses nodes that bend the figure, parents first: joints of skins, bones of VRM, moving nodes
+// above these, and all nodes between.
 std::vector<size_t> choose_nodes(GltfFigure& figure) {
   const json& root = figure.file.root;
   std::vector<char> wanted(figure.nodes.size(), 0);
@@ -82,9 +82,9 @@ std::vector<size_t> choose_nodes(GltfFigure& figure) {
     gltf::refuse(figure.file, "", "no skin, no VRM humanoid and no bones by name: not a figure");
   for (const VrmConstraint& constraint : figure.vrm.constraints)
     wanted[constraint.node] = wanted[constraint.source] = 1;
-  // Between two of them, and between a moving node and one of them, all are joints.
+  // All nodes between two wanted nodes, or between a moving node and a wanted one, are joints.
   std::vector<size_t> order = gltf_parents_first(figure.nodes);
-  std::vector<char> carries(wanted), hangs(wanted.size(), 0);  // one of them below, one above
+  std::vector<char> carries(wanted), hangs(wanted.size(), 0);  // a wanted node is below, above
   for (size_t k = order.size(); k-- > 0;)
     if (int parent = figure.nodes[order[k]].parent; parent >= 0 && carries[order[k]])
       carries[size_t(parent)] = 1;
@@ -107,7 +107,7 @@ struct SkinBind {
   std::vector<dmat4> binds;
 };
 
-// Whether the nodes stand elsewhere than the skin was bound.
+// Returns whether the nodes stand elsewhere than the skin was bound.
 bool is_posed(const GltfFigure& figure, const SkinBind& skin) {
   if (skin.nodes.empty()) return false;
   dmat4 first = figure.nodes[skin.nodes[0]].global * skin.binds[0];
@@ -115,7 +115,7 @@ bool is_posed(const GltfFigure& figure, const SkinBind& skin) {
   for (size_t j = 0; j < skin.nodes.size(); j++) {
     dmat4 own = figure.nodes[skin.nodes[j]].global * skin.binds[j];
     dmat4 bound = glm::inverse(skin.binds[j]);
-    for (int c = 0; c < 4; c++) {  // the joint's place and a step along each of its axes
+    for (int c = 0; c < 4; c++) {  // probes: the joint's place and a step along each of its axes
       dvec3 probe = dvec3(bound[3]) + (c < 3 ? 0.1 * dvec3(bound[c]) : dvec3(0));
       off = std::max(off, glm::length(dvec3((own - first) * dvec4(probe, 1))));
     }
@@ -135,7 +135,7 @@ void rest_in_bind_pose(GltfFigure& figure, const SkinBind& skin) {
       place = dvec3(figure.nodes[skin.nodes[j]].global[3]);
     }
   glm::dquat turn = gltf_rotation(reference), square = nearest_right_turn(turn);
-  // That joint too may be posed a little; bind spaces are square to the world.
+  // The topmost joint, too, may be posed a little; bind spaces are square to the world.
   if (std::abs(glm::dot(turn, square)) > std::cos(0.5 * 0.5)) turn = square;
   double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(reference))));
   dmat4 to_world = glm::scale(glm::mat4_cast(turn), dvec3(scale));
@@ -266,7 +266,7 @@ void read_gltf_joints(GltfFigure& figure) {
   }
   name_joints(figure, bones);
 
-  // Upright, facing +Z, in metres, over the middle of the floor.
+  // The figure is put upright, facing +Z, in metres, over the middle of the floor.
   std::vector<std::string> names;
   std::vector<vec3> places;
   for (size_t j = 0; j < bones.size(); j++)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of a glTF file at rest in humanoid space, with their weights, looks and morph targets.
+// Reads meshes of a glTF file at rest in humanoid space, with their weights, looks and morph
+// targets.
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +29,7 @@ struct SkinReader {
   void read_appearances();
   void read_node(size_t node);
   void read_primitive(size_t node, size_t mesh, size_t index, const dmat4& copy);
-  // Matrix of each vertex from its mesh to humanoid space at rest; appends the weights.
+  // Returns each vertex's matrix from its mesh to humanoid space at rest; appends the weights.
   std::vector<dmat4> read_weights(size_t node, const json& primitive, const std::string& where,
                                   const Used& used, const dmat4& copy);
   void read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive,
@@ -149,7 +150,7 @@ std::vector<dmat4> SkinReader::read_weights(size_t node, const json& primitive,
   return to_rest;
 }
 
-// A target's name: extras.targetNames is what everybody writes.
+// Returns a target's name: extras.targetNames is what everybody writes.
 std::string target_name(const json& mesh, const json& primitive, size_t target) {
   for (const json* holder : {&primitive, &mesh})
     if (const json* extras = gltf::find(*holder, "extras"))
@@ -174,7 +175,7 @@ void SkinReader::read_targets(size_t node, const json& mesh, size_t mesh_index,
       if (!is_finite(turned) || !(glm::length(turned) > 1e-7f)) continue;
       if (++displacements > most_displacements)
         gltf::refuse(file, at("/meshes", mesh_index), "morph targets move too many vertices");
-      // A figure that is not at ease without a morph rests with it.
+      // A figure whose morph has a weight at rest rests with it.
       double at_rest = t < weights.size() ? weights[t] : 0;
       if (at_rest != 0) character.positions[first + v] += turned * float(at_rest);
       move.vertices.push_back(first + uint32_t(v));

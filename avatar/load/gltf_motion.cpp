@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Animations of a glTF file as Motions: turns of nodes about their own axes become turns about the
-// axes of humanoid space.
+// Turns animations of a glTF file into Motions: turns of nodes about their own axes become turns
+// about the axes of humanoid space.
 #include <algorithm>
 #include <cmath>
 
@@ -91,7 +91,7 @@ struct Converter {
     }
   }
 
-  // VRM animations keep an expression's weight in the x of a node's place.
+  // Reads an expression's weight, which VRM animations keep in the x of a node's place.
   bool add_expression(const gltf::Track& track) {
     for (const auto& [name, node] : figure.vrm.expression_nodes) {
       if (node != track.node) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole expressions of either version of VRM: "blendShapeMaster" of 0.x, "expressions" of 1.0. Both
-// say the same with other words; what version 0 says of materials is in Unity's terms.
+// Reads whole expressions of either version of VRM: "blendShapeMaster" of 0.x, "expressions" of
+// 1.0. Both say the same with other words; version 0 describes materials in Unity's terms.
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -62,7 +62,7 @@ vec4 target_in(const json& bind) {
   return target;
 }
 
-// How a version writes the morph targets of an expression: `of` names what holds them, a mesh of
+// Says how a version writes the morph targets of an expression: `of` names their holder, a mesh of
 // the file or a node; weights are in parts of `full`.
 struct Form {
   const char *binds, *of, *into;
@@ -83,7 +83,7 @@ struct ExpressionReader {
     return false;
   }
 
-  // What both versions say.
+  // Reads what both versions have in common.
   VrmExpression begin(const json& object, const Form& form, const std::string& where) {
     if (!object.is_object()) gltf::refuse(file, where, "must be an object");
     VrmExpression expression;
@@ -137,8 +137,8 @@ struct ExpressionReader {
     }
   }
 
-  // Version 0 names materials and their shader's properties. Colours there are encoded as sRGB;
-  // pictures lie by scale and offset from below.
+  // Reads version 0's materials and their shader's properties, by name. Colours there are encoded
+  // as sRGB; pictures lie by scale and offset from below.
   void add_values(const json& object, const std::string& where, VrmExpression& expression) {
     const json& materials = gltf::items(file.root, "materials");
     const json& list = list_in(file, object, "materialValues", where);
@@ -180,7 +180,7 @@ void read_vrm_expressions(File& file, const json& object, Vrm& vrm) {
       std::string where = at(root + "/blendShapeGroups", g), name = text_in(groups[g], "name");
       VrmExpression expression = reader.begin(groups[g], version_0, where);
       expression.name = preset_of_version_0(text_in(groups[g], "presetName"));
-      // Version 0 has no preset for it, authors name it so.
+      // Version 0 has no preset for surprise; authors use this name.
       if (expression.name.empty() && name == "Surprised") expression.name = "surprised";
       expression.preset = !expression.name.empty();
       if (!expression.preset) expression.name = name;

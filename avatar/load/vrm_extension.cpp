@@ -35,8 +35,8 @@ void add_metadata(const File& file, const json& meta, const std::string& where, 
   }
 }
 
-// What a file says of how its eyes turn. `input` and `output`: keys of degrees of gaze, and of
-// degrees of the eye or weight of a shape.
+// Names what a file says about the turns of its eyes. `input` and `output` are keys of degrees of
+// gaze, and of degrees of the eye or weight of a shape.
 struct RangeKeys {
   const char *inner, *outer, *up, *down, *input, *output;
 };
@@ -58,7 +58,8 @@ EyeRanges read_ranges(File& file, const json& appearance, bool by_shapes, const 
   return {range(keys.inner), range(keys.outer), range(keys.up), range(keys.down), by_shapes};
 }
 
-// Parts that hide the head from whoever looks out of it: `of` names a node or a mesh of the file.
+// Reads parts that hide the head from whoever looks out of it: `of` names a node or a mesh of the
+// file.
 void read_first_person(File& file, const json& object, const char* of, const char* into,
                        const char* type, const std::string& where, std::set<size_t>& hidden) {
   const json& list = list_in(file, object, "meshAnnotations", where);
@@ -70,7 +71,7 @@ void read_first_person(File& file, const json& object, const char* of, const cha
   }
 }
 
-// Bones by name, as version 1 and animations list them.
+// Adds bones by name, as version 1 and animations list them.
 void add_named_bones(File& file, const json& object, const std::string& root, Vrm& vrm) {
   const json& humanoid = object_in(file, object, "humanoid", root);
   const json& bones = object_in(file, humanoid, "humanBones", root + "/humanoid");

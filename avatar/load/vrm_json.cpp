@@ -5,7 +5,7 @@ namespace wellspring::avatar::vrm_json {
 
 namespace {
 
-// What is of the same type as `none`; `none` where it is absent.
+// Returns a value of the same type as `none`, and `none` itself if there is no value.
 const json& of_type_in(const File& file, const json& object, const char* key,
                        const std::string& where, const json& none, const char* must) {
   const json* found = object.is_object() ? gltf::find(object, key) : nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON of VRM's extensions, which is in no schema table: types are checked where it is read. What
-// is absent is empty; what is of another type is refused with its place.
+// Reads JSON of VRM's extensions, which is in no schema table: types are checked on reading. Absent
+// values are empty; values of another type are refused with their place.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -20,12 +20,12 @@ const json& object_in(const File& file, const json& object, const char* key,
 const json& list_in(const File& file, const json& object, const char* key,
                     const std::string& where);
 std::string text_in(const json& object, const char* key);
-// `otherwise` too for what is no number.
+// Returns a number, and `otherwise` for anything else.
 float number_in(const json& object, const char* key, float otherwise);
-// A list of three numbers, or an object with x, y and z as version 0 has it; `otherwise` for all
-// else.
+// Returns a list of three numbers, or an object with x, y and z as version 0 has it; `otherwise`
+// for all else.
 vec3 vector_in(const json& object, const char* key, vec3 otherwise);
-// An index into the file's list `into`; -1 where the key is absent.
+// Returns an index into the file's list `into`; -1 if the key is absent.
 int index_in(const File& file, const json& object, const char* key, const char* into,
              const std::string& where);
 
@@ -33,9 +33,10 @@ int index_in(const File& file, const json& object, const char* key, const char* 
 
 namespace wellspring::avatar {
 
-// Colours as version 0 of VRM keeps them: as Unity's materials do.
+// Decodes colours as version 0 of VRM keeps them, like Unity's materials.
 
-// IEC 61966-2-1 up to 1, beyond it, where colours glow, a power of 2.2. Below 0: 0.
+// Decodes by IEC 61966-2-1 up to 1; beyond it, for colours that glow, by a power of 2.2. Below 0:
+// 0.
 inline vec3 linear_of_unity(vec3 color) {
   vec3 linear(0);
   for (int c = 0; c < 3; c++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cartoon materials as glTF's own: VRMC_materials_mtoon-1.0, whose base is glTF already, and
-// version 0's "materialProperties", in terms of Unity's shaders "VRM/MToon" and "VRM/Unlit...".
+// Rewrites cartoon materials as glTF's own: VRMC_materials_mtoon-1.0, whose base is glTF already,
+// and version 0's "materialProperties", in terms of Unity's shaders "VRM/MToon" and "VRM/Unlit...".
 #include <algorithm>
 
 #include "avatar/load/vrm_extension.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace vrm_json;
 
-// Numbers of a list under `key`, as many as it has.
+// Returns numbers of a list under `key`, as many as it has.
 vec4 numbers_in(const json& object, const char* key, vec4 otherwise) {
   const json* list = object.is_object() ? gltf::find(object, key) : nullptr;
   for (size_t c = 0; list && list->is_array() && c < std::min<size_t>(list->size(), 4); c++)
@@ -31,7 +31,7 @@ struct Properties {
   const json &floats, &vectors, &pictures;
   std::string where;
 
-  // A picture as glTF refers to it, lying as the main one does.
+  // Refers to a picture as glTF does, placed as the main one.
   bool refer(const char* key, json& to) const {
     int index = index_in(file, pictures, key, "textures", where + "/textureProperties");
     if (index < 0) return false;
@@ -44,7 +44,7 @@ struct Properties {
   }
 };
 
-// Of a shader drawn without light, or with MToon's.
+// Rewrites a shader drawn without light, or with MToon's.
 void rewrite_version_0(File& file, const json& properties, const std::string& where,
                        json& material) {
   std::string shader = text_in(properties, "shader");
@@ -69,7 +69,7 @@ void rewrite_version_0(File& file, const json& properties, const std::string& wh
     material["alphaCutoff"] = std::clamp(number_in(from.floats, "_Cutoff", 0.5f), 0.0f, 1.0f);
   if (!mtoon) return;
   material["extensions"]["VRMC_materials_mtoon"] = json::object();  // as version 1 would mark it
-  constexpr float hides_back = 2;  // of "_CullMode": what is hidden; all else shows the back
+  constexpr float hides_back = 2;  // "_CullMode" names the hidden side; all else shows the back
   material["doubleSided"] = number_in(from.floats, "_CullMode", hides_back) != hides_back;
   for (const char* key : {"normalTexture", "emissiveTexture", "emissiveFactor"})
     material.erase(key);
@@ -83,7 +83,7 @@ void rewrite_version_0(File& file, const json& properties, const std::string& wh
   if (json picture; from.refer("_EmissionMap", picture)) material["emissiveTexture"] = picture;
 }
 
-// What MToon draws that is not shown, each said once.
+// Warns of what MToon draws that is not shown, each once.
 void tell_unseen(File& file, const json& mtoon, const std::string& where) {
   auto tell = [&](bool asked, const char* what) {
     if (asked)
@@ -105,7 +105,7 @@ void tell_unseen_of_version_0(File& file, const json& properties, const std::str
   const json& floats = object_in(file, properties, "floatProperties", where);
   const json& vectors = object_in(file, properties, "vectorProperties", where);
   const json& pictures = object_in(file, properties, "textureProperties", where);
-  json mtoon = json::object();  // in the words of version 1
+  json mtoon = json::object();  // version 1's words
   if (number_in(floats, "_OutlineWidthMode", 0) > 0) mtoon["outlineWidthMode"] = "some";
   mtoon["outlineWidthFactor"] = number_in(floats, "_OutlineWidth", 0);
   mtoon["parametricRimColorFactor"] = list_of(vec3(numbers_in(vectors, "_RimColor", vec4(0))));

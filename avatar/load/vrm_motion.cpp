@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Springs of VRM files: "secondaryAnimation" of version 0, "VRMC_springBone" of version 1.
+// Reads springs of VRM files: "secondaryAnimation" of version 0, "VRMC_springBone" of version 1.
 #include <algorithm>
 #include <set>
 
@@ -8,7 +8,7 @@
 
 namespace wellspring::avatar {
 
-// VRMC_node_constraint-1.0, which nodes of any glTF file may carry.
+// Reads VRMC_node_constraint-1.0, which nodes of any glTF file may carry.
 
 namespace {
 
@@ -80,15 +80,16 @@ namespace {
 using namespace vrm_json;
 
 constexpr size_t collider_limit = 1000, spring_limit = 4096, meeting_limit = 100'000;
-constexpr float leaf_length = 0.07f;  // of the last bone of a row in version 0, metres
+constexpr float leaf_length = 0.07f;  // length of the last bone of a row in version 0, metres
 
 struct SpringReader {
   File& file;
   Vrm& vrm;
   std::set<size_t> taken;
-  size_t meetings = 0;  // of joints and colliders
+  size_t meetings = 0;  // pairs of joints and colliders
 
-  // False when there is no room for it, or the node swings already or is a bone of the body.
+  // Adds a spring; false when there is no room, or the node swings already or is a bone of the
+  // body.
   bool add(VrmSpringJoint joint, const std::string& where) {
     if (vrm.joints.count(joint.node)) {
       gltf::warn(file, where, "a bone of the body does not swing");
@@ -124,7 +125,7 @@ struct SpringReader {
     if (vrm.colliders.size() < collider_limit) vrm.colliders.push_back(collider);
   }
 
-  // Indices of a list, each below `count`.
+  // Reads indices of a list, each below `count`.
   std::vector<size_t> indices(const json& list, size_t count, const char* what,
                               const std::string& where) {
     std::vector<size_t> found;
@@ -143,15 +144,15 @@ struct SpringReader {
   void read_shape(size_t node, const json& shape, bool extended, const std::string& where);
 };
 
-// Version 0 writes collider offsets with z the other way round than glTF (UniVRM's left-handed
-// space).
+// Reads version 0, which writes collider offsets with z the other way round than glTF (UniVRM's
+// left-handed space).
 void SpringReader::read_version_0() {
   const std::string root = "/extensions/VRM/secondaryAnimation";
   const json& object =
       object_in(file, *gltf::extension(file.root, "VRM"), "secondaryAnimation", "/extensions/VRM");
   const json& nodes = gltf::items(file.root, "nodes");
   const json& groups = list_in(file, object, "colliderGroups", root);
-  std::vector<std::pair<size_t, size_t>> range;  // of each group's colliders
+  std::vector<std::pair<size_t, size_t>> range;  // range of each group's colliders
   for (size_t g = 0; g < groups.size(); g++) {
     std::string where = at(root + "/colliderGroups", g);
     size_t first = vrm.colliders.size();
@@ -180,7 +181,7 @@ void SpringReader::read_version_0() {
     for (size_t group : indices(list_in(file, bones[b], "colliderGroups", where), groups.size(),
                                 "collider groups", where + "/colliderGroups"))
       for (size_t c = range[group].first; c < range[group].second; c++) like.colliders.push_back(c);
-    // All that hangs below the named nodes swings, too.
+    // All nodes below the named ones swing, too.
     std::vector<size_t> open =
         indices(list_in(file, bones[b], "bones", where), nodes.size(), "nodes", where + "/bones");
     std::set<size_t> seen;
@@ -259,7 +260,7 @@ void SpringReader::read_version_1(const json& object) {
       std::string place = at(where + "/joints", j);
       int node = index_in(file, joints[j], "node", "nodes", place);
       if (node < 0) gltf::refuse(file, place, "has no node");
-      if (j + 1 == joints.size()) break;  // the end of the last one, no more
+      if (j + 1 == joints.size()) break;  // the last joint is only the end of the one before
       VrmSpringJoint joint;
       joint.node = size_t(node);
       joint.tail_node =

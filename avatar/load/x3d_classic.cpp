@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ClassicVRML (ISO/IEC 19776-2) and VRML97 onto the node tree. Fields need no types to be read: a
-// value is a node, a list in brackets, or what follows up to the next name. Instances of the H-Anim
+// Reads ClassicVRML (ISO/IEC 19776-2) and VRML97 into the node tree. Fields need no types to be
+// read: a value is a node, a list in brackets, or all up to the next name. Instances of the H-Anim
 // 1 prototypes become H-Anim nodes; other prototypes are named and left out.
 #include <algorithm>
 #include <cstring>
@@ -15,7 +15,7 @@ enum class TokenType { end, word, string, open_brace, close_brace, open_bracket,
 
 struct Token {
   TokenType type = TokenType::end;
-  std::string_view text;  // a string's with its quotes
+  std::string_view text;  // a string's text has its quotes
   int line = 1;
 };
 
@@ -24,7 +24,7 @@ struct Parser {
   std::string_view text;
   size_t at = 0;
   int line = 1;
-  Token token;  // the one not yet taken
+  Token token;  // token not yet taken
   std::vector<X3dPendingUse> uses;
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -99,7 +99,7 @@ struct Parser {
     return digit || c == '-' || c == '+' || c == '.';
   }
 
-  // From an opening bracket or brace to its partner.
+  // Skips from an opening bracket or brace to its partner.
   void skip_block() {
     int depth = 0;
     do {
@@ -111,7 +111,8 @@ struct Parser {
     } while (depth > 0);
   }
 
-  // PROTO, ROUTE and other statements that make no node. False: the token starts something else.
+  // Skips PROTO, ROUTE and other statements that make no node. False: the token starts something
+  // else.
   bool skip_statement() {
     if (is_any({"PROTO", "EXTERNPROTO"})) {
       bool external = is_word("EXTERNPROTO");
@@ -168,7 +169,7 @@ struct Parser {
     return false;
   }
 
-  // A node statement into a field of `parent`.
+  // Reads a node statement into a field of `parent`.
   void parse_node(int parent, const std::string& field, int depth) {
     if (depth > x3d_max_depth)
       fail("nodes are nested deeper than " + std::to_string(x3d_max_depth));

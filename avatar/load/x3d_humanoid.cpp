@@ -17,8 +17,8 @@ namespace {
 
 constexpr int max_visits = 2'000'000;
 
-// Preorder without recursion, each node once; calls found(node, matrix) for each HAnimHumanoid.
-// `shown`: only for those that the file's Switch nodes show.
+// Walks in preorder without recursion, each node once, and calls found(node, matrix) for each
+// HAnimHumanoid. `shown`: only for those that the file's Switch nodes show.
 template <class Found>
 void find_humanoids(const X3dFile& file, bool shown, const Found& found) {
   struct Item {
@@ -50,7 +50,7 @@ std::string node_name(const X3dNode& node) {
   return name.empty() ? node.def : name;
 }
 
-// The part of a joint's transform that is no pose.
+// Returns the part of a joint's transform that is no pose.
 mat4 joint_scale(const X3dFile& file, const X3dNode& node) {
   vec3 scale = vec3_of(file, node, "scale", vec3(1));
   if (scale == vec3(1)) return mat4(1);
@@ -66,7 +66,7 @@ void HumanoidReader::walk_children(int index, const Context& context) {
   for (size_t i = 0; i < file.nodes[size_t(index)].children.size(); i++) {
     const X3dChild child = file.nodes[size_t(index)].children[i];
     bool elsewhere =
-        false;  // lists of USEs and nodes that are not part of the scene graph below this one
+        false;  // lists of USEs and nodes that are no part of the scene graph below this one
     for (const char* field :
          {"joints", "segments", "sites", "viewpoints", "displacers", "skin", "skinCoord",
           "skinNormal", "motions", "metadata", "coord", "skinBindingCoords"})
@@ -176,7 +176,7 @@ void HumanoidReader::read_skeleton(int humanoid) {
     return !character.joints.empty();
   };
   if (walk_roots([](const X3dChild& child) { return child.field == "skeleton"; })) return;
-  // The field forgotten: a joint's default field is "children".
+  // Some files forget the field: a joint's default field is "children".
   if (walk_roots([&](const X3dChild& child) {
         bool anywhere =
             child.field.empty() || child.field == "children" || child.field == "humanoidBody";
@@ -184,7 +184,7 @@ void HumanoidReader::read_skeleton(int humanoid) {
                !child.use;
       }))
     return;
-  // Only a flat list: joints in it that no other joint of it contains are roots.
+  // If there is only a flat list, its joints that no other joint of it contains are roots.
   std::unordered_set<int> inside;
   std::vector<int> open;
   for (const X3dChild& child : children)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON encoding (X3D JSON, ISO/IEC 19776-5 draft) onto the node tree: "@name" is a field,
+// Reads the JSON encoding (X3D JSON, ISO/IEC 19776-5 draft) into the node tree: "@name" is a field,
 // "-name" holds nodes.
 #include <nlohmann/json.hpp>
 
@@ -28,7 +28,7 @@ struct JsonBuilder {
     throw LoadError(file.path, place, what);
   }
 
-  // A value as the text another encoding would have.
+  // Returns a value as the text another encoding would have.
   std::string text_of(const json& value, const std::string& place) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
@@ -55,7 +55,7 @@ struct JsonBuilder {
     }
   }
 
-  // {"Group": {...}} or a list of such.
+  // Adds {"Group": {...}} or a list of such nodes.
   void add_nodes(const json& value, int parent, const std::string& field, const std::string& place,
                  int depth) {
     if (depth > x3d_max_depth)
@@ -121,8 +121,8 @@ struct JsonBuilder {
   }
 };
 
-// The parser's own stack is no limit, but what is built from 100,000 nested brackets cannot be
-// handled safely.
+// Refuses deep nesting: the parser's own stack is no limit, but a value of 100,000 nested brackets
+// cannot be handled safely.
 void refuse_deep(const std::string& path, const std::string& text) {
   int depth = 0, line = 1;
   bool in_string = false;

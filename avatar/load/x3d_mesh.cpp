@@ -14,13 +14,13 @@ namespace {
 constexpr size_t max_corners = 6'000'000;
 
 struct Corner {
-  int point = 0, normal = -1, uv = -1, color = -1;  // into their nodes' arrays; -1: none
+  int point = 0, normal = -1, uv = -1, color = -1;  // indices into their nodes' arrays; -1: none
 };
 
-// Polygons as one run of corners.
+// Holds polygons as one run of corners.
 struct Faces {
   std::vector<Corner> corners;
-  std::vector<uint32_t> first{0};  // first[f] .. first[f + 1]
+  std::vector<uint32_t> first{0};  // face f has corners first[f] .. first[f + 1]
   size_t count() const { return first.size() - 1; }
 };
 
@@ -29,7 +29,7 @@ vec3 safe_normalize(vec3 v, vec3 otherwise) {
   return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
 }
 
-// Newell's method: area-weighted normal of any polygon.
+// Returns the area-weighted normal of any polygon by Newell's method.
 vec3 polygon_normal(const Faces& faces, size_t face, const std::vector<vec3>& points) {
   vec3 sum(0);
   uint32_t begin = faces.first[face], end = faces.first[face + 1];
@@ -41,8 +41,8 @@ vec3 polygon_normal(const Faces& faces, size_t face, const std::vector<vec3>& po
   return sum * 0.5f;
 }
 
-// One corner's normal: the mean of the faces around its point that turn away less than the crease
-// angle (X3D 4, 11.2.3).
+// Returns each corner's normal: the mean of the faces around its point that turn away less than the
+// crease angle (X3D 4, 11.2.3).
 std::vector<vec3> crease_normals(const Faces& faces, const std::vector<vec3>& points,
                                  float crease) {
   size_t count = faces.count();
@@ -63,7 +63,7 @@ std::vector<vec3> crease_normals(const Faces& faces, const std::vector<vec3>& po
     for (uint32_t i = faces.first[f]; i < faces.first[f + 1]; i++) {
       size_t p = size_t(faces.corners[i].point);
       vec3 sum(0);
-      // A hub of very many faces would cost their square: it keeps its face normals.
+      // A hub of very many faces would cost their square, so it keeps its face normals.
       if (crease > 0 && first[p + 1] - first[p] <= 512)
         for (uint32_t k = first[p]; k < first[p + 1]; k++)
           if (crease >= pi || dot(unit[around[k]], unit[f]) >= limit) sum += area[around[k]];
@@ -72,8 +72,8 @@ std::vector<vec3> crease_normals(const Faces& faces, const std::vector<vec3>& po
   return normals;
 }
 
-// Ears of one polygon, projected along its normal; what cannot be cut (crossing edges) becomes a
-// fan.
+// Cuts the ears of one polygon, projected along its normal; a rest that cannot be cut (crossing
+// edges) becomes a fan.
 void cut_polygon(const Faces& faces, size_t face, const std::vector<vec3>& points, bool convex,
                  const std::vector<uint32_t>& vertex_of, std::vector<uvec3>& out) {
   uint32_t begin = faces.first[face], n = faces.first[face + 1] - begin;
@@ -119,8 +119,8 @@ void cut_polygon(const Faces& faces, size_t face, const std::vector<vec3>& point
   for (size_t i = 1; i + 1 < left.size(); i++) emit(left[0], left[i], left[i + 1]);
 }
 
-// The default mapping of X3D 4, 11.2.2: s along the longest side of the bounding box, t along the
-// second.
+// Makes the default mapping of X3D 4, 11.2.2: s along the longest side of the bounding box, t along
+// the second.
 std::vector<vec2> default_uv(const X3dMesh& mesh) {
   vec3 low(INFINITY), high(-INFINITY);
   for (vec3 p : mesh.points) low = glm::min(low, p), high = glm::max(high, p);
@@ -158,7 +158,7 @@ struct MeshReader {
     faces.first.push_back(uint32_t(faces.corners.size()));
   }
 
-  // How an index list means its faces: ended by -1, or by fixed counts.
+  // Reads the faces of an index list, which are ended by -1, or by fixed counts.
   Faces read_faces(bool& convex) {
     const std::string& type = node.type;
     bool flip = !bool_of(node, "ccw", true);
@@ -261,7 +261,7 @@ struct MeshReader {
     return crease_normals(faces, mesh.points, crease);
   }
 
-  // The colours that corners index; empty: there are none, or too few.
+  // Returns the colours that corners index; empty: there are none, or too few.
   std::vector<vec4> read_colors(const Faces& faces) {
     int color = find_child(file, node, "color", {"Color", "ColorRGBA"});
     if (color < 0) return {};
@@ -374,13 +374,14 @@ X3dMesh make_x3d_mesh(X3dFile& file, int geometry) {
   return mesh;
 }
 
-// Box, Sphere, Cylinder and Cone of X3D 4, clause 13.
+// Makes Box, Sphere, Cylinder and Cone of X3D 4, clause 13.
 
 namespace {
 
 constexpr int around = 24, along = 12;
 
-// A surface of revolution about +Y from a profile of (radius, y, normal_r, normal_y).
+// This is a point (radius, y, normal_r, normal_y) of the profile of a surface of revolution about
+// +Y.
 struct ProfilePoint {
   float radius, y, normal_radius, normal_y, t;
 };
@@ -392,7 +393,7 @@ void add_vertex(X3dMesh& mesh, vec3 position, vec3 normal, vec2 uv) {
   mesh.uv.push_back(uv);
 }
 
-// Profiles run from low to high so that the outside is the front.
+// Revolves a profile, which runs from low to high so that the outside is the front.
 void revolve(X3dMesh& mesh, const std::vector<ProfilePoint>& profile) {
   uint32_t first = uint32_t(mesh.points.size()), columns = around + 1;
   for (const ProfilePoint& p : profile)

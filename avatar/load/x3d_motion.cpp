@@ -14,7 +14,7 @@
 namespace wellspring::avatar {
 namespace {
 
-// From the humanoid's own coordinates to humanoid space, as turns and ways go.
+// Maps turns and ways from the humanoid's own coordinates to humanoid space.
 struct Turner {
   mat3 linear{1};
   quat turn{1, 0, 0, 0};
@@ -59,15 +59,15 @@ int find_named_joint(const Character& character, const std::string& written) {
   return joint >= 0 ? joint : find_joint(character, written);
 }
 
-// A recording that says where the root is, not how far it has gone from rest: no root is on average
-// half its own height above itself.
+// Returns whether a recording says where the root is, not how far it has gone from rest: no root is
+// on average half its own height above itself.
 bool gives_places(const std::vector<float>& heights, float rest_height) {
   double mean = 0;
   for (float h : heights) mean += double(h) / double(heights.size());
   return rest_height > 0.1f && mean > 0.5 * double(rest_height);
 }
 
-// Lowest joint of the whole motion, sampled.
+// Returns the lowest joint of the whole motion, sampled.
 float lowest_joint(const Motion& motion) {
   float low = INFINITY;
   MotionPose pose;
@@ -273,7 +273,7 @@ struct Router {
     reader.character.motions.push_back(std::move(motion));
   }
 
-  // False: there is nothing to follow, or it leads to nothing that a figure moves.
+  // Adds a track. False: there is nothing to follow, or it leads to nothing that a figure moves.
   bool add_track(Motion& motion, int curve_node, int target, const std::string& field,
                  float cycle) {
     X3dFile& file = reader.file;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motions of an X3D humanoid: HAnimMotion nodes (ISO/IEC 19774-2), and interpolators that a
+// Reads motions of an X3D humanoid: HAnimMotion nodes (ISO/IEC 19774-2), and interpolators that a
 // TimeSensor drives and that ROUTEs lead to joints, the humanoid or displacers: one Motion a
 // TimeSensor.
 #pragma once
@@ -7,9 +7,8 @@
 
 namespace wellspring::avatar {
 
-// Adds to reader.character.motions. Angles of HAnimMotion are degrees, as all files have them;
-// where it gives the root's place instead of its way, the way is found by putting the feet on the
-// floor.
+// Adds to reader.character.motions. Angles of HAnimMotion are degrees, as all files have them; if
+// it gives the root's place instead of its way, the way is found by putting the feet on the floor.
 void read_x3d_motions(HumanoidReader& reader, int humanoid);
 
 }  // namespace wellspring::avatar

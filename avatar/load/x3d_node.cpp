@@ -23,7 +23,7 @@ std::string x3d_type_name(std::string_view name) {
 
 namespace {
 
-// Depth-first with a stack of our own: colours 0 unseen, 1 open, 2 done.
+// Searches for cycles depth-first with a stack of our own: colours 0 unseen, 1 open, 2 done.
 void refuse_cycles(const X3dFile& file) {
   std::vector<uint8_t> color(file.nodes.size(), 0);
   struct Open {
@@ -80,7 +80,7 @@ void resolve_uses(X3dFile& file, const std::vector<X3dPendingUse>& pending) {
   std::unordered_map<std::string, std::vector<int>> defined;  // ascending node indices
   for (size_t i = 0; i < file.nodes.size(); i++)
     if (!file.nodes[i].def.empty()) defined[file.nodes[i].def].push_back(int(i));
-  std::vector<std::pair<int, size_t>> unknown;  // to be taken out
+  std::vector<std::pair<int, size_t>> unknown;  // children to be taken out
   for (const X3dPendingUse& use : pending) {
     auto found = defined.find(use.name);
     X3dChild& child = file.nodes[size_t(use.parent)].children[use.child];
@@ -114,7 +114,7 @@ constexpr std::string_view groups[] = {
     "Transform", "Group",    "StaticGroup", "Anchor",  "Collision", "Billboard", "LOD",
     "Switch",    "CADLayer", "CADAssembly", "CADPart", "Layer",     "LayerSet",  "ScreenGroup"};
 
-// Something of these is read, a warning says why not, or a figure has no use for them.
+// Parts of these are read, or a warning says why not, or a figure has no use for them.
 constexpr std::string_view known[] = {"Scene",
                                       "WorldInfo",
                                       "NavigationInfo",
@@ -289,7 +289,7 @@ std::vector<float> floats_of(const X3dFile& file, const X3dNode& node, std::stri
   return numbers<float>(file, node, name,
                         [](const char* p, const char* end, float& value) -> const char* {
                           if (*p == '+') p++;
-                          double wide = 0;  // so that 1e-60 reads as 0 instead of an error
+                          double wide = 0;  // lets 1e-60 read as 0 instead of an error
                           auto [stop, error] = std::from_chars(p, end, wide);
                           if (error == std::errc::result_out_of_range)
                             wide = std::abs(wide) < 1 ? 0 : INFINITY;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An X3D or VRML file as a plain tree of nodes, whatever its encoding. The parsers (x3d_xml.cpp,
-// ...) fill it; character_from_x3d.cpp reads it. Values stay text until somebody asks for them by
-// type.
+// Holds an X3D or VRML file as a plain tree of nodes, whatever its encoding. The parsers
+// (x3d_xml.cpp, ...) fill it; x3d_humanoid.cpp reads it. Values stay text until somebody asks for
+// them by type.
 #pragma once
 #include <optional>
 #include <string>
@@ -19,7 +19,7 @@ struct X3dField {
 struct X3dChild {
   std::string field;  // the parent's field that holds it; empty: the default one of its type
   int node = 0;       // index into X3dFile::nodes; several parents may share one (DEF/USE)
-  bool use = false;   // was written as USE
+  bool use = false;   // written as USE
 };
 
 struct X3dNode {
@@ -43,7 +43,7 @@ struct X3dFile {
   std::vector<std::string> warnings;
 };
 
-// What a file may be at most; beyond it the parsers throw.
+// Limits of a file; beyond them the parsers throw.
 inline constexpr size_t x3d_max_bytes = size_t(128) << 20;
 inline constexpr int x3d_max_nodes = 500'000;
 inline constexpr int x3d_max_depth = 400;
@@ -57,11 +57,11 @@ X3dFile parse_x3d_classic(const std::string& path,
                           const std::string& text);  // ClassicVRML and VRML97
 X3dFile parse_x3d_json(const std::string& path, const std::string& text);
 
-// For the parsers: "Joint" -> "HAnimJoint", "x3d:Shape" -> "Shape".
+// Names a type for the parsers: "Joint" -> "HAnimJoint", "x3d:Shape" -> "Shape".
 std::string x3d_type_name(std::string_view name);
-// For the parsers: USE children carry their name in `pending` until all nodes are known. Resolves
-// them (an unknown name is a warning and the child goes) and throws LoadError where they make a
-// cycle.
+// This is a USE that a parser has met: its child has only a name until all nodes are read.
+// resolve_uses finds the nodes (an unknown name is a warning and the child goes) and throws
+// LoadError if they make a cycle.
 struct X3dPendingUse {
   int parent = 0;
   size_t child = 0;
@@ -70,15 +70,15 @@ struct X3dPendingUse {
 };
 void resolve_uses(X3dFile& file, const std::vector<X3dPendingUse>& pending);
 
-// For the parsers: one more ROUTE; beyond the limit they are dropped with a warning.
+// Adds one more ROUTE for the parsers; beyond the limit they are dropped with a warning.
 void add_route(X3dFile& file, X3dRoute route);
 
-// Adds a warning unless it was said before; after 100 the rest is only counted once as "and more".
+// Adds a warning unless it is there already; after 100 the rest is only counted once as "and more".
 void warn_once(std::vector<std::string>& warnings, const std::string& text);
 
 std::string where(const X3dNode& node);  // "line 12 (HAnimJoint l_hip)"
 
-// Values of a node's field; nothing where the field is absent. Throw LoadError where it is
+// Return values of a node's field; nothing if the field is absent. Throw LoadError if it is
 // malformed, has a number that is not finite or has too few of them.
 const std::string* find_field(const X3dNode& node, std::string_view name);
 std::vector<float> floats_of(const X3dFile& file, const X3dNode& node, std::string_view name);
@@ -92,23 +92,23 @@ std::string string_of(const X3dNode& node, std::string_view name);  // trimmed, 
 std::vector<std::string> strings_of(const X3dNode& node, std::string_view name);
 std::vector<vec3> points_of(const X3dFile& file, const X3dNode& node, std::string_view name);
 
-// First child in one of these fields (an empty field name matches the default) or of one of these
-// types.
+// Returns the first child in one of these fields (an empty field name matches the default) or of
+// one of these types.
 int find_child(const X3dFile& file, const X3dNode& node, std::string_view field,
                std::initializer_list<std::string_view> types);
 
-// translation * center * rotation * scaleOrientation * scale * ... of Transform, HAnimJoint,
-// HAnimSite, HAnimHumanoid (X3D 4, 10.4.4).
+// Returns translation * center * rotation * scaleOrientation * scale * ... of Transform,
+// HAnimJoint, HAnimSite, HAnimHumanoid (X3D 4, 10.4.4).
 mat4 transform_of(const X3dFile& file, const X3dNode& node);
 
 bool is_x3d_group(const std::string& type);
 
-// The children of a group that are shown: of a Switch the chosen one, of an LOD the first level;
-// none of what is written as not visible. Metadata are no children.
+// Returns the children of a group that are shown: a Switch's chosen one, an LOD's first level; none
+// of a node that is not visible. Metadata are no children.
 std::vector<int> shown_children(const X3dFile& file, const X3dNode& node);
 
-// Warns once of all that is no part of a figure: counts, by kind, the nodes of which nothing is
-// read (lights, sensors, lines, ...), and the shapes that stand beside all humanoids.
+// Warns once of all that is no part of a figure: counts, by kind, the nodes that are not read at
+// all (lights, sensors, lines, ...), and the shapes that stand beside all humanoids.
 void note_left_out(X3dFile& file);
 
 }  // namespace wellspring::avatar

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The working state of reading an HAnimHumanoid: x3d_humanoid.cpp walks the skeleton, x3d_skin.cpp
-// binds the surfaces, x3d_motion.h reads what it does.
+// Holds the working state of reading an HAnimHumanoid: x3d_humanoid.cpp walks the skeleton,
+// x3d_skin.cpp binds the surfaces, x3d_motion.h reads its motions.
 #pragma once
 #include <map>
 #include <unordered_set>
@@ -13,7 +13,7 @@ namespace wellspring::avatar {
 inline constexpr int max_joints = 4096;
 inline constexpr size_t max_vertices = 3'000'000;
 
-// Working state of one reading.
+// This is the working state of one reading.
 struct HumanoidReader {
   explicit HumanoidReader(X3dFile& from) : file(from) { character.first_weight = {0}; }
   X3dFile& file;
@@ -26,9 +26,9 @@ struct HumanoidReader {
   std::map<std::tuple<int, int, bool>, int>
       appearances;  // (appearance, colours: 0 none, 1 some, 2 with alpha; solid) -> look
   int visits = 0, depth = 0;
-  size_t bytes_read = 0;  // of geometry
+  size_t bytes_read = 0;  // bytes of geometry
 
-  // Where a Coordinate's points went, for displacers.
+  // Says where a Coordinate's points went, for displacers.
   struct Placed {
     int coordinate = -1;
     uint32_t first_vertex = 0;
@@ -36,7 +36,7 @@ struct HumanoidReader {
     size_t point_count = 0;
     mat4 matrix{1};
   };
-  std::vector<Placed> placed;  // of the segment being read, or of the skin
+  std::vector<Placed> placed;  // places in the segment being read, or in the skin
 
   struct Context {
     mat4 matrix{1};
@@ -55,7 +55,7 @@ struct HumanoidReader {
   void add_displacers(int node, const mat4& direction, int coordinate);
 };
 
-// Weights of the skinCoord's points.
+// Holds weights of the skinCoord's points.
 struct SkinPoints {
   int coordinate = -1;
   size_t count = 0;

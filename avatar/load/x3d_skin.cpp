@@ -20,7 +20,7 @@ vec3 linear_from_srgb(vec3 c) {
   return result;
 }
 
-// The first picture of `url` that lies beside the file or below it.
+// Returns the first picture of `url` that lies beside the file or below it.
 std::string find_picture(X3dFile& file, const X3dNode& node) {
   namespace fs = std::filesystem;
   std::vector<std::string> urls = strings_of(node, "url");
@@ -60,7 +60,7 @@ mat3 texture_transform(X3dFile& file, const X3dNode& node) {
   return back * size * turn * to * move;
 }
 
-// Path of the picture that `field` names; empty: none.
+// Returns the path of the picture that `field` names; empty: none.
 std::string picture_of(X3dFile& file, const X3dNode& material, const char* field) {
   int picture = find_child(file, material, field, {});
   if (picture < 0) return "";
@@ -70,7 +70,7 @@ std::string picture_of(X3dFile& file, const X3dNode& material, const char* field
   return "";
 }
 
-// Vertex colours in place of the material's.
+// Uses vertex colours in place of the material's.
 void use_colors(X3dFile& file, Appearance& appearance, bool glows, bool covered,
                 std::vector<vec4>& colors) {
   if (colors.empty()) return;
@@ -83,7 +83,7 @@ void use_colors(X3dFile& file, Appearance& appearance, bool glows, bool covered,
     clear |= color.w < 1;
   }
   if (!clear) return;
-  appearance.alpha = 1;  // that of the colours counts (X3D 4, 17.2.2.3)
+  appearance.alpha = 1;  // the colours' alpha counts (X3D 4, 17.2.2.3)
   appearance.clear_colors = true;
 }
 
@@ -128,8 +128,8 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, std::vecto
     } else {
       appearance.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
       appearance.emission = linear_from_srgb(emissive);
-      // Blinn-Phong exponent 128 * shininess as a GGX roughness, as far as there is a highlight at
-      // all.
+      // Blinn-Phong's exponent 128 * shininess becomes a GGX roughness, as far as there is a
+      // highlight at all.
       float exponent = 128 * glm::clamp(float_of(file, m, "shininess", 0.2f), 0.0f, 1.0f);
       float shiny = std::sqrt(std::sqrt(2 / (exponent + 2)));
       float highlight =
@@ -253,7 +253,7 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
     warn_once(file.warnings, where(node) + ": a shape of no joint follows the root");
     joint = 0;
   }
-  // A shape may be used very often: what is read in all is bounded.
+  // A shape may be used very often, so the sum of all that is read is bounded.
   for (const X3dField& field : file.nodes[size_t(geometry)].fields) bytes_read += field.text.size();
   for (const X3dChild& child : file.nodes[size_t(geometry)].children)
     for (const X3dField& field : file.nodes[size_t(child.node)].fields)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The XML encoding (ISO/IEC 19776-1) onto the node tree. PROTO instances become nodes of the
+// Reads the XML encoding (ISO/IEC 19776-1) into the node tree. PROTO instances become nodes of the
 // PROTO's name.
 #include <algorithm>
 #include <cstring>
@@ -11,7 +11,7 @@
 namespace wellspring::avatar {
 namespace {
 
-// Lines of byte offsets; UTF-16 and UTF-32 files have none.
+// Finds the lines of byte offsets; UTF-16 and UTF-32 files have none.
 class Lines {
  public:
   explicit Lines(const std::string& text) {
@@ -45,11 +45,11 @@ struct XmlBuilder {
 
   int line(const pugi::xml_node& xml) const { return lines.at(xml.offset_debug()); }
 
-  // Iterative, so that hostile nesting cannot exhaust the stack.
+  // The walk is iterative, so that hostile nesting cannot exhaust the stack.
   struct Open {
     pugi::xml_node next;  // next child to look at
-    int node;             // that the children belong to
-    std::string field;    // given to children without containerField (inside fieldValue)
+    int node;             // node that the children belong to
+    std::string field;    // field for children without containerField (inside fieldValue)
   };
 
   void build(const pugi::xml_node& scene) {
@@ -89,7 +89,7 @@ struct XmlBuilder {
     }
   }
 
-  // The node's index, or -1 for a USE.
+  // Adds a node. Returns its index, or -1 for a USE.
   int add_node(const pugi::xml_node& xml, int parent, const std::string& field) {
     if (file.nodes.size() >= size_t(x3d_max_nodes))
       throw LoadError(file.path, "line " + std::to_string(line(xml)),
@@ -99,7 +99,7 @@ struct XmlBuilder {
     X3dChild child{field, index, false};
     if (auto container = xml.attribute("containerField")) child.field = container.value();
     if (auto use = xml.attribute("USE"); use && *use.value()) {
-      // child.node is "the next node to come", which tells resolve_uses where the USE stands.
+      // child.node is the node before the USE, by which resolve_uses knows where the USE stands.
       uses.push_back({parent, file.nodes[size_t(parent)].children.size(), use.value(), line(xml)});
       child.node = index - 1;
       file.nodes[size_t(parent)].children.push_back(child);

@@ -8,16 +8,16 @@
 namespace wellspring::avatar {
 namespace {
 
-constexpr float near_place = 1.3f;   // metres: nearer than this is pointed at with a bent arm
+constexpr float near_place = 1.3f;   // metres: nearer places are pointed at with a bent arm
 constexpr float same_thing = 0.25f;  // metres: no new gesture for the same thing
-constexpr float seconds_held = 60;   // longest a hand points without being asked anew
+constexpr float seconds_held = 60;   // longest time that a hand points without a new request
 constexpr double answer_again = 8;   // seconds between answers to a visitor's gestures
 
 GestureOrder play(const GestureLibrary& library, std::string_view name) {
   return {.clip = find_gesture(library, name), .lead = -1};
 }
 
-// The held moment of the running clip ends now.
+// Ends the held moment of the running clip now.
 void release(GestureState& gesture, const GestureLibrary& library) {
   if (gesture.clip < 0 || size_t(gesture.clip) >= library.clips.size()) return;
   const GestureClip& clip = library.clips[size_t(gesture.clip)];
@@ -25,7 +25,7 @@ void release(GestureState& gesture, const GestureLibrary& library) {
   gesture.hold = std::clamp(gesture.time - clip.hold, 0.0f, gesture.hold);
 }
 
-// On the side to which the gaze goes round, too.
+// Returns whether a place is to the left, the side to which the gaze goes round, too.
 bool is_left(const vec3& here) { return way_round(std::atan2(here.x, here.z)) > 0; }
 
 GestureOrder point_at(const GestureLibrary& library, const vec3& place, const mat4& to_body) {
@@ -33,7 +33,7 @@ GestureOrder point_at(const GestureLibrary& library, const vec3& place, const ma
   GestureOrder order =
       play(library, glm::length(vec2(here.x, here.z)) < near_place ? "point_near" : "point_far");
   order.seconds = seconds_held;
-  order.mirrored = is_left(here);  // the hand that is nearer
+  order.mirrored = is_left(here);  // the nearer hand points
   return order;
 }
 
@@ -57,7 +57,7 @@ GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
   }
   if (mood != Mood::attending || !input.humanlike) state.next_nod = now + 4;
 
-  // The visitor's leaving overrides everything; the story comes before what the situation suggests.
+  // The visitor's leaving overrides everything; the story comes before the situation.
   if (events.farewelled) return play(library, "farewell");
   if (!story.gesture.empty() && mood != Mood::farewell) {
     GestureOrder order = play(library, story.gesture);

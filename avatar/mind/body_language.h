@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which gesture is due: the story's before the situation's, and what a polite person does unasked
-// (welcome, farewell, a nod while listening, an invitation to somebody who waits). State is a
-// value.
+// Chooses the gesture that is due: the story's before the situation's, and what a polite person
+// does unasked (welcome, farewell, a nod while listening, an invitation to somebody who waits).
+// State is a value.
 #pragma once
 #include <optional>
 
@@ -13,20 +13,20 @@ namespace wellspring::avatar {
 
 struct BodyLanguageState {
   double next_nod = 0;
-  double attending_since = -1e30;  // how long somebody has waited before it
-  int invitations = 0;             // given to this guest since then
-  double answered = -1e30;         // when a visitor's gesture was last answered
-  bool pointing = false;           // the story has had it point since the last tick
-  vec3 pointed{0};                 // where; world
+  double attending_since = -1e30;  // time since which somebody has waited before the storyteller
+  int invitations = 0;             // number of invitations given to this guest since then
+  double answered = -1e30;         // time at which a visitor's gesture was last answered
+  bool pointing = false;           // whether the story asked for pointing in the last tick
+  vec3 pointed{0};                 // place pointed at, world
 };
 
-// Seconds of prior weight with a guest to whom nothing happens, before the first invitation and
-// between the next ones.
+// A guest to whom nothing happens gets the first invitation after `patience_seconds`, and the next
+// ones every `patience_again_seconds`.
 inline constexpr double patience_seconds = 18, patience_again_seconds = 40;
 inline constexpr int most_invitations = 3;
 
-// May shorten what `gesture` holds (a pointing hand sinks when the story has finished with the
-// place). `to_body`: world to humanoid space, turned as the body faces.
+// Chooses the gesture. May shorten what `gesture` holds (a pointing hand sinks when the story has
+// finished with the place). `to_body` maps the world to humanoid space, turned as the body faces.
 GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
                             const GestureLibrary& library, const StorytellerInput& input,
                             const StorytellerEvents& events, Mood mood, const mat4& to_body,

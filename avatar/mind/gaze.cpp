@@ -9,12 +9,12 @@ namespace wellspring::avatar {
 namespace {
 
 constexpr double same_person_seconds =
-    1.5;  // a new number at the place of one lost this short is the same person
-constexpr double no_second_greeting =
-    20;                                // nor is anybody greeted twice within this time at one place
-constexpr double group_seconds = 1.5;  // who comes this soon after a greeting was greeted with it
-constexpr double motion_hold = 2.5;    // keeps noticing after the last motion
-constexpr float same_place = 0.7f;     // metres
+    1.5;  // a new number where another one was lost this short ago is the same person
+constexpr double no_second_greeting = 20;  // nobody is greeted twice within this time at one place
+// whoever comes this soon after a greeting was greeted with it
+constexpr double group_seconds = 1.5;
+constexpr double motion_hold = 2.5;  // noticing goes on for so long after the last motion
+constexpr float same_place = 0.7f;   // metres
 constexpr size_t most_people = 32;
 
 using Person = BehaviourState::Person;
@@ -135,11 +135,11 @@ void decide(BehaviourState& state, const StorytellerInput& input, double now,
 namespace {
 
 constexpr float nine_tenths =
-    3.89f;  // of a critically damped step are made after this many 1 / rate
+    3.89f;  // times 1 / rate: the time of nine tenths of a critically damped step
 constexpr float eye_rate = nine_tenths / eye_seconds, head_rate = nine_tenths / head_seconds,
                 calm_head_rate = 3.5f, torso_rate = nine_tenths / torso_seconds;
 constexpr float eye_reach_yaw = 22_deg,
-                eye_reach_pitch = 15_deg;  // beyond it the head must come along
+                eye_reach_pitch = 15_deg;  // beyond these the head must come along
 constexpr float head_reach = 55_deg, torso_reach = 18_deg;
 constexpr float torso_showing = 30_deg;  // the chest's reach while the feet stay with a listener
 
@@ -147,8 +147,8 @@ float nearest_turn(float angle, float to) {
   return angle + 2 * pi * std::round((to - angle) / (2 * pi));
 }
 
-// The guest to look at: kiosk guests before remote ones, the nearest first, the present one kept
-// unless another is clearly nearer. nullptr: nobody.
+// Chooses the guest to look at: kiosk guests before remote ones, the nearest first, the present one
+// kept unless another is clearly nearer. nullptr: nobody.
 const Guest* choose_guest(const GazeState& state, std::span<const Guest> guests, vec3 from,
                           float radius) {
   const Guest* best = nullptr;
@@ -173,7 +173,7 @@ void choose_target(GazeState& state, const BehaviourState& behaviour, const Gaze
     state.kiosk_known = true;
     state.kiosk_place = guest->head;
   }
-  // A kiosk's guest who is out of sight for a moment is there still.
+  // A kiosk's guest who is out of sight for a moment is still there.
   const bool unseen = behaviour.company && state.kiosk_known;
   state.listener = guest    ? std::optional(guest->head)
                    : unseen ? std::optional(state.kiosk_place)
@@ -193,7 +193,7 @@ void choose_target(GazeState& state, const BehaviourState& behaviour, const Gaze
     return;
   }
   if (guest && !guest->kiosk && humanlike && now >= state.glance_until) {
-    // A long look, a short rest for both.
+    // A long look is followed by a short rest for both.
     state.glancing_away = state.at_guest && !state.glancing_away;
     state.glance_until = now + (state.glancing_away ? 1.2 + 1.5 * double(rng.uniform())
                                                     : 8 + 6 * double(rng.uniform()));
@@ -264,7 +264,7 @@ bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour
     state.saccade = reach * (2.0f * vec2(rng.uniform(), rng.uniform()) - 1.0f);
     state.next_saccade = now + 0.35 + 1.4 * double(rng.uniform());
   }
-  // What the head and the chest do about it.
+  // Head and chest take their shares of the turn.
   const float turn = way_round(yaw_of(way, heading) - heading, state.turn);
   state.turn = turn;
   bool eyes = rig.eyes_move;
@@ -277,7 +277,7 @@ bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour
     head = std::clamp(head, to - most_away, to + most_away);
   }
   head = std::clamp(head, torso - head_reach, torso + head_reach);
-  // The eyes stop where their sockets end, on the way that the head goes.
+  // The eyes stop at the ends of their sockets, on the way that the head goes.
   const float yaw = heading + std::clamp(turn, head - eye_limit_yaw, head + eye_limit_yaw);
   float nod =
       eyes ? std::clamp(0.65f * pitch, pitch - eye_reach_pitch, pitch + eye_reach_pitch) : pitch;

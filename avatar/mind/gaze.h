@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the storyteller looks, and how its eyes, head and chest share the way: eyes first and fast,
-// then the head, then the chest. Who listens is never shown a back: what lies behind is looked at
-// as far as eyes, head and chest go. Angles are in humanoid space, about +Y from +Z (positive to
-// its own left) and up.
+// Finds where the storyteller looks, and how its eyes, head and chest share the way: eyes first and
+// fast, then the head, then the chest. A listener is never shown a back: places behind are looked
+// at as far as eyes, head and chest go. Angles are in humanoid space, about +Y from +Z (positive to
+// the storyteller's own left) and up.
 #pragma once
 #include <optional>
 #include <span>
@@ -14,9 +14,9 @@
 
 namespace wellspring::avatar {
 
-// What the storyteller is doing: idle -> noticing -> greeting -> attending (or telling) -> farewell
-// -> idle. Time is an argument. Detectors flicker: a person is somebody seen for 0.25 s, lost after
-// 2 s, and the same one when another number stands where it stood.
+// Decides what the storyteller is doing: idle -> noticing -> greeting -> attending (or telling) ->
+// farewell -> idle. Time is an argument. Detectors flicker: a person is somebody seen for 0.25 s,
+// lost after 2 s, and the same one if another number appears at the same place.
 
 struct BehaviourState {
   struct Person {
@@ -29,13 +29,13 @@ struct BehaviourState {
   };
   std::vector<Person> people;  // in front of kiosks, now or a moment ago
   Mood mood = Mood::idle;
-  double since = 0;  // when the mood began
+  double since = 0;  // time at which the mood began
   double last_motion = -1e30;
-  double last_company = -1e30;  // when a kiosk guest was last seen
+  double last_company = -1e30;  // time at which a kiosk guest was last seen
   double last_greeting = -1e30;
-  uint64_t visit = 0;      // of the people
+  uint64_t visit = 0;      // number of the people's visit
   bool company = false;    // somebody was greeted and not yet bid farewell
-  uint64_t addressed = 0;  // the last one greeted
+  uint64_t addressed = 0;  // number of the guest greeted last
 };
 
 inline constexpr double confirm_seconds = 0.25, lost_seconds = 2.0, greeting_seconds = 3.0,
@@ -45,9 +45,10 @@ inline constexpr double confirm_seconds = 0.25, lost_seconds = 2.0, greeting_sec
 void decide(BehaviourState& state, const StorytellerInput& input, double now,
             StorytellerEvents& events);
 
-// Metres within which a visitor's camera is looked at, and while it is told a story.
+// A visitor's camera is looked at within the first of these distances, metres; while the visitor
+// listens to a story, within the second.
 inline constexpr float remote_radius = 8, listener_radius = 20;
-// The head's largest turn away from who listens, for whatever else is looked at.
+// The head turns at most so far away from a listener, whatever else is looked at.
 inline constexpr float most_away = 60_deg;
 
 struct GazeState {
@@ -55,43 +56,45 @@ struct GazeState {
   bool at_guest = false;
   uint64_t guest = 0;
   bool kiosk_known = false;
-  vec3 kiosk_place{0};      // where the last kiosk guest's eyes were, humanoid space
-  double glance_until = 0;  // remote guests: not stared at without end
+  vec3 kiosk_place{0};  // eyes of the last kiosk guest, humanoid space
+  // time at which a glance ends: remote guests are not stared at without end
+  double glance_until = 0;
   bool glancing_away = false;
   double wander_until = 0;
   vec3 wander{0, 0, 4};  // yaw, pitch, distance while looking at nobody
   double next_saccade = 0;
   vec2 saccade{0};                         // small step of the eyes around the target
-  vec3 target{0, 1.6f, 4};                 // what is looked at, humanoid space
-  std::optional<vec3> listener;            // the head of who is not to be shown a back
-  float turn = 0;                          // from where the body faces to the target, radians
+  vec3 target{0, 1.6f, 4};                 // place looked at, humanoid space
+  std::optional<vec3> listener;            // head of the guest who is not to be shown a back
+  float turn = 0;                          // angle from the body's facing to the target, radians
   Spring yaw, pitch, nearness{0.25f, 0};   // line of sight of the eyes; nearness = 1 / distance
   Spring head_yaw, head_pitch, torso_yaw;  // torso_yaw: relative to the heading
 };
 
 struct GazeInput {
   std::span<const Guest> guests;  // with their heads in humanoid space
-  std::optional<vec3> look;       // what the story wants looked at instead, humanoid space
-  float heading = 0;              // where the body faces
+  std::optional<vec3> look;       // place that the story wants looked at instead, humanoid space
+  float heading = 0;              // facing of the body, radians
   bool kiosk_motion = false, humanlike = true;
   bool saccades = true;  // false: nobody is near enough to see them
 };
 
-// Times after which eyes, head and chest have made nine tenths of a turn (3.9 / rate of their
+// Eyes, head and chest have made nine tenths of a turn after these times (3.9 / rate of their
 // springs).
 inline constexpr float eye_seconds = 0.14f, head_seconds = 0.65f, torso_seconds = 1.56f;
 
-// One tick. Returns true when the gaze has made a large jump (the eyes like to blink then).
+// Advances the gaze by a tick. Returns true when it has made a large jump (the eyes like to blink
+// then).
 bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour,
                const GazeInput& input, Rng& rng, double now, float dt);
 
-// The way round by `turn` from where the body faces: to the left up to 170 degrees, beyond it over
-// the right, as the right hand points to what is straight behind. A way of `before` that is far
+// Returns the way round by `turn` from the body's facing: to the left up to 170 degrees, beyond it
+// over the right, as the right hand points to places straight behind. A way of `before` that is far
 // round stays on its side.
 float way_round(float turn, float before = 0);
-// The middle between the eyes while the body faces `heading`, standing still.
+// Returns the middle between the eyes while the body faces `heading`, standing still.
 vec3 eyes_origin(const Rig& rig, float heading);
-// The point the eyes converge on.
+// Returns the point the eyes converge on.
 vec3 gaze_point(const GazeState& state, const Rig& rig, float heading);
 
 }  // namespace wellspring::avatar

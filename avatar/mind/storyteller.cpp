@@ -19,7 +19,7 @@ std::shared_ptr<const Rig> rig_of(const StorytellerState& state, const Character
   return fits ? state.rig : std::make_shared<const Rig>(make_rig(character));
 }
 
-// Guests in humanoid space; those at impossible places are nobody.
+// Returns guests in humanoid space, without those at impossible places.
 std::vector<Guest> guests_here(const std::vector<Guest>& guests, const mat4& placement) {
   std::vector<Guest> here;
   glm::dmat4 to_here = glm::inverse(glm::dmat4(placement));
@@ -39,7 +39,7 @@ std::shared_ptr<const ExpressionRig> expressions_of(const StorytellerState& stat
                     make_expression_rig(set, *state.rig->character));
 }
 
-// What the story wants looked at: what it says, else what it points at.
+// Returns the place that the story wants looked at: the one it names, else the one it points at.
 std::optional<vec3> place_to_look(const StoryCue& story, const mat4& to_here) {
   const std::optional<vec3>& place = story.look ? story.look : story.point;
   if (!place || !is_finite(*place)) return std::nullopt;
@@ -54,7 +54,7 @@ void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const GazeInp
   if (state.detail != Detail::none) state.work.eyes++;
   bool kiosk =
       state.behaviour.company || state.mood == Mood::greeting || state.mood == Mood::farewell;
-  // The feet are with who listens, whatever is looked at meanwhile.
+  // The feet stay with a listener, whatever is looked at meanwhile.
   const std::optional<vec3>& listener = state.gaze.listener;
   const bool shows = look.look && !state.gaze.at_guest && !listener;
   float reach = kiosk ? 30_deg : listener ? 60_deg : shows ? 50_deg : -1.0f;
@@ -66,14 +66,14 @@ void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const GazeInp
   float heading = state.stance.heading.value, aim = heading;
   if (glm::length(vec2(way.x, way.z)) > 0.05f) {
     aim = heading + way_round(std::atan2(way.x, way.z) - heading);
-    // Who shows something stands between it and whoever may come.
+    // A figure that shows something stands between it and whoever may come.
     if (shows && std::abs(aim - heading) > reach) aim -= std::copysign(30_deg, aim - heading);
   }
   tick_stance(state.stance, rig.leg[0].complete() && rig.leg[1].complete(), aim, reach, patience,
               now, dt);
 }
 
-// The hand glides from one place to the next; a hand that does not point yet begins at the right
+// Glides the hand from one place to the next; a hand that does not point yet begins at the right
 // one.
 vec3 tick_point(StorytellerState& state, const StorytellerInput& input, const mat4& to_here,
                 bool points_now, float dt) {
@@ -103,7 +103,7 @@ float wanted_smile(const StorytellerState& state) {
   return state.gaze.at_guest ? 0.38f : 0.2f;
 }
 
-// Lids follow the eyes: half closed when they look down, wide when up.
+// Makes the lids follow the eyes: half closed when they look down, wide when up.
 void lids_follow(const Rig& rig, const ExpressionRig& expressions, const Pose& pose, float closing,
                  ExpressionSum& face, Protected& words) {
   for (size_t side = 0; side < 2; side++) {
@@ -126,7 +126,7 @@ Emotions emotions_of(const StoryCue& story) {
   return emotions;
 }
 
-// The arms without any gesture; one of them may hold something.
+// Returns the arms without any gesture; one of them may hold something.
 std::array<ArmPose, 2> arms_at_rest(const Rig& rig, const IdleMotion& idle, float folded,
                                     size_t holding_side, const HoldingArm& holding) {
   std::array<ArmPose, 2> rest;
@@ -200,7 +200,7 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   if (noise) state.work.body_noise++;
   IdleMotion idle =
       tick_idle(state.idle, state.rng, state.face.talking, hands_busy, noise, now, dt);
-  const Guest* guest = nullptr;  // who is looked at, before a kiosk
+  const Guest* guest = nullptr;  // kiosk guest who is looked at
   for (const Guest& other : guests)
     if (other.kiosk && state.gaze.at_guest && other.id == state.gaze.guest) guest = &other;
   if (full) {
@@ -221,7 +221,7 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
       gesture.finger_aim[0] + gesture.finger_aim[1] + gesture.palm_aim[0] + gesture.palm_aim[1] > 0;
   vec3 point = tick_point(state, input, to_here, points, dt);
 
-  // What the face is to say; it nods and tilts the head, too.
+  // The face's wishes come first: it nods and tilts the head, too.
   ExpressionSum face;
   Protected words;
   FaceInput asked;
@@ -280,7 +280,7 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   protect(face, expressions, words);
   apply_controls(face, expressions, pose);
 
-  // What its author forbids, what follows, and what hangs on it.
+  // The author's rules, constraints and springs follow, since each depends on all before it.
   follow_expression_rules(character, pose);
   follow_constraints(character, pose);
   if (!character.springs.empty()) {
@@ -305,7 +305,7 @@ vec3 eval_mouth(const StorytellerState& state, const Storyteller& storyteller, c
   const Rig* rig = state.rig.get();
   if (rig && rig->character == storyteller.character && pose.rotations.size() == rig->joints &&
       rig->skull >= 0) {
-    // Below the eyes by a share of the body's height, in the skull's frame.
+    // The mouth is below the eyes by a share of the body's height, in the skull's frame.
     const Character& character = *rig->character;
     vec3 at_rest = rig->eyes_center - vec3(0, 0.043f * rig->eyes_center.y, 0);
     JointFrame skull = eval_joint_frame(character, pose, rig->skull);

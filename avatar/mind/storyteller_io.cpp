@@ -7,7 +7,7 @@
 
 namespace wellspring::avatar {
 
-static constexpr float bow_rate = 2.5f;  // 90 % after 1.6 s
+static constexpr float bow_rate = 2.5f;  // 1/s; 90 % are reached after 1.6 s
 
 void tick_bow(BowState& state, std::optional<vec3> guest, vec3 eyes, float dt) {
   float wanted = 0;
@@ -20,7 +20,8 @@ void tick_bow(BowState& state, std::optional<vec3> guest, vec3 eyes, float dt) {
 
 namespace {
 
-// Nothing below the dead zone and no jump at its edge: full size again at twice the zone.
+// Returns nothing below the dead zone, without a jump at its edge: full size again at twice the
+// zone.
 float wanted(float angle, float limit) {
   constexpr float dead = 4_deg;
   float size = std::abs(angle);
@@ -38,7 +39,7 @@ void tick_mirror(MirrorState& state, bool present, vec3 rotation, double now, fl
   vec2 newest = state.count ? state.heard[size_t((state.first + state.count - 1) % size)].wanted
                             : state.arrived;
   if (target != newest) {
-    // A full ring (very fast ticks) replaces its newest entry: the latest word counts.
+    // A full ring (very fast ticks) replaces its newest entry: the latest value counts.
     if (state.count < size) state.count++;
     state.heard[size_t((state.first + state.count - 1) % size)] = {now, target};
   }

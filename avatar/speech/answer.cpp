@@ -15,9 +15,9 @@ namespace wellspring::avatar {
 namespace {
 
 constexpr double window = 0.0025;         // seconds
-constexpr double quiet = 1e-4;            // of the loudest window's energy
+constexpr double quiet = 1e-4;            // share of the loudest window's energy
 constexpr double longest_closure = 0.15;  // seconds
-constexpr double least_left = 0.02;       // seconds, of the sound before
+constexpr double least_left = 0.02;       // seconds of the sound before that must remain
 
 bool is_voiceless_stop(const SpeechPhoneme& phoneme) {
   for (std::string_view stop : {"p", "t", "k", "c", "q", "ʈ", "ʔ"})
@@ -49,7 +49,7 @@ void include_closures(Speech& speech) {
       begin = std::max(before.begin, stop.begin - usual_closure);
     } else {
       double earliest = std::max(before.begin + least_left, stop.begin - longest_closure);
-      // The window that the burst lies in is passed over.
+      // The window with the burst is passed over.
       for (size_t k = std::min(size_t(stop.begin / length), energy.size());
            k-- > 0 && energy[k] <= threshold && double(k) * length >= earliest;)
         begin = double(k) * length;
@@ -65,16 +65,16 @@ namespace {
 
 using nlohmann::json;
 
-// Cut off towards 0.
+// Returns a whole number, cut off towards 0.
 int whole(const json& value) {
   const double number = value.get<double>();
   if (!(std::abs(number) < 2e9)) throw std::runtime_error("a number is too large");
   return int(number);
 }
 
-// Words of the text that the engine said as one ("of the" is one entry of its dictionary).
+// This is a group of words that the engine said as one ("of the" is one entry of its dictionary).
 struct SaidAsOne {
-  int first = 0, count = 1;  // of Speech::words
+  int first = 0, count = 1;  // indices into Speech::words
 };
 
 void time_words(Speech& speech) {
@@ -86,7 +86,7 @@ void time_words(Speech& speech) {
     word.end = phoneme.end;
     timed[size_t(phoneme.word)] = true;
   }
-  // A word without a sound of its own (punctuation read as a pause) is none.
+  // A word without a sound of its own (punctuation read as a pause) is no word.
   std::vector<int> moved(speech.words.size(), -1);
   std::vector<SpeechWord> words;
   for (size_t i = 0; i < speech.words.size(); i++)
@@ -99,7 +99,7 @@ void time_words(Speech& speech) {
   speech.words = std::move(words);
 }
 
-// Whether scripts are written without spaces from here on (Chinese, Japanese and their like).
+// Returns whether the script has no spaces from here on (Chinese, Japanese and their like).
 bool is_spaceless(const std::string& text, uint32_t byte) {
   return static_cast<unsigned char>(text[byte]) >= 0xe3;
 }
@@ -109,10 +109,10 @@ struct Event {
   size_t token = 0;
 };
 
-// Which word of the text each word of the answer is. The engine may say a word in several parts
-// (1786), two words as one ("of the") and counts characters its own way after numbers and phrases
-// ("so much": both in "so"): a part inside a word is one of the words that follow where
-// these are not named otherwise, else it belongs to the word it lies in.
+// Finds the word of the text for each word of the answer. The engine may say a word in several
+// parts (1786), two words as one ("of the"), and counts characters its own way after numbers and
+// phrases ("so much": both in "so"). A part inside a word is one of the words that follow, if the
+// answer does not name these otherwise; else it belongs to the word it lies in.
 void match_events(std::vector<Event>& events, const std::vector<SpeechWord>& tokens) {
   size_t last = 0;
   for (Event& event : events) {
@@ -131,8 +131,8 @@ void match_events(std::vector<Event>& events, const std::vector<SpeechWord>& tok
   }
 }
 
-// The words of the text as they are heard. Gives each word of the answer its group.
-// `starts`: the byte of the text that each character of what was asked stands for.
+// Reads the words of the text as they are heard, and gives each word of the answer its group.
+// `starts` holds the byte of the text that each character of the request stands for.
 std::vector<int> read_words(const json& list, const std::vector<uint32_t>& starts, Speech& speech,
                             std::vector<SaidAsOne>& groups) {
   std::vector<Event> events;
@@ -163,8 +163,8 @@ std::vector<int> read_words(const json& list, const std::vector<uint32_t>& start
   return group_of;
 }
 
-// Phonemes name groups; gives each its word. Within a group by the length of the words in letters,
-// which is a guess, but one about two or three short words.
+// Gives each phoneme, which names a group, its word: within a group by the length of the words in
+// letters, which is a guess, but one about two or three short words.
 void name_words(Speech& speech, const std::vector<SaidAsOne>& groups) {
   for (size_t i = 0; i < speech.phonemes.size();) {
     int group = speech.phonemes[i].word;
@@ -197,13 +197,13 @@ void name_words(Speech& speech, const std::vector<SaidAsOne>& groups) {
   }
 }
 
-// Sounds between others that the engine does not write: the glide from vowel to vowel ("the
+// Names sounds between others that the engine does not write: the glide from vowel to vowel ("the
 // oldest") and the murmur in a cluster of consonants.
 std::string name_nameless(const std::string& mnemonic) {
   return mnemonic == ";" ? "j" : mnemonic == "@-" ? "ə" : "";
 }
 
-// Every phoneme lasts until the next; pauses that follow each other are one.
+// Adds a phoneme. Every one lasts until the next; pauses that follow each other are one.
 void add_phoneme(Speech& speech, SpeechPhoneme phoneme) {
   if (!speech.phonemes.empty()) {
     SpeechPhoneme& last = speech.phonemes.back();
@@ -249,7 +249,7 @@ std::shared_ptr<const Speech> read_speech_answer(const SpeechRequest& request,
       // The engine has phonemes without a name that only make a pause.
       if (phoneme.mnemonic.empty()) phoneme.mnemonic = "_";
       if (phoneme.ipa.empty()) phoneme.ipa = name_nameless(phoneme.mnemonic);
-      // A change of language inside a word is told as "(en)"; it sounds like nothing.
+      // The engine writes a change of language inside a word as "(en)"; it sounds like nothing.
       if (phoneme.ipa.starts_with('(')) continue;
       add_phoneme(*speech, std::move(phoneme));
     }

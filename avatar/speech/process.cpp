@@ -99,9 +99,9 @@ struct SpeechProcess::Impl {
   pid_t child = 0;
   int socket = -1;
   int64_t next_id = 1;
-  int vain_starts = 0;     // since the last good answer
-  double rest_until = 0;   // no start before
-  std::string last_error;  // said already
+  int vain_starts = 0;     // number since the last good answer
+  double rest_until = 0;   // time before which the program is not started again
+  std::string last_error;  // last error that was logged
   std::vector<std::string> languages;
 
   void stop() {
@@ -114,7 +114,7 @@ struct SpeechProcess::Impl {
     child = 0;
   }
 
-  // Says an error of the program when it is a new one, and counts the start as vain.
+  // Logs an error of the program when it is a new one, and counts the start as vain.
   std::string give_up(const std::string& error) {
     stop();
     if (++vain_starts >= 3) rest_until = seconds_now() + program.rest_seconds;

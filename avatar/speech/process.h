@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The voice program as this process sees it: started when first needed, kept warm, started again
-// after a crash or a hang. One thread at a time; every call has a deadline. The program itself is
-// GPL-3.0-or-later (voice/main.cpp); nothing of it is linked here.
+// Runs the voice program: starts it when it is first needed, keeps it warm, and starts it again
+// after a crash or a hang. One thread at a time may call; every call has a deadline. The program
+// itself is GPL-3.0-or-later (voice/main.cpp); nothing of it is linked here.
 #pragma once
 #include <memory>
 #include <string>
@@ -14,12 +14,12 @@ namespace wellspring::avatar {
 
 struct VoiceProgram {
   std::string path;           // empty: WELLSPRING_VOICE, else wellspring_voice beside this program
-  double start_seconds = 10;  // until it has said hello
+  double start_seconds = 10;  // time for its first message
   double answer_seconds = 25;
-  double rest_seconds = 5;  // after three starts that led to nothing, before the next
+  double rest_seconds = 5;  // rest after three vain starts, before the next
 };
 
-// The file that is started.
+// Returns the file that is started.
 std::string program_path(const VoiceProgram& program);
 
 class SpeechProcess {
@@ -29,9 +29,9 @@ class SpeechProcess {
   SpeechProcess(const SpeechProcess&) = delete;
   SpeechProcess& operator=(const SpeechProcess&) = delete;
 
-  // Blocks until the answer or a deadline. A request during which the program dies is asked once
-  // more; one that hangs is not. Returns null with one sentence in `error`; logs what happens to
-  // the program once each time it changes.
+  // Blocks until the answer or a deadline. A request during which the program dies is sent once
+  // more; one that hangs is not. Returns null with one sentence in `error`; logs each change of the
+  // program's state once.
   std::shared_ptr<const Speech> speak(const SpeechRequest& request, std::string& error);
 
   int process_id() const;                             // 0: not running

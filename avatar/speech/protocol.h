@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the voice program (voice/main.cpp) and its client say to each other over the program's
-// standard input and output. Both directions use the same frame, little-endian:
+// Defines the messages between the voice program (voice/main.cpp) and its client, over the
+// program's standard input and output. Both directions use the same frame, little-endian:
 //
 //   u32 length of the JSON, u32 length of the sound, JSON (UTF-8), sound (16-bit mono PCM)
 //
@@ -25,7 +25,7 @@
 namespace wellspring::avatar::speech_protocol {
 
 inline constexpr size_t header_bytes = 8;
-inline constexpr size_t max_text_bytes = 10000;           // of one request, some ten minutes
+inline constexpr size_t max_text_bytes = 10000;           // length of one request, some ten minutes
 inline constexpr uint32_t max_request_json = 128 * 1024;  // escapes make a text longer
 inline constexpr uint32_t max_answer_json = 32 * 1024 * 1024;
 inline constexpr uint32_t max_sound_bytes = 128 * 1024 * 1024;
@@ -54,19 +54,19 @@ inline std::string write_header(uint32_t json, uint32_t sound) {
 
 namespace wellspring::avatar {
 
-// What a voice is asked to say, and how.
+// Holds the text that a voice is asked to say, and how.
 
 struct SpeechRequest {
   std::string text;            // UTF-8, at most 10,000 bytes
   std::string lang = "en";     // BCP 47
   int words_per_minute = 155;  // 80 to 450
   int pitch = 45;              // 0 to 100
-  std::string variant{};       // of the voice: eSpeak NG's "f3", "m2", ...; empty: its own
+  std::string variant{};       // variant of the voice: eSpeak NG's "f3", "m2", ...; empty: its own
   std::vector<SpeechStyle> styles{};
   bool operator==(const SpeechRequest&) const = default;
 };
 
-// What is wrong with a request, in words that name it; empty when nothing is.
+// Returns the fault of a request, in words that name it; empty when there is none.
 std::string check_speech_request(const SpeechRequest& request);
 
 }  // namespace wellspring::avatar

@@ -42,7 +42,7 @@ Sound load_sound(const std::string& file) {
   if (info.channels < 1 || info.channels > most_channels)
     fail("it has " + std::to_string(info.channels) + " channels");
 
-  // The header's length is not believed: what is there is counted while it is read.
+  // The header's length is not trusted: samples are counted while they are read.
   Sound sound;
   sound.rate = info.samplerate;
   size_t most = size_t(longest_recording * info.samplerate);
@@ -101,11 +101,11 @@ std::vector<float> resample(const std::vector<float>& samples, int from, int to)
   if (from == to || samples.empty()) return samples;
   int divisor = std::gcd(from, to);
   size_t up = size_t(to / divisor), down = size_t(from / divisor);
-  double cut = std::min(1.0, double(to) / from);  // of the input's half rate
+  double cut = std::min(1.0, double(to) / from);  // share of the input's half rate
   int reach = int(std::ceil(16 / cut));
   size_t count = size_t(double(samples.size()) * to / from);
   std::vector<float> out(count);
-  // One kernel for every phase that occurs; rates whose ratio has many phases share 1,024.
+  // Each phase that occurs has one kernel; rates whose ratio has many phases share 1,024.
   size_t phases = std::min<size_t>(up, 1024);
   std::vector<float> kernels(phases * size_t(2 * reach));
   for (size_t p = 0; p < phases; p++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sound files: recordings in (WAV, FLAC, OGG, MP3 and what else libsndfile reads), 16-bit WAV out.
+// Reads recordings (WAV, FLAC, OGG, MP3 and what else libsndfile reads), and writes 16-bit WAV.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,22 +12,22 @@ struct Sound {
   std::vector<float> samples;  // mono, -1 to 1; channels are averaged
 };
 
-inline constexpr double longest_recording = 1200;  // seconds; what is longer is refused
+inline constexpr double longest_recording = 1200;  // seconds; longer recordings are refused
 
-// Throws LoadError naming the file: missing, no regular file, no sound that can be read, cut off
-// within, empty, longer than longest_recording, rates outside of 4 to 192 kHz. Samples that are not
-// numbers are silence.
+// Reads a file. Throws LoadError naming the file: missing, no regular file, no sound that can be
+// read, cut off within, empty, longer than longest_recording, rates outside of 4 to 192 kHz.
+// Samples that are not numbers are silence.
 Sound load_sound(const std::string& file);
 
-// The whole file in memory, mono.
+// Makes the whole file in memory, mono.
 std::vector<uint8_t> encode_wav(const std::vector<int16_t>& pcm, int rate);
-// Throws LoadError naming the file.
+// Writes a file. Throws LoadError naming it.
 void save_file(const std::string& file, const void* bytes, size_t size);
 
-// To another rate by a windowed sinc (Hann, 16 zero crossings each side), low-pass where it goes
-// down.
+// Resamples to another rate by a windowed sinc (Hann, 16 zero crossings each side), low-pass if the
+// rate goes down.
 std::vector<float> resample(const std::vector<float>& samples, int from, int to);
-// Exact inverses but for what is louder than 1.
+// Convert samples; they are exact inverses but for samples louder than 1.
 std::vector<int16_t> to_pcm(const std::vector<float>& samples);
 std::vector<float> from_pcm(const std::vector<int16_t>& pcm);
 

@@ -45,8 +45,8 @@ struct Speaker::Impl {
   mutable std::mutex mutex;
   std::condition_variable wake;
   bool ending = false;
-  std::map<std::string, Job> jobs;           // waiting and under way, by key
-  std::deque<std::string> urgent, prepared;  // keys of those that wait
+  std::map<std::string, Job> jobs;           // jobs that wait or are under way, by key
+  std::deque<std::string> urgent, prepared;  // keys of the jobs that wait
   std::list<Kept> kept;                      // most recently used first
   std::map<std::string, std::list<Kept>::iterator> kept_by_key;
   Counts counts;
@@ -72,8 +72,7 @@ struct Speaker::Impl {
     }
   }
 
-  // With the lock held. The job of a request, made or made of high priority; null when too many
-  // wait.
+  // Adds the job of a request, or makes it urgent; null when too many wait. The lock is held.
   Job* add(const SpeechRequest& request, const std::string& key, bool at_once) {
     auto found = jobs.find(key);
     if (found == jobs.end()) {
@@ -91,7 +90,7 @@ struct Speaker::Impl {
     return &found->second;
   }
 
-  // The next key to say; those that were said meanwhile are passed over. Null: the end.
+  // Gives the next key to say, passing over those said meanwhile. False: the end.
   bool next(std::unique_lock<std::mutex>& lock, std::string& key) {
     for (;;) {
       wake.wait(lock, [&] { return ending || !urgent.empty() || !prepared.empty(); });
@@ -161,7 +160,7 @@ std::shared_future<SpeechAnswer> Speaker::speak(const SpeechRequest& request) {
 
 void Speaker::prepare(const std::vector<SpeechRequest>& requests) {
   for (const SpeechRequest& request : requests) {
-    if (!check_speech_request(request).empty()) continue;  // speak() tells
+    if (!check_speech_request(request).empty()) continue;  // speak() reports the fault
     std::string key = speech_key(request);
     std::lock_guard lock(impl_->mutex);
     if (!impl_->recall(key)) impl_->add(request, key, false);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Speech for a running exhibit: asked for and fetched later, never waited for. One thread of its
-// own talks to the voice program; what was said once is kept, in memory and, if wanted, in a
-// folder.
+// Makes speech for a running exhibit: it is asked for and fetched later, never waited for. A thread
+// of its own talks to the voice program; speech that was said once is kept, in memory and, if
+// wanted, in a folder.
 //
 //   Speaker speaker;
 //   speaker.prepare(lines_of_the_exhibit);         // when it loads
@@ -28,10 +28,10 @@ struct SpeechAnswer {
 
 struct SpeakerOptions {
   VoiceProgram voice;
-  size_t memory_bytes = 64 << 20;   // of speech kept; the least recently used goes first
-  std::string folder;               // kept on disk here as well; made if missing; empty: not kept
+  size_t memory_bytes = 64 << 20;   // bytes of speech in memory; the least recently used goes first
+  std::string folder;               // folder on disk for speech; made if missing; empty: none
   size_t folder_bytes = 256 << 20;  // the oldest files go first
-  size_t most_waiting = 2000;       // requests; what comes on top is refused with an error
+  size_t most_waiting = 2000;       // number of requests; more are refused with an error
 };
 
 class Speaker {
@@ -41,16 +41,17 @@ class Speaker {
   Speaker(const Speaker&) = delete;
   Speaker& operator=(const Speaker&) = delete;
 
-  // Equal requests under way share one answer. Comes before everything that is only prepared.
+  // Asks for speech before everything that is only prepared. Equal requests under way share one
+  // answer.
   std::shared_future<SpeechAnswer> speak(const SpeechRequest& request);
-  // Said when nothing else is to do, so that speak() finds it.
+  // Asks for speech when nothing else is to do, so that speak() finds it.
   void prepare(const std::vector<SpeechRequest>& requests);
-  // What is kept in memory, or null.
+  // Returns speech that is kept in memory, or null.
   std::shared_ptr<const Speech> find(const SpeechRequest& request) const;
 
   struct Counts {
-    int process_id = 0;   // of the voice program after the last request; 0: not running
-    uint64_t starts = 0;  // of the voice program
+    int process_id = 0;   // the voice program's after the last request; 0: not running
+    uint64_t starts = 0;  // starts of the voice program
     size_t waiting = 0, kept = 0, kept_bytes = 0;  // requests; speeches and bytes in memory
     uint64_t spoken = 0, from_folder = 0, from_memory = 0, failed = 0;  // since the start
   };

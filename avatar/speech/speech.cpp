@@ -12,9 +12,9 @@ namespace wellspring::avatar {
 
 namespace {
 
-constexpr double shortest_other = 0.01;  // seconds, of a sound between words
+constexpr double shortest_other = 0.01;  // seconds of a sound between words
 
-// Says the name of an unknown symbol once in the life of the program.
+// Logs the name of an unknown symbol once in the life of the program.
 void say_unknown(const std::string& symbols, const SpeechPhoneme& phoneme) {
   static std::mutex mutex;
   static std::set<std::string> said;

@@ -32,7 +32,7 @@ double rounded(double value, double per_unit = 1e4) {
   return std::round(value * per_unit) / per_unit;
 }
 
-// A key of a shape is worth saying where the shape, or its key before or after, is there.
+// Writes the keys of a shape at which it, or its key before or after, has a weight.
 ordered_json write_visemes(const VisemeTrack& track) {
   ordered_json list = ordered_json::array();
   auto weight = [&](size_t key, size_t viseme) {
@@ -130,7 +130,7 @@ void read_phonemes(const Reader& reader, const json& root, Speech& speech) {
       continue;
     }
     if (phoneme.word < word) reader.fail(where + "/word", "is out of order");
-    // Phonemes keep their proportions only; their word may have been moved away from them.
+    // Phonemes keep only their proportions; their word may have been moved away from them.
     if (phoneme.word > word) after = 0;
     word = phoneme.word;
     double begin = reader.number(list[i], where, "start");
@@ -164,7 +164,7 @@ std::string write_speech_json(const Speech& speech) {
   auto text_of = [](const ordered_json& value) {
     return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   };
-  // One entry a line, so that a person can find and change it.
+  // One entry a line lets a person find and change it.
   std::string out = "{\"version\": 1";
   auto add = [&](const char* name, const ordered_json& value) {
     out += std::string(",\n \"") + name + "\": " + text_of(value);
@@ -186,7 +186,7 @@ std::string write_speech_json(const Speech& speech) {
 
 Speech load_speech_marks(std::string_view text, const std::string& file) {
   Reader reader{file};
-  // Depth 6 is more than the format has; what is deeper is refused before it is built.
+  // The format has less than depth 6; deeper text is refused before it is built.
   bool too_deep = false;
   auto guard = [&](int depth, json::parse_event_t, json&) {
     too_deep = too_deep || depth > 6;
@@ -220,8 +220,8 @@ namespace {
 
 constexpr const char* extension = ".speech";
 
-// A file is a frame of the voice protocol: JSON {"key": ..., "marks": text of speech_json}, and the
-// sound.
+// Returns a file's name. A file is a frame of the voice protocol: JSON {"key": ..., "marks": text
+// of speech_json}, and the sound.
 std::string file_name(const std::string& key) {
   uint64_t a = 1, b = 2;
   for (char c : key) {

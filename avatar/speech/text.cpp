@@ -14,8 +14,8 @@ bool is_ascii_mark(char c) {
          (c >= '[' && c <= '`') || (c >= '{' && c <= '~');
 }
 
-// Bytes of the mark that `text` begins or ends with: ASCII punctuation, U+2010 to U+206F,
-// guillemets and the opening marks of Spanish. 0: none.
+// Returns the bytes of the mark that `text` begins or ends with: ASCII punctuation, U+2010 to
+// U+206F, guillemets and the opening marks of Spanish. 0: none.
 size_t mark_at(std::string_view text, bool front) {
   if (text.empty()) return 0;
   if (is_ascii_mark(front ? text.front() : text.back())) return 1;
@@ -185,7 +185,7 @@ Ssml make_ssml(std::string_view text, const std::vector<SpeechStyle>& styles) {
   std::vector<uint32_t> cuts{0, size};
   for (const SpeechStyle& style : styles)
     for (uint32_t cut : {style.begin, style.end}) cuts.push_back(std::min(cut, size));
-  for (uint32_t& cut : cuts)  // never inside a character
+  for (uint32_t& cut : cuts)  // a cut never falls inside a character
     while (cut < size && (text[cut] & 0xc0) == 0x80) cut++;
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());

@@ -39,9 +39,9 @@ struct Symbols {
   MouthKind kind;
 };
 
-// Place of articulation and rounding decide the shape; openness and rounding that of vowels.
-// Capitals are the ASCII names (Kirshenbaum 1993) that some voices use where the alphabet's sign is
-// not known.
+// Place of articulation and rounding decide the shape of consonants, openness and rounding that of
+// vowels. Capitals are the ASCII names (Kirshenbaum 1993) that some voices use if they lack the
+// alphabet's sign.
 constexpr Symbols table[] = {
     {U"pbmɓʙʘᵬ", Viseme::PP, 1, MouthKind::closure},
     {U"βɸB", Viseme::PP, 0.5f, MouthKind::consonant},
@@ -70,7 +70,7 @@ bool contains(const char32_t* symbols, char32_t c) {
   return false;
 }
 
-// Sounds of the throat, which no lip shows, and signs that change a sound but not the mouth:
+// Knows sounds of the throat, which no lip shows, and signs that change a sound but not the mouth:
 // length, stress, tones, nasality, aspiration, ties.
 bool is_silent_symbol(char32_t c) {
   if (c >= 0x300 && c <= 0x36f) return true;               // combining
@@ -96,7 +96,7 @@ std::optional<MouthShape> shape_of(char32_t c) {
   return std::nullopt;
 }
 
-// Shares of time: consonants before and after a vowel (affricates, syllabic l) and glides.
+// Divides a sound's time: consonants before and after a vowel (affricates, syllabic l) and glides.
 void divide_time(std::vector<MouthShape>& shapes) {
   if (shapes.size() == 2) {
     shapes[0].part = 0.6f;
@@ -128,7 +128,7 @@ std::vector<MouthShape> mouth_shapes(std::string_view ipa, std::string* unknown)
     if (!shapes.empty()) {
       MouthShape& last = shapes.back();
       if (last.viseme == shape->viseme) continue;
-      // The sign of softening colours a sound, it is none of its own.
+      // The sign of softening colours a sound and is none of its own.
       if (c == U'ʲ') continue;
       // Rounding starts with the closure of tʃ and dʒ: one shape.
       if (last.viseme == Viseme::DD && shape->viseme == Viseme::CH) {
@@ -144,14 +144,14 @@ std::vector<MouthShape> mouth_shapes(std::string_view ipa, std::string* unknown)
 
 namespace {
 
-constexpr double shortest_sound = 0.015;  // shorter ones are passed over
-constexpr double shortest_pause = 0.08;   // shorter ones do not close the mouth
-constexpr double shortest_glide = 0.04;   // between two held shapes
-constexpr double relax = 0.16;            // from the end of the last sound to rest
-constexpr double full_vowel = 0.09;       // shorter vowels do not reach their shape
-constexpr float ahead = 0.65f;            // of what a consonant leaves goes to the coming vowel
+constexpr double shortest_sound = 0.015;  // seconds; shorter ones are passed over
+constexpr double shortest_pause = 0.08;   // seconds; shorter ones do not close the mouth
+constexpr double shortest_glide = 0.04;   // seconds between two held shapes
+constexpr double relax = 0.16;            // seconds from the end of the last sound to rest
+constexpr double full_vowel = 0.09;       // seconds; shorter vowels do not reach their shape
+constexpr float ahead = 0.65f;            // the coming vowel's share of what a consonant leaves
 
-// One shape held from `begin` to `end`.
+// This is one shape, held from `begin` to `end`.
 struct Hold {
   double begin = 0, end = 0;
   VisemeWeights weights{};
@@ -185,7 +185,7 @@ std::vector<Part> split(const std::vector<MouthSound>& sounds) {
   return parts;
 }
 
-// The nearest vowel on one side without a pause between, as far as four sounds away.
+// Finds the nearest vowel on one side without a pause between, as far as four sounds away.
 const Part* vowel_near(const std::vector<Part>& parts, size_t from, int step) {
   for (int n = 1; n <= 4; n++) {
     ptrdiff_t i = ptrdiff_t(from) + n * step;
@@ -218,7 +218,7 @@ VisemeWeights mix(const std::vector<Part>& parts, size_t i) {
   return weights;
 }
 
-// The stretch of a part's time in which its shape stands.
+// Sets the stretch of a part's time in which its shape stands.
 void place(const Part& part, Hold& hold) {
   double length = part.end - part.begin;
   auto at = [&](double from, double to) {
@@ -247,7 +247,7 @@ void add_key(VisemeTrack& track, double time, const VisemeWeights& weights) {
   track.keys.push_back({time, weights});
 }
 
-// Makes room for a glide between two holds: the one that is no closure gives way.
+// Makes room for a glide between two holds: one that is no closure gives way.
 void part_holds(Hold& earlier, Hold& later) {
   double lack = shortest_glide - (later.begin - earlier.end);
   if (lack <= 0) return;
@@ -281,7 +281,7 @@ VisemeTrack make_visemes(const std::vector<MouthSound>& sounds) {
   }
   for (size_t i = 0; i + 1 < holds.size(); i++) part_holds(holds[i], holds[i + 1]);
 
-  // The mouth prepares before the first sound where there is time, and rests after the last.
+  // The mouth prepares before the first sound if there is time, and rests after the last.
   if (!parts.front().pause) add_key(track, std::max(0.0, holds.front().begin - 0.1), rest);
   for (const Hold& hold : holds) {
     add_key(track, hold.begin, hold.weights);

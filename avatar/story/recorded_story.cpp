@@ -16,12 +16,12 @@ namespace wellspring::avatar {
 
 namespace {
 
-constexpr double doubtful_rate = 2;   // times as fast or slow as the sentences' median
+constexpr double doubtful_rate = 2;   // factor over or under the sentences' median rate
 constexpr double doubtful_words = 2;  // seconds of words that are not in the text
-constexpr double doubtful_word = 3;   // times as long as its letters let expect
+constexpr double doubtful_word = 3;   // factor over the time that its letters let expect
 constexpr double shortest_overlap = 1e-3;
 
-// Words of the lines' text: those of line i are [first[i], first[i + 1]).
+// Finds the words of the lines' text: those of line i are [first[i], first[i + 1]).
 std::vector<size_t> first_words(const Speech& marked, const std::vector<StoryLine>& lines) {
   std::vector<size_t> first;
   size_t byte = 0, word = 0;
@@ -45,7 +45,7 @@ Speech speak_all(SpeechProcess& process, const std::vector<StoryLine>& lines,
   return join_lines(lines, speak_lines(process, lines, voice, "")).speech;
 }
 
-// The part of a speech from `from` to `to` seconds, with the words [first, last) and `text`.
+// Cuts out a speech from `from` to `to` seconds, with the words [first, last) and `text`.
 std::shared_ptr<const Speech> cut(const Speech& all, double from, double to, size_t first,
                                   size_t last, uint32_t byte, const std::string& text) {
   auto part = std::make_shared<Speech>();

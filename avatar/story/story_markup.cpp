@@ -15,7 +15,7 @@
 namespace wellspring::avatar {
 namespace {
 
-// From U+00A0 on, one a code point.
+// These names stand for code points from U+00A0 on, one each.
 constexpr std::string_view latin_names =
     "nbsp iexcl cent pound curren yen brvbar sect uml copy ordf laquo not shy reg macr "
     "deg plusmn sup2 sup3 acute micro para middot cedil sup1 ordm raquo frac14 frac12 "
@@ -68,7 +68,7 @@ constexpr std::pair<std::string_view, uint32_t> other_names[] = {
     {"loz", 0x25ca},     {"spades", 0x2660}, {"clubs", 0x2663},   {"hearts", 0x2665},
     {"diams", 0x2666}};
 
-// Numbers 128 to 159, as HTML reads them: those of Windows' code page.
+// HTML reads numbers 128 to 159 as those of Windows' code page.
 constexpr uint16_t windows[32] = {0x20ac, 0x81,   0x201a, 0x192,  0x201e, 0x2026, 0x2020, 0x2021,
                                   0x2c6,  0x2030, 0x160,  0x2039, 0x152,  0x8d,   0x17d,  0x8f,
                                   0x90,   0x2018, 0x2019, 0x201c, 0x201d, 0x2022, 0x2013, 0x2014,
@@ -87,7 +87,7 @@ void append_utf8(std::string& to, uint32_t code) {
   }
 }
 
-// Code point of a name; 0: there is none.
+// Returns the code point of a name; 0: there is none.
 uint32_t code_of(std::string_view name) {
   uint32_t code = 0xa0;
   for (std::string_view rest = latin_names; !rest.empty(); code++) {
@@ -100,7 +100,7 @@ uint32_t code_of(std::string_view name) {
   return 0;
 }
 
-// Code point of "#233" or "#xe9"; 0: none that may stand in a text.
+// Returns the code point of "#233" or "#xe9"; 0: none that may stand in a text.
 uint32_t code_of_number(std::string_view number) {
   const bool hex = number.size() > 1 && (number[1] == 'x' || number[1] == 'X');
   const std::string_view digits = number.substr(hex ? 2 : 1);
@@ -146,7 +146,7 @@ std::string small(std::string_view text) {
   return result;
 }
 
-// "ssml:Break" -> "break".
+// Drops the prefix of a name: "ssml:Break" -> "break".
 std::string local_name(std::string_view name) {
   size_t colon = name.rfind(':');
   return small(colon == std::string_view::npos ? name : name.substr(colon + 1));
@@ -179,7 +179,7 @@ struct Reader {
     while (!ended() && is_name(text[at])) step(1);
     return text.substr(from, at - from);
   }
-  // Passes what stands until `end`, `end` too.
+  // Passes over the text until `end`, and over `end`, too.
   std::string_view until(std::string_view end, const char* what) {
     MarkupPlace from = place;
     size_t found = text.find(end, at);
@@ -342,7 +342,7 @@ std::optional<float> find_word(const std::string& text, Words words) {
   return {};
 }
 
-// A number at the beginning of `text`, and what follows it.
+// Reads a number at the beginning of `text`, and gives the text after it.
 std::optional<float> read_number(std::string_view text, std::string_view& unit) {
   if (!text.empty() && text[0] == '+') text.remove_prefix(1);
   float value = 0;
@@ -357,8 +357,8 @@ std::optional<float> in_reach(std::optional<float> factor) {
   return std::clamp(*factor, 0.3f, 3.0f);
 }
 
-// "+10%" and "110%" are 1.1, "+2st" two semitones, "+6dB" twice the amplitude; a bare number is a
-// factor.
+// Reads a factor: "+10%" and "110%" are 1.1, "+2st" two semitones, "+6dB" twice the amplitude; a
+// bare number is a factor.
 std::optional<float> read_factor(const std::string& text, bool decibels) {
   std::string_view unit;
   std::optional<float> number = read_number(text, unit);

@@ -17,7 +17,7 @@ namespace {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c & 0x80) || ((c | 32) >= 'a' && (c | 32) <= 'z'); }
 
-// Bytes of one of `marks` at the beginning of `text`; 0: none.
+// Returns the bytes of one of `marks` at the beginning of `text`; 0: none.
 template <size_t N>
 size_t mark_of(std::string_view text, const std::array<std::string_view, N>& marks) {
   for (std::string_view mark : marks)
@@ -28,8 +28,8 @@ size_t mark_of(std::string_view text, const std::array<std::string_view, N>& mar
 constexpr std::array<std::string_view, 9> ends = {".", "!", "?", "…", "。", "！", "？", "؟", "।"};
 constexpr std::array<std::string_view, 9> closings = {"\"", "'", ")", "]", "”", "’", "“", "»", "«"};
 
-// Whether `text` begins with a small letter of the Latin, Greek or Cyrillic script, as far as case
-// can be told from the bytes: ASCII, Latin-1, and Latin Extended-A by its pairs.
+// Returns whether `text` begins with a small letter of the Latin, Greek or Cyrillic script, as far
+// as the bytes show case: ASCII, Latin-1, and Latin Extended-A by its pairs.
 bool begins_small(std::string_view text) {
   if (text.empty()) return false;
   unsigned char a = static_cast<unsigned char>(text[0]);
@@ -44,7 +44,7 @@ bool begins_small(std::string_view text) {
   return (code >= 0x3ac && code <= 0x3ce) || (code >= 0x430 && code <= 0x45f);
 }
 
-// Whether the full stop at `at` belongs to what stands before it.
+// Returns whether the full stop at `at` belongs to the text before it.
 bool abbreviates(std::string_view text, size_t at, size_t begin) {
   if (at == begin) return true;
   if (is_digit(text[at - 1]))
@@ -93,13 +93,14 @@ std::vector<TextSpan> find_sentences(std::string_view text) {
 
 namespace {
 
-// A paragraph being collected: its text with single spaces, and what stands at its bytes.
+// Collects a paragraph: its text with single spaces, and what stands at its bytes.
 struct Paragraph {
   std::string text;
-  bool space = false;  // one is due before the next character
+  bool space = false;  // a space is due before the next character
   std::vector<SpeechStyle> styles;
   std::vector<StoryMark> marks;
-  std::vector<std::pair<uint32_t, MarkupPlace>> places;  // where words come from
+  // bytes at which words begin, and their places in the file
+  std::vector<std::pair<uint32_t, MarkupPlace>> places;
 
   uint32_t here() const { return uint32_t(text.size() + (space && !text.empty())); }
 };
@@ -109,7 +110,7 @@ struct Builder {
   StoryScript script;
   Paragraph paragraph;
   std::vector<std::pair<StoryMark, StoryMark>> held;  // emotions of open tags and the ones before
-  StoryMark emotion;                                  // that holds now
+  StoryMark emotion;                                  // the emotion in force
   struct Open {
     size_t style = SIZE_MAX;  // index into the paragraph's styles
     SpeechStyle manner;
@@ -141,7 +142,8 @@ struct Builder {
         continue;
       }
       newlines = 0;
-      if (static_cast<unsigned char>(c) < 0x20) continue;  // no control characters in subtitles
+      // control characters do not belong in subtitles
+      if (static_cast<unsigned char>(c) < 0x20) continue;
       if (paragraph.space && !paragraph.text.empty()) paragraph.text += ' ';
       if (paragraph.space || paragraph.text.empty()) {
         MarkupPlace from = place;
@@ -164,7 +166,7 @@ struct Builder {
     return place;
   }
 
-  // What was collected becomes lines: one sentence, or as many as are found.
+  // Turns the collected text into lines: one sentence, or as many as are found.
   void flush(bool one_sentence) {
     const std::string& text = paragraph.text;
     std::vector<TextSpan> spans;
@@ -205,7 +207,7 @@ struct Builder {
     carry_over(spans.empty());
   }
 
-  // Open tags go on in the next paragraph; marks without a word after them too.
+  // Carries open tags over into the next paragraph, and marks without a word after them.
   void carry_over(bool nothing_said) {
     Paragraph next;
     if (nothing_said) {
@@ -251,7 +253,7 @@ struct Builder {
     return *value;
   }
 
-  // The value of an attribute; `otherwise` without it.
+  // Returns the value of an attribute; `otherwise` without it.
   template <class T>
   T value(const MarkupPiece& piece, const char* name, std::optional<T> (*read)(const std::string&),
           T otherwise) const {

@@ -12,7 +12,7 @@ namespace wellspring::avatar {
 
 namespace {
 
-constexpr double seconds_a_byte = 0.06;  // to read what nobody says
+constexpr double seconds_a_byte = 0.06;  // reading time of text that nobody says
 
 // Appends `line`, said at `at` seconds, to `all`.
 void append(Speech& all, const Speech& line, double at) {

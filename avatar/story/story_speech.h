@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole story as one speech: its sentences one after the other with their pauses, as a show tells
-// them.
+// Makes a whole story one speech: its sentences one after the other with their pauses, as a show
+// plays them.
 #pragma once
 #include <memory>
 #include <string>
@@ -13,31 +13,32 @@
 
 namespace wellspring::avatar {
 
-inline constexpr double story_breath = 0.55;  // between two sentences of a show: breath and lead
+// seconds between two sentences of a show: breath and lead
+inline constexpr double story_breath = 0.55;
 
 struct StorySpeech {
-  Speech speech;               // of all sentences; its text has a line for each
-  std::vector<double> begins;  // of every sentence's first sample
+  Speech speech;               // speech of all sentences; its text has a line for each
+  std::vector<double> begins;  // time of every sentence's first sample, s
   std::vector<SubtitleCue> cues;
 };
 
-// Every line in the voice of `request`, whose text and styles are the lines'. Throws LoadError with
-// the place in `file` of a line that cannot be spoken. May be cancelled (base/worker.h).
+// Speaks every line in the voice of `request`, whose text and styles are the lines'. Throws
+// LoadError with the place in `file` of a line that cannot be spoken. May be cancelled
+// (base/worker.h).
 std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
                                                        const std::vector<StoryLine>& lines,
                                                        SpeechRequest request,
                                                        const std::string& file);
 
-// `spoken` are the lines' speeches, all of one rate; null ones are left out, with their time to
+// Joins the lines' speeches, `spoken`, all of one rate; null ones are left out, with their time to
 // read.
 StorySpeech join_lines(const std::vector<StoryLine>& lines,
                        const std::vector<std::shared_ptr<const Speech>>& spoken);
 
-// Story files: .txt is plain text, .vtt are subtitles, all else is markup.
+// Reads story files: .txt is plain text, .vtt are subtitles, all else is markup.
 
-// Throws LoadError naming the file: it cannot be read, it is larger than most_markup_bytes, and
-// what read_story, read_plain_story and
-// read_subtitle_story throw.
+// Throws LoadError naming the file if it cannot be read or is larger than most_markup_bytes, and
+// what read_story, read_plain_story and read_subtitle_story throw.
 StoryScript load_story(const std::string& file);
 
 }  // namespace wellspring::avatar

@@ -41,7 +41,7 @@ bool is_blank(std::string_view line) {
 
 bool has_arrow(std::string_view line) { return line.find("-->") != std::string_view::npos; }
 
-// Does a block that is no cue begin with this word?
+// Returns whether a block that is no cue begins with this word.
 bool begins_block(std::string_view line, std::string_view word) {
   return line.substr(0, word.size()) == word &&
          (line.size() == word.size() || line[word.size()] == ' ' || line[word.size()] == '\t');
@@ -65,7 +65,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-// Exactly `count` digits at the beginning of `text`, which loses them.
+// Reads exactly `count` digits at the beginning of `text`, which loses them.
 std::optional<int> read_digits(std::string_view& text, size_t count) {
   int value = 0;
   if (text.size() < count) return {};
@@ -83,7 +83,7 @@ bool take(std::string_view& text, char c) {
   return true;
 }
 
-// [h...h:]mm:ss.mmm; `text` loses it. Hours have any number of digits, up to nine.
+// Reads [h...h:]mm:ss.mmm; `text` loses it. Hours have any number of digits, up to nine.
 std::optional<double> read_time(std::string_view& text) {
   size_t digits = 0;
   while (digits < text.size() && text[digits] >= '0' && text[digits] <= '9') digits++;
@@ -108,7 +108,7 @@ std::optional<double> read_time(std::string_view& text) {
   return hours * 3600.0 + minutes * 60 + seconds + *ms / 1000.0;
 }
 
-// Without tags, references resolved.
+// Resolves the references of a text.
 std::string resolve(std::string_view text) {
   std::string result;
   for (size_t i = 0; i < text.size();) {
@@ -119,7 +119,7 @@ std::string resolve(std::string_view text) {
   return result;
 }
 
-// Text of a cue without its tags; the name in <v Name> goes to `speaker`.
+// Returns the text of a cue without its tags; the name in <v Name> goes to `speaker`.
 std::string plain_text(std::string_view text, std::string& speaker) {
   std::string result;
   while (!text.empty()) {

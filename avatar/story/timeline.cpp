@@ -10,7 +10,7 @@ namespace wellspring::avatar {
 
 namespace {
 
-// When the word at or after byte `at` begins; after the last, when that ends.
+// Returns when the word at or after byte `at` begins; after the last word, when that ends.
 double word_time(const StoryLine& line, const Speech* speech, double seconds, uint32_t at) {
   if (!speech || speech->words.empty()) {
     double all = double(std::max<size_t>(1, count_characters(line.text, line.text.size())));
@@ -23,7 +23,7 @@ double word_time(const StoryLine& line, const Speech* speech, double seconds, ui
 
 ActionEvent event_of(const StoryMark& mark) { return {mark.kind, mark.name, mark.weight, 0}; }
 
-// How long before its word a mark begins, so that what it starts is there with the word.
+// Returns how long before its word a mark begins, so that its action is there with the word.
 double lead_of(const StoryMark& mark) {
   switch (mark.kind) {
     case StoryMarkKind::gesture: {

@@ -8,7 +8,7 @@ namespace wellspring::kiosk {
 
 namespace {
 
-// Points that expression moves least.
+// Expression moves these points least.
 constexpr size_t rigid[] = {27, 28, 29, 30, 33, 36, 39, 42, 45};
 constexpr float least_unit = 0.002f;  // metres: a face has no smaller distances
 
@@ -17,7 +17,7 @@ enum class Unit : uint8_t { eyes, eye_nose, mouth_nose, mouth, iris };
 struct Rule {
   size_t fap, point;
   Unit unit;
-  vec2 along;  // the direction of positive values
+  vec2 along;  // direction of positive values
 };
 constexpr vec2 up{0, -1}, down{0, 1}, image_left{-1, 0}, image_right{1, 0};
 // The face's own left is at image right.
@@ -47,7 +47,8 @@ vec2 middle(const FacePlane& face, size_t from, size_t count) {
   return sum / float(count);
 }
 
-// `now` moved, turned and scaled so that its rigid points lie on those of `rest` (least squares).
+// Returns `now` moved, turned and scaled so that its rigid points lie on those of `rest` (least
+// squares).
 FacePlane aligned(const FacePlane& rest, const FacePlane& now) {
   vec2 from{0}, to{0};
   for (size_t k : rigid) from += now[k], to += rest[k];
@@ -110,14 +111,14 @@ std::optional<Faps> measure_faps(const FacePlane& rest, const FacePlane& now) {
 
 namespace {
 
-constexpr float share_of_faps = 0.4f;  // of the joined weight; the rest is the network's
-// FAP units of brows from which the network is believed that calls a face afraid or surprised: it
-// does so of faces that only look up, too.
+constexpr float share_of_faps = 0.4f;  // share of the joined weight; the rest is the network's
+// FAP units of brows: the network is believed from these on when it calls a face afraid or
+// surprised, since it does so of faces that only look up, too.
 constexpr float brows_still = 15, brows_moved = 45;
-constexpr float most_usual = 0.5f;     // a class cannot be more usual than this
+constexpr float most_usual = 0.5f;     // no class can be more usual than this
 constexpr double longest_step = 0.25;  // seconds
 
-// How far evidence goes from 0 at `none` to 1 at `full` FAP units; full may be below none.
+// Returns how far evidence goes from 0 at `none` to 1 at `full` FAP units; full may be below none.
 float reach(float value, float none, float full) {
   return std::clamp((value - none) / (full - none), 0.f, 1.f);
 }
@@ -130,8 +131,8 @@ constexpr FaceClass classes_of[] = {FaceClass::happy,   FaceClass::sad,       Fa
 
 float raised_brows(const Faps& f) { return (f[31] + f[32] + f[33] + f[34] + f[35] + f[36]) / 6; }
 
-// Two classes that the network takes for one another: what it says of both together, shared half
-// as it says and half by what tells them apart, 0 (the first) to 1 (the second).
+// Shares the weight of two classes that the network confuses: half as the network shares it, half
+// by evidence between them, 0 (the first) to 1 (the second).
 void share_between(float& first, float& second, float evidence) {
   const float both = first + second;
   if (!(both > 0)) return;
@@ -139,7 +140,7 @@ void share_between(float& first, float& second, float evidence) {
   first = both - second;
 }
 
-// What the network sees that is not so at rest, with what FAPs know better.
+// Returns what the network sees beyond the face at rest, corrected by FAPs where they are better.
 FaceClasses unusual_classes(const FaceClasses& classes, const FaceClasses& usual, const Faps& f) {
   FaceClasses out{};
   for (size_t c = 0; c < classes.size(); c++) {
@@ -193,7 +194,7 @@ Expression step_expression(ExpressionState& state, const ExpressionSettings& set
     return state.shown;
   }
   if (state.learnt < settings.learn) {
-    // The mean of all faces so far.
+    // Rest is the mean of all faces so far.
     state.learnt += step;
     const float share = state.learnt > 0 ? float(step / state.learnt) : 0;
     for (size_t k = 0; k < face.size(); k++) state.rest[k] += share * (face[k] - state.rest[k]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces by the cascades of Debian's opencv-data (Viola and Jones 2001; Liao et al. 2007 for LBP): a
-// quick LBP search proposes, a Haar cascade confirms; around a face already followed Haar alone
-// searches a small window. They know neither landmarks nor far faces.
+// Finds faces by the cascades of Debian's opencv-data (Viola and Jones 2001; Liao et al. 2007 for
+// LBP): a quick LBP search proposes, a Haar cascade confirms; around a face already followed Haar
+// alone searches a small window. Cascades find neither landmarks nor far faces.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int follow_side = 44;     // pixels of a followed face in its window
 constexpr int eyes_side = 110;      // pixels of a face in which eyes are searched
-constexpr float least_tilt = 0.2f;  // radians; cascades do not mind less
+constexpr float least_tilt = 0.2f;  // radians; cascades tolerate less
 
 cv::CascadeClassifier load_cascade(const std::string& folder, const char* name) {
   const std::string path = (std::filesystem::path(folder) / name).string();
@@ -42,7 +42,7 @@ Box grown(const Box& box, float factor) {
   return {box.center_x() - w / 2, box.center_y() - h / 2, w, h};
 }
 
-// A part of a frame at a scale of its own; boxes found in it go back to the frame.
+// This is a part of a frame at a scale of its own; boxes found in it go back to the frame.
 struct Window {
   cv::Mat pixels;
   float x = 0, y = 0, scale_x = 1, scale_y = 1;  // window pixels per frame pixel
@@ -70,12 +70,12 @@ std::optional<Window> cut(const GrayFrame& frame, const Box& box, float scale) {
 class CascadeFinder : public FaceFinder {
  public:
   explicit CascadeFinder(const FaceSettings& settings);
-  // About 8 ms.
+  // This takes about 8 ms.
   std::vector<Face> search(const GrayFrame& frame) override;
-  // With the slower and more sensitive Haar cascade alone.
+  // This uses the slower and more sensitive Haar cascade alone.
   std::vector<Face> search_thoroughly(const GrayFrame& frame, const Box& zone) override;
-  // Frontal or in profile; about 2 ms. The cascades know upright faces, so the window is turned
-  // back by `roll`.
+  // This finds frontal faces and profiles in about 2 ms. The cascades know upright faces, so the
+  // window is turned back by `roll`.
   std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll) override;
   bool finds_landmarks() const override { return false; }
 
@@ -93,7 +93,8 @@ class CascadeFinder : public FaceFinder {
     return found;
   }
 
-  // The strongest frontal face in a window whose face should have a side near `side` pixels.
+  // Returns the strongest frontal face in a window whose face should have a side near `side`
+  // pixels.
   std::optional<Face> best(cv::CascadeClassifier& cascade, const Window& window, float side,
                            int neighbors, FaceView view) {
     std::vector<int> votes;
@@ -111,7 +112,7 @@ class CascadeFinder : public FaceFinder {
     return best(haar, *window, follow_side, 2, FaceView::frontal);
   }
 
-  // One eye in each upper quarter of the face.
+  // Finds one eye in each upper quarter of the face.
   void find_eyes(const GrayFrame& frame, Face& face) {
     const Box& b = face.box;
     std::array<vec2, 2> eyes;
@@ -131,14 +132,15 @@ class CascadeFinder : public FaceFinder {
     if (apart > 0.2f && apart < 0.6f && std::abs(tilt) < 0.3f) face.eyes = eyes;
   }
 
-  // The surroundings of a face, turned upright about their middle, are a small frame of their own.
+  // Searches the surroundings of a face, turned upright about their middle: a small frame of their
+  // own.
   std::optional<Face> follow_tilted(const GrayFrame& frame, const Box& last, float roll) {
     GrayFrame upright;
     upright.width = upright.height = int(std::ceil(2.2f * last.width));
     upright.pixels.resize(size_t(upright.width) * size_t(upright.height));
     const float c = std::cos(roll), s = std::sin(roll), half = float(upright.width) / 2;
     const float u = last.center_x(), v = last.center_y();
-    // From the upright window to the frame: a tilt towards image left turns it against the clock.
+    // Maps the upright window to the frame: a tilt towards image left turns it against the clock.
     auto to_frame = [&](vec2 p) {
       vec2 q = p - vec2(half);
       return vec2(u + c * q.x + s * q.y, v - s * q.x + c * q.y);
@@ -202,7 +204,7 @@ std::vector<Face> CascadeFinder::search(const GrayFrame& frame) {
 std::vector<Face> CascadeFinder::search_thoroughly(const GrayFrame& frame, const Box& zone) {
   std::vector<Face> faces;
   const float smallest_box = settings.smallest * float(frame.width);
-  // The cascade's window is 20 pixels: make the smallest face that counts 24.
+  // The cascade's window is 20 pixels wide, so the smallest face that counts is made 24.
   auto window = cut(frame, zone, std::min(1.f, 24 / smallest_box));
   if (!window) return faces;
   std::vector<int> votes;
@@ -228,7 +230,7 @@ std::optional<Face> CascadeFinder::follow(const GrayFrame& frame, const Face& fa
     find_eyes(frame, *face);
     return face;
   }
-  // The profile cascade knows faces that look to the image's left; the others are mirrored for it.
+  // The profile cascade finds faces that look to the image's left; the others are mirrored for it.
   face = best(profile, *window, follow_side, 2, FaceView::image_left);
   if (face) return face;
   const float right = window->x + float(window->pixels.cols) / window->scale_x;

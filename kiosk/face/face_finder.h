@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The detectors, and which of them runs.
+// Makes detectors, and chooses the one that runs.
 #pragma once
 #include <array>
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace wellspring::kiosk {
 
-// Faces in a picture. All that the rest of the kiosk knows of detection is in this header: trained
-// networks find faces with their landmarks (face_network.cpp), cascades stand in for them where the
+// Finds faces in a picture, and is all that the rest of the kiosk sees of detection: trained
+// networks find faces with their landmarks (face_network.cpp), cascades replace them if the
 // networks' weights are not installed (face_cascade.cpp).
 
 enum class FaceView : uint8_t {
@@ -24,13 +24,13 @@ enum class FaceView : uint8_t {
 };  // a profile looks to that side of the image
 
 struct Face {
-  Box box;  // the frontal cascade's square, or nearly the same about the landmarks
+  Box box;  // the frontal cascade's square, or a similar one about the landmarks
   FaceView view = FaceView::frontal;
-  float confidence = 0;                     // 0..1: how clearly the detector answered
+  float confidence = 0;                     // clearness of the detector's answer, 0..1
   std::optional<std::array<vec2, 2>> eyes;  // pixels: the eye at image left, then at image right
-  std::optional<FaceMarks> marks{};         // by networks only
-  // Of the detector's looks at landmarks that are followed: what it said last, how often it agreed,
-  // when it was asked last and when it last agreed.
+  std::optional<FaceMarks> marks{};         // found by networks only
+  // These concern the detector's looks at landmarks that are followed: its last score, how often it
+  // agreed, when it was asked last and when it last agreed.
   float score = 0;
   int agreed = 0;
   double asked_time = -1e9, agreed_time = -1e9;
@@ -38,36 +38,38 @@ struct Face {
 
 struct FaceSettings {
   std::string cascades = "/usr/share/opencv4";
-  // Folder with the networks' weights; empty: WELLSPRING_WEIGHTS/face. Without them: cascades.
+  // Folder with the networks' weights; empty: WELLSPRING_WEIGHTS/face. Without weights, cascades
+  // run.
   std::string weights;
   int search_width = 320;     // cascades search whole frames at this width
-  float smallest = 1 / 13.f;  // box side over frame width that cascades look for
+  float smallest = 1 / 13.f;  // least box side over frame width for cascades
 };
 
 class FaceFinder {
  public:
   virtual ~FaceFinder() = default;
-  // Faces of the whole frame, or of the part of it whose turn it is. Largest first, at most 8.
+  // Finds faces of the whole frame, or of the part of it whose turn it is. Largest first, at most
+  // 8.
   virtual std::vector<Face> search(const GrayFrame& frame) = 0;
-  // The same within `zone`, slower and for smaller or less clear ones.
+  // Does the same within `zone`, slower and for smaller or less clear faces.
   virtual std::vector<Face> search_thoroughly(const GrayFrame& frame, const Box& zone) = 0;
-  // The face near `last` (one frame to half a second later). `roll` is how far the head was tilted
-  // (positive: its top towards image left).
+  // Finds the face near `last` (one frame to half a second later). `roll` is how far the head was
+  // tilted (positive: its top towards image left).
   virtual std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll = 0) = 0;
-  // Whether faces come with landmarks, from which the head's pose follows.
+  // Returns whether faces come with landmarks, from which the head's pose follows.
   virtual bool finds_landmarks() const = 0;
 };
 
-// Where the networks' weights should be; empty: nobody says.
+// Returns the folder of the networks' weights; empty: it is set nowhere.
 std::string weights_folder(const FaceSettings& settings);
 
-// By networks where all their weights can be read, else by cascades. The log says which, and why.
-// Throws LoadError when a cascade is missing too.
+// Makes a finder by networks if all their weights can be read, else by cascades. The log says
+// which, and why. Throws LoadError when a cascade is missing too.
 std::unique_ptr<FaceFinder> make_face_finder(const FaceSettings& settings);
 
-// Throws LoadError naming the file with what is wrong in it.
+// Makes one by networks. Throws LoadError naming the file with its fault.
 std::unique_ptr<FaceFinder> make_network_finder(const std::string& folder);
-// Throws LoadError naming the cascade's path and the package that brings it.
+// Makes one by cascades. Throws LoadError naming the cascade's path and the package that brings it.
 std::unique_ptr<FaceFinder> make_cascade_finder(const FaceSettings& settings = {});
 
 }  // namespace wellspring::kiosk

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces by trained networks (kiosk/network): a detector proposes boxes, the landmark network must
-// make a face of them that could be a head's (head_pose.h). A face that is followed is sought where
-// its landmarks were, at every frame; the detector is asked again now and then whether it is one.
+// Finds faces by trained networks (kiosk/network): a detector proposes boxes, and the landmark
+// network must make a face of them that could be a head's (head_pose.h). A followed face is sought
+// at its last landmarks in every frame; now and then the detector is asked whether it still is a
+// face.
 
 #include <algorithm>
 #include <cmath>
@@ -15,30 +16,32 @@ namespace wellspring::kiosk {
 
 namespace {
 
-constexpr float propose = 0.4f;       // score from which a box may become a face
-constexpr float agree = 0.2f;         // ... and with which a followed one stays one
-constexpr float agree_young = 0.35f;  // ... one that it has seen fewer times than this:
+constexpr float propose = 0.4f;  // score from which a box may become a face
+constexpr float agree = 0.2f;    // score with which a followed one stays one
+// the same for one that the detector has seen fewer than `young` times
+constexpr float agree_young = 0.35f;
 constexpr int young = 4;
 constexpr double ask_every = 0.3;  // seconds between the detector's looks at a followed face
-constexpr double doubt = 0.7;      // seconds without its word until a face is given up
-// Detector windows, network pixels.
+constexpr double doubt = 0.7;      // seconds without its agreement until a face is given up
+// These are the sizes of detector windows, network pixels.
 constexpr int columns = 320, rows = 256, near_side = 128;
 constexpr float near_reach = 2.2f;     // side of the window about a followed face, in squares
-constexpr float moved = 0.07f;         // of the square: landmarks are read again from there
-constexpr float fine_overlap = 0.25f;  // of windows that lie side by side
-// Widths of windows over the frame's: what the detector knows best is 45 to 100 pixels wide.
+constexpr float moved = 0.07f;         // share of the square; farther off, landmarks are read again
+constexpr float fine_overlap = 0.25f;  // share of windows side by side
+// These are widths of windows over the frame's: the detector is best at faces 45 to 100 pixels
+// wide.
 constexpr float coarse[] = {0.8f, 0.6f, 0.45f}, fine[] = {0.25f, 0.35f};
-constexpr float head_share = 0.6f;  // of a zone, from its top: heads are there
+constexpr float head_share = 0.6f;  // upper share of a zone: heads are there
 constexpr int windows_a_call = 2;
-// A lens of 60 degrees: whether landmarks could be a head's hardly depends on it.
+// A lens of 60 degrees is taken: whether landmarks could be a head's hardly depends on it.
 constexpr float usual_focal = 0.87f;  // over the frame's width
 
 GrayView gray_view_of(const GrayFrame& frame) {
   return {frame.pixels.data(), frame.width, frame.height};
 }
 
-// Windows that cover a box, row by row from the top, for each of `sizes`, which are shares of
-// `width` by `height`.
+// Returns windows that cover a box, row by row from the top, for each of `sizes`, which are shares
+// of `width` by `height`.
 std::vector<Cut> windows_over(const Box& box, float width, float height,
                               std::span<const float> sizes) {
   auto count = [](float whole, float part) {
@@ -65,12 +68,13 @@ std::vector<Cut> windows_over(const Box& box, float width, float height,
 class NetworkFinder : public FaceFinder {
  public:
   explicit NetworkFinder(const std::string& folder) : boxes(folder), reader(folder) {}
-  // In turn the whole frame, coarsely, and one of the windows that cover it; about 12 ms.
+  // This searches in turn the whole frame, coarsely, and one of the windows that cover it; about 12
+  // ms.
   std::vector<Face> search(const GrayFrame& frame) override;
-  // Two windows of the zone's upper part, finer than the frame itself, in turn; about 25 ms. For
-  // faces to 3.5 m (25 pixels).
+  // This searches two windows of the zone's upper part, finer than the frame itself, in turn; about
+  // 25 ms. It finds faces to 3.5 m (25 pixels).
   std::vector<Face> search_thoroughly(const GrayFrame& frame, const Box& zone) override;
-  // About 5 ms, twice that where the head moves quickly.
+  // This takes about 5 ms, twice that if the head moves quickly.
   std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll) override;
   bool finds_landmarks() const override { return true; }
 
@@ -79,7 +83,7 @@ class NetworkFinder : public FaceFinder {
   MarkReader reader;
   size_t turn = 0, coarse_turn = 0, fine_turn = 0;
 
-  // The face that landmarks make near `square`; nothing where they make none.
+  // Returns the face that landmarks make near `square`; nothing if they make none.
   std::optional<Face> face_at(const GrayFrame& frame, Cut square, int reads) {
     const GrayView view = gray_view_of(frame);
     FaceMarks marks{};

@@ -8,13 +8,14 @@ namespace wellspring::kiosk {
 
 namespace {
 
-// Millimetres, image left half and middle; the other half mirrors it. Widths and heights after
-// Farkas (Anthropometry of the Head and Face, 1994), means of North American women and men: pupils
-// 63 apart, inner corners of the eyes 33, outer 90; nose 34 wide, 52 high, its tip 19 before its
-// root's foot; mouth 52 wide, 22 below the nose; chin 68 below the nose; face 134 wide, jaw 100.
-// Depths are what is left of his distances from the ear's tragus: 122 to the nose's root, 128 to
-// its foot, 145 to the chin, 82 to the eye's outer corner. The points of the nose stand where the
-// network sets them: 1 to 6 lower than people do (mean over the hand-marked faces of dlib).
+// These points are in millimetres, image left half and middle; the other half mirrors them. Widths
+// and heights are after Farkas (Anthropometry of the Head and Face, 1994), means of North American
+// women and men: pupils 63 apart, inner corners of the eyes 33, outer 90; nose 34 wide, 52 high,
+// its tip 19 before its root's foot; mouth 52 wide, 22 below the nose; chin 68 below the nose; face
+// 134 wide, jaw 100. Depths are what is left of his distances from the ear's tragus: 122 to the
+// nose's root, 128 to its foot, 145 to the chin, 82 to the eye's outer corner. The points of the
+// nose stand where the network sets them: 1 to 6 lower than people do (mean over the hand-marked
+// faces of dlib).
 constexpr float half[][3] = {
     {-69, -4, 80},  {-68, 17, 77},  {-66, 37, 72},  {-61, 57, 63},  {-53, 75, 50},   // 0-4
     {-42, 91, 34},  {-29, 103, 18}, {-15, 111, -1}, {0, 114, -6},                    // 5-8
@@ -25,7 +26,7 @@ constexpr float half[][3] = {
     {-37, 5, 4},    {-26, 68, 0},   {-16, 63, -9},  {-6, 60, -14},  {0, 61, -15},    // 48-51
     {0, 78, -12},   {-8, 77, -11},  {-17, 73, -7},                                   // 57-59
     {-23, 68, -2},  {-8, 67, -11},  {0, 67, -12},   {0, 70, -12},   {-8, 70, -11}};  // 60-62, 66-67
-// Where point k is in `half`, and whether it is mirrored (negative: -1 - index).
+// Entry k is the index of point k in `half`; if the point is mirrored, -1 - index.
 constexpr int place[landmark_count] = {
     0,  1,  2,  3,   4,   5,   6,   7,   8,   -8,  -7,  -6,  -5, -4, -3, -2, -1,  // outline
     9,  10, 11, 12,  13,  -14, -13, -12, -11, -10,                                // brows
@@ -34,8 +35,8 @@ constexpr int place[landmark_count] = {
     27, 28, 29, 30,  -30, -29, -28, -34, -33, 31,  32,  33,                       // lips
     34, 35, 36, -36, -35, -39, 37,  38};
 
-// How much a point counts. The outline slides over the cheeks as the head turns, so only the chin's
-// part of it counts; brows, lips and chin move with expression.
+// Returns how much a point counts. The outline slides over the cheeks as the head turns, so only
+// the chin's part of it counts; brows, lips and chin move with expression.
 float weight_of(size_t k) {
   constexpr float chin[] = {0.2f, 0.4f, 0.6f, 0.4f, 0.2f};
   if (k < 17) return k >= 6 && k <= 10 ? chin[k - 6] : 0;
@@ -45,8 +46,9 @@ float weight_of(size_t k) {
 }
 
 constexpr int rounds = 12;
-constexpr float huber = 0.05f;  // of the distance between the pupils: more counts less
-constexpr float good_error = 0.06f, bad_error = 0.22f;  // of that distance too
+// share of the distance between the pupils; larger errors count less
+constexpr float huber = 0.05f;
+constexpr float good_error = 0.06f, bad_error = 0.22f;  // shares of that distance, too
 
 }  // namespace
 
@@ -119,7 +121,7 @@ std::optional<HeadPose> solve_head_pose(const FaceMarks& marks, float focal, int
       pose.rotation[column][row] = float(matrix(row, column));
   pose.position = {float(at[0]), float(at[1]), float(at[2])};
   pose.error = float(error);
-  // A face that is seen looks towards the lens, by at most 100 degrees past it.
+  // A visible face looks towards the lens, by at most 100 degrees past it.
   const bool faces = glm::dot(pose.rotation[2], glm::normalize(pose.position)) > -0.17f;
   if (!is_finite(pose.position) || !(pose.position.z > 0.05f) || !std::isfinite(pose.error) ||
       !faces)

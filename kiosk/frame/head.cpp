@@ -7,14 +7,14 @@ namespace wellspring::kiosk {
 
 namespace {
 
-// Columns: the camera's axes in screen axes.
+// Returns the camera's axes in screen axes, as columns.
 mat3 camera_axes(const Mount& mount) {
   float s = std::sin(mount.pitch), c = std::cos(mount.pitch);
   return {vec3(-1, 0, 0), vec3(0, -c, s), vec3(0, s, c)};
 }
 
-// Columns: right, up and towards the visitor of somebody at `camera` (screen axes), as if the lens
-// were the screen.
+// Returns, as columns, right, up and towards the visitor of somebody at `camera` (screen axes), as
+// if the lens were the screen.
 mat3 lens_axes(const Mount& mount, vec3 camera) {
   vec3 out = camera_axes(mount) * camera;
   float length = glm::length(out);

@@ -35,7 +35,7 @@ json read_json(const std::string& file) {
   return root;
 }
 
-// A file's values, asked for by name; what is wrong is thrown with its place.
+// Reads a file's values by name; the first fault is thrown with its place.
 struct Reader {
   const std::string& file;
 

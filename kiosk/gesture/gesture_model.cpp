@@ -20,7 +20,7 @@ std::vector<Code> codes_of(std::span<const CodedStep> steps) {
   return codes;
 }
 
-// Where the best path enters each state; empty where there is no path.
+// Finds where the best path enters each state; empty if there is no path.
 std::vector<int> find_entries(const Hmm& hmm, std::span<const Code> codes, double& score) {
   std::vector<int> path, entries;
   if (int(codes.size()) < hmm.states) return {};
@@ -68,8 +68,8 @@ double eval_evidence(const GestureModel& model, std::span<const double> measures
   for (size_t k = 0; k < measures.size(); k++) {
     const double z = (measures[k] - model.mean[k]) / model.deviation[k];
     const double other = (measures[k] - model.other_mean[k]) / model.other_deviation[k];
-    // Beyond one deviation the other motions count as spread evenly: of what is rare there nothing
-    // is known.
+    // Beyond one deviation the other motions count as spread evenly, since their training has next
+    // to nothing there.
     sum += 0.5 * (std::min(1.0, other * other) - z * z) +
            std::max(0.0, std::log(model.other_deviation[k] / model.deviation[k]));
   }

@@ -13,13 +13,13 @@ namespace {
 
 constexpr int cell = 4;               // pixels: hands are sought in a coarser picture
 constexpr float reach = 4.2f;         // arm and hand from the shoulders, face sides: 0.75 m
-constexpr float radius_share = 0.5f;  // of the kernel, face sides
+constexpr float radius_share = 0.5f;  // radius of the kernel, face sides
 constexpr int least_change = 14;      // grey levels from frame to frame that are motion
 constexpr double moved_for = 0.25;    // seconds for which a pixel counts as moving
 constexpr double still_for = 1.5;     // seconds after which another hand that moves is taken
 constexpr float least_similar = 0.55f;
-constexpr float least_skin = 0.2f;                  // of the kernel's weight
-constexpr float least_area = 0.08f, most_area = 3;  // of a region of skin, squared face sides
+constexpr float least_skin = 0.2f;                  // share of the kernel's weight
+constexpr float least_area = 0.08f, most_area = 3;  // region of skin, squared face sides
 
 }  // namespace
 
@@ -27,14 +27,14 @@ struct HandTracker::Impl {
   bool mirrored;
   ChromaPicture picture;
   std::vector<uint8_t> last_y;
-  std::vector<float> emphasis;   // of pixels: 0 no skin, 1 skin, more where it moves
-  std::vector<double> moved_at;  // of pixels
+  std::vector<float> emphasis;   // one a pixel: 0 no skin, 1 skin, more where it moves
+  std::vector<double> moved_at;  // time, one a pixel
   SkinColor skin;
   bool following = false;
   ChromaHistogram model{};
-  vec2 place{0}, velocity{0};  // pixels, a second
+  vec2 place{0}, velocity{0};  // pixels; pixels a second
   double last_time = 0, stirred_time = 0;
-  // Regions are found on cells.
+  // These serve to find regions, on cells.
   std::vector<uint8_t> kind;  // 0 nothing, 1 skin, 2 skin that moves
   std::vector<int> stack, region;
 
@@ -45,7 +45,7 @@ struct HandTracker::Impl {
     skin = {};
   }
 
-  // Marks skin and motion. The head and what is out of reach is left out.
+  // Marks skin and motion. The head and everything out of reach are left out.
   void mark(const HeadInView& head, double time) {
     const vec2 shoulders = head.center + vec2(0, 1.2f * head.side);
     const bool compare = last_y.size() == picture.y.size();
@@ -64,7 +64,7 @@ struct HandTracker::Impl {
     last_y = picture.y;
   }
 
-  // The upper end of the largest region of skin of which a quarter moves.
+  // Finds the upper end of the largest region of skin of which a quarter moves.
   std::optional<vec2> seek(const HeadInView& head) {
     const int columns = picture.width / cell, rows = picture.height / cell;
     kind.assign(size_t(columns * rows), 0);
@@ -154,7 +154,8 @@ struct HandTracker::Impl {
 
   std::optional<HandSeen> begin(const HeadInView& head, double time, vec2 at) {
     const float radius = std::max(4.f, radius_share * head.side);
-    // Skin alone is the first model: the background round the hand belongs to no histogram of it.
+    // Skin alone makes the first model: the background round the hand belongs to no histogram of
+    // it.
     for (size_t i = 0; i < picture.use.size(); i++)
       picture.use[i] = picture.use[i] && emphasis[i] > 0;
     model = make_histogram(picture, at, radius);

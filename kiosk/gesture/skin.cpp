@@ -93,7 +93,7 @@ namespace {
 
 constexpr float widest = 3;          // deviations that still are skin
 constexpr float least_variance = 6;  // hands differ a little from faces
-constexpr float renewal = 0.1f;      // of what is known, a frame
+constexpr float renewal = 0.1f;      // share of the new colour in a frame
 constexpr int darkest = 40, brightest = 250;
 
 float distance_squared(vec2 off, vec3 spread) {
@@ -107,7 +107,7 @@ float distance_squared(vec2 off, vec3 spread) {
 void SkinColor::learn(const ChromaPicture& picture, vec2 center, float side) {
   vec2 mean = mean_;
   vec3 spread(400, 0, 400);
-  // The second and third time without what lies apart.
+  // The second and third round leave out pixels that lie apart.
   for (int round = 0; round < 3; round++) {
     vec2 sum{0};
     vec3 squares{0};

@@ -11,14 +11,14 @@ namespace wellspring::kiosk {
 namespace {
 
 constexpr float no_score = -1e30f;
-constexpr long longest = 150;    // steps of a gesture: 9 shoulder widths
-constexpr long look = 4;         // steps to either side that tell an edge
+constexpr long longest = 150;    // steps that a gesture may have: 9 shoulder widths
+constexpr long look = 4;         // steps to either side that show an edge
 constexpr float hopeless = -12;  // nats below other motion: no gesture begins here
 
-// A gesture's states with their logarithms.
+// Holds a gesture's states with their logarithms.
 struct Followed {
   const GestureModel* model;
-  size_t first = 0;  // its first state's token
+  size_t first = 0;  // token of its first state
   std::vector<float> stay, next;
   std::vector<std::array<float, orientation_codes>> output;
 };
@@ -28,12 +28,12 @@ struct Token {
   std::array<int16_t, most_states> entry{};  // steps from the beginning to each state
 };
 
-// A place where a gesture may have begun.
+// This is a place where a gesture may have begun.
 struct Beginning {
   long first = 0;  // number of its first step
   std::vector<Token> tokens;
   std::vector<float> other;
-  float ahead = 0;  // the best gesture's difference now, whatever its state
+  float ahead = 0;  // the best gesture's difference now, in any state
 };
 
 struct Found {
@@ -53,10 +53,10 @@ struct GestureSpotter::Impl {
   OrientationCoder coder;
   std::deque<CodedStep> steps;  // the newest ones; the last has number made - 1
   long made = 0;                // steps ever made
-  long count = 0;               // of them those that the models have followed
+  long count = 0;               // number of steps that the models have followed
   long motion = 0;              // number of the first step of this motion
   std::vector<Beginning> beginnings;
-  Found found, found_dwelling;  // the latter asks for a rest, too
+  Found found, found_dwelling;  // the latter requires a rest, too
   std::vector<CodedStep> fresh;
 
   Impl(const GestureModels& models, const SpotSettings& s) : settings(s) {
@@ -85,8 +85,8 @@ struct GestureSpotter::Impl {
     }
   }
 
-  // All states of the other motion lead to each other alike, so the best and the second best that
-  // are left are enough. Returns the best score.
+  // Follows other motion. All its states lead to each other alike, so the best and the second best
+  // that are left are enough. Returns the best score.
   float follow_other(std::vector<float>& delta, Code code, bool first) const {
     float best = no_score;
     if (first) {
@@ -111,7 +111,8 @@ struct GestureSpotter::Impl {
     return best;
   }
 
-  // Returns the best score of any state. `age`: steps since the beginning.
+  // Follows a gesture. Returns the best score of any state; `age` counts the steps since the
+  // beginning.
   static float follow(const Followed& g, Token* token, Code code, long age) {
     const size_t states = g.stay.size();
     float best = no_score;
@@ -155,8 +156,8 @@ struct GestureSpotter::Impl {
     return steps[size_t(number - (made - long(steps.size())))];
   }
 
-  // Can a gesture begin with this step, or end before it? Where motion begins or ends, where the
-  // hand turns, and where it slows (Kang, Lee, Jung 2004, section 3).
+  // Returns whether a gesture can begin with this step, or end before it: if motion begins or ends,
+  // the hand turns, or it slows (Kang, Lee, Jung 2004, section 3).
   bool is_edge(long number, bool over) const {
     if (number <= motion || (number >= made && over)) return true;
     const long low = std::max(motion, number - look), high = std::min(made, number + look);
@@ -174,7 +175,7 @@ struct GestureSpotter::Impl {
     return here < 0.7 * std::min(fast_before, fast_after);
   }
 
-  // False when no gesture begins there.
+  // Advances a beginning; false when no gesture begins there.
   bool advance(Beginning& b, Code code, bool edge) {
     const long age = count - 1 - b.first;
     const float other = follow_other(b.other, code, age == 0);
@@ -191,7 +192,7 @@ struct GestureSpotter::Impl {
     return b.ahead > hopeless && age < longest;
   }
 
-  // Follows the steps of which enough is known to tell an edge; all of them when motion is over.
+  // Follows steps whose neighbours show whether they are edges; all of them when motion is over.
   void follow_steps(bool over) {
     while (count < (over ? made : made - look)) {
       const Code code = step_at(count).code;
@@ -221,7 +222,7 @@ struct GestureSpotter::Impl {
     });
   }
 
-  // `rest`: seconds for which the hand has rested; a hand out of sight does not dwell.
+  // Decides. `rest`: seconds for which the hand has rested; a hand out of sight does not dwell.
   std::optional<SpottedGesture> decide(double rest, bool seen) {
     const bool over = rest > OrientationCoder::rest;
     if (found_dwelling.model) {

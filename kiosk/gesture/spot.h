@@ -8,7 +8,7 @@
 //   - the difference over the first `window` steps is positive;
 //   - it ends in its last state, where difference and evidence (gesture_model.h) are largest;
 //   - they exceed `margin` and what other motion reaches;
-//   - of gestures that overlap only the clearest is told, once none is ahead of it any more.
+//   - only the clearest of overlapping gestures is reported, once none is ahead of it any more.
 #pragma once
 #include <memory>
 #include <optional>
@@ -21,8 +21,8 @@ namespace wellspring::kiosk {
 
 struct SpotSettings {
   int window = 5;        // steps
-  double margin = 0.05;  // of what the gesture usually has
-  double evidence = 1;   // weight of what training says of places, size and speed; 0: codes alone
+  double margin = 0.05;  // share of the gesture's usual difference and evidence
+  double evidence = 1;   // weight of training's places, size and speed; 0: codes alone
   int least_steps = 5;   // shorter gestures are none: 0.3 shoulder widths
   int hold = 5;          // steps for which a gesture waits for a better one that overlaps it
 };
@@ -38,9 +38,9 @@ class GestureSpotter {
   // `models` is borrowed and must outlive this.
   explicit GestureSpotter(const GestureModels& models, const SpotSettings& settings = {});
   ~GestureSpotter();
-  // Called once a frame with the hand's place as trajectory.h has it; without one while no hand is
-  // seen. Returns a gesture when it is certain, a few steps or a rest after its end. Times must
-  // grow; other values are passed over as OrientationCoder says. Memory does not grow.
+  // Takes a frame with the hand's place as trajectory.h has it; without one while no hand is seen.
+  // Returns a gesture when it is certain, a few steps or a rest after its end. Times must grow;
+  // other values are passed over as OrientationCoder says. Memory does not grow.
   std::optional<SpottedGesture> step(double time, std::optional<vec2> place);
   size_t memory_bytes() const;
 
@@ -49,7 +49,7 @@ class GestureSpotter {
   std::unique_ptr<Impl> impl_;
 };
 
-// All gestures that are spotted in a path, and in the second that follows it.
+// Returns all gestures that are spotted in a path, and in the second that follows it.
 std::vector<SpottedGesture> spot_path(const GestureModels& models, const SpotSettings& settings,
                                       const HandPath& path);
 

@@ -13,7 +13,7 @@ namespace {
 
 using Row = std::array<double, orientation_codes>;
 
-// A state, and how many it was merged from.
+// This is a state, with the number of states it was merged from.
 struct Member {
   Row output;
   double stay = 0, count = 1;
@@ -82,15 +82,15 @@ Hmm make_non_gesture(std::span<const Hmm> gestures, std::span<const double> last
 
 namespace {
 
-constexpr double false_a_minute = 3;  // of all gestures, in other motion of the training set
-constexpr double floor_share = 0.01;  // of all outputs, spread over all codes
-// No measure is trusted to be nearer than this: training sets are small.
-constexpr double least_deviation = 0.03;      // of displacements over length
-constexpr double least_log_deviation = 0.15;  // of length and speed
+constexpr double false_a_minute = 3;  // all gestures, in other motion of the training set
+constexpr double floor_share = 0.01;  // share of all outputs, spread over all codes
+// No measure is trusted to deviate less than this: training sets are small.
+constexpr double least_deviation = 0.03;      // displacements over length
+constexpr double least_log_deviation = 0.15;  // length and speed
 constexpr double least_height_deviation = 0.2;
-constexpr double least_edge_deviation = 0.4;  // of speed at begin and end
+constexpr double least_edge_deviation = 0.4;  // speed at begin and end
 
-// Straight pieces of the polygon between two steps (Douglas and Peucker 1973).
+// Counts straight pieces of the polygon between two steps (Douglas and Peucker 1973).
 int count_pieces(std::span<const CodedStep> steps, float tolerance) {
   const vec2 a = steps.front().from, b = steps.back().to;
   const float length = glm::length(b - a);
@@ -121,8 +121,8 @@ int states_of(std::span<const std::vector<CodedStep>> paths) {
 
 using Paths = std::vector<std::vector<CodedStep>>;
 
-// Mean and deviation of each measure of `paths`; a deviation is never below its floor. False
-// where fewer than three of them can be this gesture at all.
+// Learns mean and deviation of each measure of `paths`; a deviation is never below its floor. False
+// if fewer than three of them can be this gesture at all.
 bool learn_measures(const Hmm& hmm, const Paths& paths, std::vector<double>& mean,
                     std::vector<double>& deviation) {
   const size_t count = count_measures(hmm.states);
@@ -158,7 +158,7 @@ Hmm make_other(std::span<const GestureModel> gestures, const NonGestureSettings&
   std::vector<double> last_stay;
   for (const GestureModel& gesture : gestures) {
     const size_t n = size_t(gesture.hmm.states);
-    // The length of the last state's piece, in codes of the mean motion.
+    // `last` gives the length of the last state's piece, in codes of the mean motion.
     const vec2 last(float(gesture.mean[2 * n - 2]), float(gesture.mean[2 * n - 1]));
     last_stay.push_back(double(glm::length(last)) * std::exp(gesture.mean[2 * n]) / code_step);
     hmms.push_back(gesture.hmm);
@@ -197,17 +197,17 @@ GestureModel train_gesture(std::span<const HandPath* const> recordings) {
   if (paths.empty()) return model;
   model.hmm = make_banded(states_of(paths), codes);
   train(model.hmm, codes);
-  smooth_outputs(model.hmm, 0.5);  // people who tilt their hand otherwise
+  smooth_outputs(model.hmm, 0.5);  // some people tilt their hand
   raise_outputs(model.hmm, floor_share);
   learn_measures(model.hmm, paths, model.mean, model.deviation);
-  // A rest belongs to the gesture where nearly everybody made one.
+  // A rest belongs to the gesture if nearly everybody made one.
   std::nth_element(dwells.begin(), dwells.begin() + ptrdiff_t(dwells.size() / 20), dwells.end());
   const double dwell = dwells[dwells.size() / 20];
   model.dwell = dwell > 1.2 * OrientationCoder::rest ? 0.8 * dwell : 0;
   return model;
 }
 
-// What other motion of the training set reaches too often is no gesture.
+// Sets each model's `least`: other motion of the training set may reach it only so often.
 void learn_least(GestureModels& models, std::span<const HandPath> paths) {
   double minutes = 0;
   std::map<std::string, std::vector<double>> scores;
@@ -247,7 +247,7 @@ GestureModels train_gestures(std::span<const HandPath> paths, const NonGestureSe
         for (auto& motion : code_motions(path)) others.push_back(std::move(motion));
       else if (path.variant == model.variant) own.push_back(code_path(path));
     }
-    // A single gesture has nothing to be told from.
+    // A single gesture has no other one to differ from.
     if (!learn_measures(model.hmm, others, model.other_mean, model.other_deviation))
       model.other_mean = model.mean, model.other_deviation = model.deviation;
     learn_usual(model, models.other, own);

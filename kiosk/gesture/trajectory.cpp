@@ -15,8 +15,8 @@ bool may_end(const Hmm& model, int state) {
   return !model.ends_in_last || state == model.states - 1;
 }
 
-// Scaled forward and backward variables (Rabiner 1989, section V.A): row t of `alpha` has sum 1,
-// `beta` is divided by the same scales.
+// Holds scaled forward and backward variables (Rabiner 1989, section V.A): row t of `alpha` has sum
+// 1, `beta` is divided by the same scales.
 struct Lattice {
   std::vector<double> alpha, beta, scale;
   double log_probability = 0;
@@ -206,7 +206,7 @@ bool OrientationCoder::step(const HandPlace& seen, std::vector<CodedStep>& out) 
     last_ = before_ = anchor_ = stay_ = place;
     return true;
   }
-  // The middle one of three places, smoothed by its neighbours (1, 2, 1): one frame late.
+  // The middle one of three places is smoothed by its neighbours (1, 2, 1): one frame late.
   const vec2 smooth = (before_ + 2.f * last_ + place) * 0.25f;
   const double smooth_time = last_time_;
   before_ = last_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand's way as orientation codes (Elmezain et al. 2009, section 3.1).
-// Places are in shoulder widths from the middle of the face: x to the right as the visitor sees the
-// screen, y down. Times are seconds and grow.
+// Turns a hand's way into orientation codes (Elmezain et al. 2009, section 3.1). Places are in
+// shoulder widths from the middle of the face: x to the right as the visitor sees the screen, y
+// down. Times are seconds and grow.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,9 +13,9 @@
 
 namespace wellspring::kiosk {
 
-// Hidden Markov models over orientation codes (Rabiner 1989, sections III and V; Elmezain et al.
-// 2009, section 3.1). All probabilities are computed in logarithms or scaled, so long sequences do
-// not underflow.
+// Trains and evaluates hidden Markov models over orientation codes (Rabiner 1989, sections III and
+// V; Elmezain et al. 2009, section 3.1). All probabilities are computed in logarithms or scaled, so
+// long sequences do not underflow.
 
 inline constexpr int orientation_codes = 18;
 using Code = uint8_t;  // 0..17
@@ -31,27 +31,27 @@ struct Hmm {
   double& at(int i, int j) { return transition[size_t(i * states + j)]; }
 };
 
-// A left-right banded model: a state is kept or left for the next one, the last one is kept for
-// ever. The stay in each state is `mean_codes` / `states` codes in the mean. Outputs are those of
-// `sequences` cut into equal parts.
+// Makes a left-right banded model: a state is kept or left for the next one, the last one is kept
+// for ever. The stay in each state is `mean_codes` / `states` codes in the mean. Outputs are those
+// of `sequences` cut into equal parts.
 Hmm make_banded(int states, std::span<const std::vector<Code>> sequences);
 
-// ln of the probability of the best path (equations 12 to 14), -infinity where there is none. Fills
-// `path` with its states unless that is null. `codes` must not be empty.
+// Returns ln of the probability of the best path (equations 12 to 14), -infinity if there is none.
+// Fills `path` with its states unless that is null. `codes` must not be empty.
 double viterbi(const Hmm& model, std::span<const Code> codes, std::vector<int>* path = nullptr);
 
-// One step of Baum-Welch: re-estimates the model in place and returns ln P of all sequences under
-// the model as it was. Sequences that the model cannot produce are left out.
+// Does one step of Baum-Welch: re-estimates the model in place and returns ln P of all sequences
+// under the model as it was. Sequences that the model cannot produce are left out.
 double improve(Hmm& model, std::span<const std::vector<Code>> sequences);
 
-// Steps until ln P grows by less than `least` nats a sequence, at most `most` steps.
+// Repeats steps until ln P grows by less than `least` nats a sequence, at most `most` steps.
 void train(Hmm& model, std::span<const std::vector<Code>> sequences, int most = 30,
            double least = 1e-3);
 
 // Blurs outputs round the circle of codes by a Gaussian of this standard deviation, in codes.
 void smooth_outputs(Hmm& model, double deviation);
 
-// No output is less likely than `share` / 18: a stray code costs much, but not everything.
+// Raises outputs to `share` / 18 at least: a stray code costs much, but not everything.
 void raise_outputs(Hmm& model, double share);
 
 struct HandPlace {
@@ -59,19 +59,19 @@ struct HandPlace {
   vec2 place{0};
 };
 
-// One movement, and what it means.
+// This is one movement, with its meaning.
 struct HandPath {
   std::string label;    // "3", "wave"; empty: no gesture
   std::string variant;  // one of several orders of strokes; each has a model of its own
   std::vector<HandPlace> places;
 };
 
-// The angle of a step as one of 18 sectors of 20 degrees: 0 is to the right, 4 or 5 down (y grows
-// downwards), 9 to the left. `step` must not be 0.
+// Returns the angle of a step as one of 18 sectors of 20 degrees: 0 is to the right, 4 or 5 down (y
+// grows downwards), 9 to the left. `step` must not be 0.
 Code orientation_code(vec2 step);
 
-// The hand went from one place straight to another, always `code_step` apart: so a code means a
-// piece of the way, however quick it was, and places trembling by less are no motion.
+// This is a straight step of the hand from one place to another, always `code_step` long: so a code
+// means a piece of the way, however quick it was, and places trembling by less are no motion.
 inline constexpr float code_step = 0.06f;  // shoulder widths: 2.5 cm
 struct CodedStep {
   Code code = 0;
@@ -81,12 +81,12 @@ struct CodedStep {
 
 class OrientationCoder {
  public:
-  // Adds the steps that the hand made up to here to `out` and says whether motion begins anew: at
-  // the first place, where the hand rested for `rest` seconds, was away for `away`, or is too far
+  // Adds the steps that the hand made up to here to `out`. Returns whether motion begins anew: at
+  // the first place, or if the hand rested for `rest` seconds, was away for `away`, or is too far
   // from its last place to have moved there. A place that is not finite or beyond `reach`, and one
   // not later than the last, is passed over.
   bool step(const HandPlace& seen, std::vector<CodedStep>& out);
-  // Seconds for which the hand has stayed within one and a half steps of one place.
+  // Returns the seconds for which the hand has stayed within one and a half steps of one place.
   double resting(double time) const;
 
   static constexpr double rest = 0.5, away = 0.5;   // seconds
@@ -98,7 +98,7 @@ class OrientationCoder {
   vec2 last_{0}, before_{0}, anchor_{0}, stay_{0};
 };
 
-// The steps of a path, one list for each motion; and its longest motion.
+// Return the steps of a path, one list for each motion; and its longest motion.
 std::vector<std::vector<CodedStep>> code_motions(const HandPath& path);
 std::vector<CodedStep> code_path(const HandPath& path);
 

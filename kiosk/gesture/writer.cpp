@@ -9,7 +9,7 @@ namespace wellspring::kiosk {
 
 namespace {
 
-// The displacement after a share of the arc.
+// Returns the displacement after a share of the arc.
 vec2 along_arc(const Stroke& stroke, float share) {
   if (std::abs(stroke.bend) < 1e-3f) return stroke.chord * share;
   const float radius = glm::length(stroke.chord) / (2 * std::sin(stroke.bend / 2));
@@ -62,7 +62,7 @@ std::vector<HandPlace> watch_strokes(std::span<const Stroke> strokes, vec2 start
 
 namespace {
 
-// A stroke in a box one digit high; bend in degrees.
+// This is a stroke in a box one digit high; bend in degrees.
 struct Form {
   float x, y, bend;
 };
@@ -72,7 +72,7 @@ struct Shape {
   std::vector<Form> forms;
 };
 
-// Digits as they are drawn in one line (Elmezain et al. 2009, figure 4).
+// Returns digits as they are drawn in one line (Elmezain et al. 2009, figure 4).
 const std::vector<Shape>& digits() {
   static const std::vector<Shape> shapes = {
       {"0",
@@ -100,10 +100,10 @@ constexpr Limits limits_of(WriterGroup group) {
                                         : Limits{12, 10, 0.26f, 0.34f, 0.36f, 0.06f};
 }
 
-// Strokes one after the other, and where the hand then is.
+// Holds strokes one after the other, and the hand's place after them.
 struct Score {
   std::vector<Stroke> strokes;
-  double end = 0;  // of the last stroke
+  double end = 0;  // end of the last stroke, seconds
   vec2 place{0};
 };
 
@@ -113,24 +113,24 @@ void add(Score& score, vec2 chord, float bend, double begin, double seconds, flo
   score.place += chord;
 }
 
-// A way that is no part of a gesture.
+// Adds a way that is no part of a gesture.
 void go_to(Score& score, const HandWriter& w, Rng& rng, vec2 place, double pause) {
   const vec2 chord = place - score.place;
   const double seconds =
       w.pace * (0.35 + 0.45 * std::sqrt(glm::length(chord))) * between(rng, 0.8f, 1.2f);
-  // Overlap with the stroke before, where there is no pause.
+  // It overlaps with the stroke before, if there is no pause.
   const double begin =
       pause > 0 ? score.end + pause : score.end - 0.5 * double(w.overlap) * seconds;
   add(score, chord, between(rng, -60, 60) * degree, std::max(begin, 0.0), seconds, w.sigma);
 }
 
-// The strokes of a gesture in this writer's hand, its own habits and the moment's looseness in
-// them.
+// Holds the strokes of a gesture in this writer's hand, with its own habits and the moment's
+// looseness.
 struct Plan {
-  std::vector<Stroke> strokes;  // begin counts from the gesture's own
+  std::vector<Stroke> strokes;  // their begins count from the gesture's own
   std::string variant;
   double dwell = 0;
-  vec2 low{0}, high{0};  // of all places, from the first one
+  vec2 low{0}, high{0};  // bounds of all places, from the first one
 };
 
 void finish(Plan& plan, float overlap) {
@@ -221,8 +221,8 @@ Plan plan_gesture(const HandWriter& w, const std::string& label, Rng& rng) {
   return plan_swipe(w, label, rng);
 }
 
-// Where the gesture may begin: digits and waves in front of chest and face, pointing from below to
-// where the hand does not hide the face.
+// Chooses where the gesture may begin: digits and waves in front of chest and face, pointing from
+// below to where the hand does not hide the face.
 vec2 choose_start(const Plan& plan, const std::string& label, Rng& rng) {
   const vec2 way = plan.strokes[0].chord;
   while (label == "point") {
@@ -241,7 +241,7 @@ void add(Score& score, const Plan& plan, double begin) {
 
 vec2 low_place(Rng& rng) { return {between(rng, 0.2f, 0.8f), between(rng, 1.9f, 2.4f)}; }
 
-// Small strokes there and back, as when talking or scratching.
+// Adds small strokes there and back, as when talking or scratching.
 void fidget(Score& score, const HandWriter& w, Rng& rng, int strokes, float size, float seconds) {
   const vec2 home = score.place;
   for (int i = 0; i < strokes; i++) {

@@ -20,7 +20,7 @@ NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int r
   float scale = 1;  // pixels of `source` per pixel of the picture
   const float shrink = cut.width / float(columns);
   if (shrink > 1.2f) {
-    // What the cut touches, made smaller by means over areas first.
+    // The part that the cut touches is first made smaller by means over areas.
     const float reach = 0.5f * std::hypot(cut.width, cut.height) + 2 * shrink;
     cv::Rect area(int(cut.middle.x - reach), int(cut.middle.y - reach), int(2 * reach) + 1,
                   int(2 * reach) + 1);
@@ -92,7 +92,7 @@ FaceClasses ClassReader::read(const GrayView& picture, const Cut& square) {
 
 namespace {
 
-// Widths and heights of the five usual boxes in cells, part of what was trained.
+// These are widths and heights of the five usual boxes in cells, part of the training.
 constexpr float anchors[detector_anchors][2] = {{1.603231f, 2.094468f},
                                                 {6.041143f, 7.080126f},
                                                 {2.882459f, 3.518061f},
@@ -101,7 +101,8 @@ constexpr float anchors[detector_anchors][2] = {{1.603231f, 2.094468f},
 constexpr float same_face = 0.4f;    // share of the union of two boxes that both cover
 constexpr float largest_growth = 3;  // natural logarithm; beyond, a number has run away
 
-// Windows of little contrast are stretched to what the detector was trained on: found by trying.
+// Windows of little contrast are stretched to these levels of the detector's training, which were
+// found by trying.
 constexpr float usual_mean = 120, usual_deviation = 70, most_gain = 2.5f;
 
 void stretch(NetworkInput& input) {

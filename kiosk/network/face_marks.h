@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the networks read off a face whose place is known: 68 landmarks, seven classes of
-// expression.
+// Reads a face whose place is known, by networks: 68 landmarks, seven classes of expression.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,40 +11,40 @@
 
 namespace wellspring::kiosk {
 
-// A borrowed picture of grey levels, and squares cut out of it for a network.
+// Holds a borrowed picture of grey levels, and cuts squares out of it for a network.
 
 struct GrayView {
   const uint8_t* pixels = nullptr;  // row by row, top row first
   int width = 0, height = 0;
 };
 
-// A rectangle of the picture, turned about its middle: a positive angle (radians) turns its upper
-// side towards image left, as a head with that roll.
+// This is a rectangle of the picture, turned about its middle: a positive angle (radians) turns its
+// upper side towards image left, as a head with that roll.
 struct Cut {
   vec2 middle{0};  // pixels of the picture
   float width = 0, height = 0, angle = 0;
 };
 
-// The cut at `columns` by `rows` pixels, alike in all three colours; smoothed before it gets
-// smaller. Beyond the picture its rim goes on.
+// Returns the cut at `columns` by `rows` pixels, alike in all three colours; smoothed before it
+// gets smaller. Beyond the picture its rim goes on.
 NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int rows);
 
-// Where a point of the cut (shares 0..1 from its upper left) is in the picture, pixels.
+// Returns a point of the cut (shares 0..1 from its upper left) in pixels of the picture.
 vec2 cut_to_picture(const Cut& cut, vec2 share);
 
-// Pixels of the picture, in the order of 300-W (Sagonas et al. 2013), from image left to right:
-// 0-16 outline of cheeks and chin, 17-21 and 22-26 brows, 27-30 bridge of the nose, 31-35 its lower
-// edge, 36-41 and 42-47 eyes, 48-59 outer and 60-67 inner edge of the lips.
+// Holds pixels of the picture, in the order of 300-W (Sagonas et al. 2013), from image left to
+// right: 0-16 outline of cheeks and chin, 17-21 and 22-26 brows, 27-30 bridge of the nose, 31-35
+// its lower edge, 36-41 and 42-47 eyes, 48-59 outer and 60-67 inner edge of the lips.
 using FaceMarks = std::array<vec2, landmark_count>;
 
-// The square that the networks know faces in: a fourth larger than what the landmarks span, its
-// upper side along the line between the eyes.
+// Returns the square that the networks know faces in: a fourth larger than what the landmarks span,
+// its upper side along the line between the eyes.
 Cut cut_of_marks(const FaceMarks& marks);
 
 class MarkReader {
  public:
   explicit MarkReader(const std::string& folder);  // throws LoadError as load_face_landmarks does
-  // About 5 ms. Not finite numbers only if the picture's are.
+  // Reads landmarks in about 5 ms. They are finite if the numbers of `square` are.
   FaceMarks read(const GrayView& picture, const Cut& square);
 
  private:
@@ -64,8 +63,9 @@ class ClassReader {
   Network network_;
 };
 
-// Faces in a part of a picture, by the face detector of network.h: boxes from its cells (Redmon,
-// Farhadi 2017, section 2), and of those that overlap the surest (non-maximum suppression).
+// Finds faces in a part of a picture, by the face detector of network.h: boxes from its cells
+// (Redmon, Farhadi 2017, section 2), and among overlapping ones the surest (non-maximum
+// suppression).
 
 struct FaceBox {
   vec2 middle{0};               // pixels of the picture
@@ -79,8 +79,8 @@ inline constexpr float least_face = 40;
 class FaceBoxes {
  public:
   explicit FaceBoxes(const std::string& folder);  // throws LoadError as load_face_detector does
-  // Surest first; none below `least_score`. The cut is upright and seen at columns x rows pixels,
-  // multiples of 32: 2.5 ms for 128x128, 12 ms for 320x256.
+  // Returns boxes, the surest first, none below `least_score`. The cut is upright and seen at
+  // columns x rows pixels, multiples of 32: 2.5 ms for 128x128, 12 ms for 320x256.
   std::vector<FaceBox> find(const GrayView& picture, const Cut& cut, int columns, int rows,
                             float least_score);
 

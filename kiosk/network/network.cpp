@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr uintmax_t most_bytes = 64 << 20;  // of one file
+constexpr uintmax_t most_bytes = 64 << 20;  // size of one file
 constexpr size_t most_dimensions = 4;
 
 std::string read_file(const fs::path& path) {
@@ -34,7 +34,7 @@ std::string read_file(const fs::path& path) {
   return text;
 }
 
-// The text of an array's element in messages: its index and its name if it has one.
+// Describes an array's element in messages: by its index and its name if it has one.
 std::string place(size_t index, const json& entry) {
   std::string where = "/0/weights/" + std::to_string(index);
   if (entry.is_object() && entry.contains("name") && entry["name"].is_string())
@@ -50,7 +50,7 @@ struct Reader {
     throw LoadError(manifest, where, what);
   }
 
-  // Whether the entry's dtype is this one; it may be missing or no text.
+  // Returns whether the entry's dtype is this one; it may be missing or no text.
   static bool has_type(const json& entry, const char* type) {
     return entry.contains("dtype") && entry["dtype"] == type;
   }
@@ -171,7 +171,7 @@ cv::Mat blob(std::vector<int> sizes, const std::vector<float>& values) {
   return out;
 }
 
-// TensorFlow's filters (rows, columns, in, out) in OpenCV's order (out, in, rows, columns).
+// Puts TensorFlow's filters (rows, columns, in, out) into OpenCV's order (out, in, rows, columns).
 cv::Mat filters(const WeightTensor& t) {
   const int rows = t.shape[0], columns = t.shape[1], in = t.shape[2], out = t.shape[3];
   std::vector<float> values(t.values.size());
@@ -184,7 +184,7 @@ cv::Mat filters(const WeightTensor& t) {
   return blob({out, in, rows, columns}, values);
 }
 
-// A graph that grows at its end.
+// Builds a graph that grows at its end.
 class Builder {
  public:
   explicit Builder(WeightSet weights) : weights_(std::move(weights)) {}
@@ -204,8 +204,8 @@ class Builder {
     params.set("operation", "sum");
     return add("Eltwise", params, from);
   }
-  // 2x2; at the right and lower rim windows reach over the picture's end, and what is outside does
-  // not count.
+  // Pools 2x2; at the right and lower rim windows reach over the picture's end, and values outside
+  // do not count.
   int max_pool(int from, int stride) {
     LayerParams params;
     params.set("pool", "max");
@@ -216,21 +216,22 @@ class Builder {
     params.set("ceil_mode", true);
     return add("Pooling", params, {from});
   }
-  // Strides of 2 leave out the first rows and columns, as TensorFlow's "same" does for even sides.
+  // Pads the end: strides of 2 leave out the first rows and columns, as TensorFlow's "same" does
+  // for even sides.
   int pad_end(int from) {
     LayerParams params;
     const int ends[] = {0, 0, 0, 0, 0, 1, 0, 1};
     params.set("paddings", cv::dnn::DictValue::arrayInt(ends, 8));
     return add("Padding", params, {from});
   }
-  // Without a rim around the picture: two rows and columns get lost for a side of 3.
+  // Convolves without a rim around the picture: two rows and columns get lost for a side of 3.
   int convolution(int from, const std::string& name, int side, int in, int out, int stride) {
     LayerParams params = convolution_params(side, stride, 0, out);
     params.blobs = {filters(take_tensor(weights_, name + "/filters", {side, side, in, out})),
                     bias(name, out)};
     return add("Convolution", params, {stride == 2 ? pad_end(from) : from});
   }
-  // Depthwise 3x3, then pointwise (Howard et al. 2017, section 3.1).
+  // Convolves depthwise by 3x3, then pointwise (Howard et al. 2017, section 3.1).
   int separable(int from, const std::string& name, int in, int out, int stride = 1) {
     LayerParams deep = convolution_params(3, stride, stride == 1, in);
     LayerParams point = convolution_params(1, 1, 0, out);
@@ -244,7 +245,7 @@ class Builder {
     return add("Convolution", point,
                {add("Convolution", deep, {stride == 2 ? pad_end(from) : from})});
   }
-  // Four convolutions; each takes the sum of all before it.
+  // Adds four convolutions; each takes the sum of all before it.
   int dense_block(int from, const std::string& name, int in, int out) {
     const std::string conv = name + "/conv";
     int sum_so_far = relu(in == 3 ? convolution(from, conv + "0", 3, in, out, 2)
@@ -299,7 +300,7 @@ class Builder {
 struct Network::Impl {
   cv::dnn::Net net;
   Means means;
-  int side = 0;  // of the input; 0: any multiple of detector_cell
+  int side = 0;  // side of the input; 0: any multiple of detector_cell
 };
 
 Network::Network(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three networks of @vladmandic/face-api 1.7.15, layer by layer in OpenCV's module dnn. They
+// Runs three networks of @vladmandic/face-api 1.7.15, layer by layer in OpenCV's module dnn. They
 // compute what the package computes, within 1e-3 (tests/unit/kiosk/network).
 //   face detector    a convolution and five depthwise separable ones (Howard et al. 2017), each
 //                    halved by max pooling but the last; boxes as YOLO 9000 (Redmon, Farhadi 2017)
@@ -13,9 +13,9 @@
 
 namespace wellspring::kiosk {
 
-// Trained weights as TensorFlow.js stores them: a manifest in JSON, which lists tensors in order,
-// and a file of their bytes, one tensor after the other. A tensor is 32-bit floats (little-endian),
-// or quantised: bytes b that stand for b * scale + min.
+// Reads trained weights as TensorFlow.js stores them: a manifest in JSON, which lists tensors in
+// order, and a file of their bytes, one tensor after the other. A tensor is 32-bit floats
+// (little-endian), or quantised: bytes b that stand for b * scale + min.
 
 struct WeightTensor {
   std::vector<int> shape;     // slowest first, as TensorFlow orders filters: rows, columns, in, out
@@ -28,14 +28,14 @@ struct WeightSet {
 };
 
 // Reads FOLDER/NAME-weights_manifest.json and the file of bytes that it names in the same folder.
-// Every number of both is foreign: throws LoadError naming file and tensor where one is missing,
-// cut off, too long, not finite or of another kind. Memory is bounded by the files' sizes.
+// No number in them is trusted: throws LoadError naming file and tensor if one is missing, cut off,
+// too long, not finite or of another kind. Memory is bounded by the files' sizes.
 WeightSet load_weight_set(const std::string& folder, const std::string& name);
 
-// The tensor of that name, moved out of `set`. Throws LoadError unless it has that shape.
+// Returns the tensor of that name, moved out of `set`. Throws LoadError unless it has that shape.
 WeightTensor take_tensor(WeightSet& set, const std::string& name, const std::vector<int>& shape);
 
-// Planes of red, green and blue, each row by row from the top; levels 0 to 255.
+// Holds planes of red, green and blue, each row by row from the top; levels 0 to 255.
 struct NetworkInput {
   int width = 0, height = 0;
   std::vector<float> planes;
@@ -45,8 +45,8 @@ class Network {
  public:
   Network(Network&&) noexcept;
   ~Network();
-  // `input` has the size that the network asks for (below), or std::invalid_argument is thrown.
-  // The first run at a size is slower. One thread at a time.
+  // Runs the network. `input` has the size that the network asks for (below), or
+  // std::invalid_argument is thrown. The first run at a size is slower. One thread at a time.
   std::vector<float> run(const NetworkInput& input);
 
   struct Impl;
@@ -60,16 +60,17 @@ class Network {
 // is missing, damaged or of another shape, or when a tensor is left over.
 
 inline constexpr int detector_cell = 32, detector_anchors = 5;
-// Sides: multiples of 32. Output: 25 planes of height/32 rows and width/32 columns; those of anchor
-// a begin at 5a: x, y, logarithms of width and height, score, all before the sigmoid
-// (face_marks.h).
+// Loads the detector. Sides: multiples of 32. Output: 25 planes of height/32 rows and width/32
+// columns; those of anchor a begin at 5a: x, y, logarithms of width and height, score, all before
+// the sigmoid (face_marks.h).
 Network load_face_detector(const std::string& folder);
 
 inline constexpr int marks_side = 112, landmark_count = 68;
-// 112x112. Output: x and y of 68 points in shares of the picture, in the order of 300-W (Sagonas et
-// al. 2013).
+// Loads the landmark network, 112x112. Output: x and y of 68 points in shares of the picture, in
+// the order of 300-W (Sagonas et al. 2013).
 Network load_face_landmarks(const std::string& folder);
-// 112x112. Output: probabilities of neutral, happy, sad, angry, fearful, disgusted, surprised.
+// Loads the expression network, 112x112. Output: probabilities of neutral, happy, sad, angry,
+// fearful, disgusted, surprised.
 Network load_face_expression(const std::string& folder);
 
 }  // namespace wellspring::kiosk

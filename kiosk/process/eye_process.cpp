@@ -29,7 +29,7 @@ namespace wellspring::kiosk {
 namespace {
 
 constexpr size_t longest_line = 64 * 1024;
-constexpr double patience = 2;  // seconds for it to end
+constexpr double patience = 2;  // seconds that the eye has to end
 
 [[noreturn]] void fail(const char* what, int error) {
   throw std::runtime_error("the eye's process: " + std::string(what) + ": " + std::strerror(error));
@@ -84,7 +84,8 @@ EyeProcess::EyeProcess(std::vector<std::string> arguments, size_t eye) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, orders[0], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, ends[1], observe_fd);
-  posix_spawn_file_actions_addclosefrom_np(&actions, observe_fd + 1);  // the way to the server
+  // closes the way to the server
+  posix_spawn_file_actions_addclosefrom_np(&actions, observe_fd + 1);
   int error = posix_spawn(&process_, "/proc/self/exe", &actions, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
@@ -109,7 +110,7 @@ EyeProcess::~EyeProcess() {
 
 void EyeProcess::tell(const std::string& line) {
   const std::string text = line + '\n';
-  // Whole or not at all: it is shorter than PIPE_BUF.
+  // The line is written whole or not at all: it is shorter than PIPE_BUF.
   [[maybe_unused]] const ssize_t wrote = write(orders_, text.data(), text.size());
 }
 
@@ -145,7 +146,7 @@ int EyeProcess::status() {
 }  // namespace wellspring::kiosk
 
 #ifdef __SANITIZE_ADDRESS__
-// LeakSanitizer asks at the end. It looks for leaks by means that the sandbox refuses.
+// LeakSanitizer calls this at the end. It looks for leaks by means that the sandbox refuses.
 static bool entered = false;
 extern "C" int __lsan_is_turned_off() { return entered; }
 #endif
@@ -162,7 +163,7 @@ struct Release {
 };
 using Filter = std::unique_ptr<void, Release>;
 
-// Calls that nothing here needs, and by which pictures could leave.
+// Nothing here needs these calls, by which pictures could leave.
 constexpr int refused[] = {
     // files made, named or cut
     SCMP_SYS(creat), SCMP_SYS(truncate), SCMP_SYS(ftruncate), SCMP_SYS(fallocate), SCMP_SYS(rename),
@@ -187,11 +188,11 @@ void refuse(const Filter& filter, int call, std::initializer_list<scmp_arg_cmp> 
   int error =
       seccomp_rule_add_array(filter.get(), SCMP_ACT_ERRNO(EPERM), call, unsigned(where.size()),
                              where.size() ? where.begin() : nullptr);
-  // A call that this processor does not have is none to refuse.
+  // If this processor lacks a call, there is nothing to refuse.
   if (error != 0 && error != -EDOM && error != -EOPNOTSUPP) refuse("a rule", -error);
 }
 
-// `flags`: which argument of the call they are.
+// Refuses writing; `flags` is the index of the call's argument that holds them.
 void refuse_writing(const Filter& filter, int call, unsigned flags, bool device) {
   auto has = [&](scmp_datum_t mask, scmp_datum_t value) {
     refuse(filter, call, {SCMP_CMP(flags, SCMP_CMP_MASKED_EQ, mask, value)});
@@ -207,16 +208,16 @@ void enter_sandbox(const SandboxSettings& settings) {
   const rlimit none{0, 0};
   if (setrlimit(RLIMIT_CORE, &none) != 0) refuse("core dumps", errno);
   if (prctl(PR_SET_DUMPABLE, 0) != 0) refuse("memory images", errno);
-  mallopt(M_PERTURB, 0x55);  // memory that is given back is overwritten
+  mallopt(M_PERTURB, 0x55);  // overwrites memory that is given back
 
   Filter filter(seccomp_init(SCMP_ACT_ALLOW));
   if (!filter) refuse("seccomp", ENOSYS);
-  seccomp_attr_set(filter.get(), SCMP_FLTATR_CTL_TSYNC, 1);  // threads that run already, too
+  seccomp_attr_set(filter.get(), SCMP_FLTATR_CTL_TSYNC, 1);  // covers threads that run already, too
   for (int call : refused) refuse(filter, call);
   refuse_writing(filter, SCMP_SYS(open), 1, settings.device);
   refuse_writing(filter, SCMP_SYS(openat), 2, settings.device);
-  // Threads may begin, processes not. What clone3() is asked for cannot be looked at: without it
-  // the C library takes clone().
+  // Threads may begin, processes not. The arguments of clone3() cannot be inspected: without it the
+  // C library takes clone().
   refuse(filter, SCMP_SYS(clone), {SCMP_CMP(0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, 0)});
   if (int error = seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
       error != 0 && error != -EDOM)

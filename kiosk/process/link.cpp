@@ -75,7 +75,7 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr size_t largest_answer = 64 * 1024;  // what a server may say to a kiosk in one message
+constexpr size_t largest_answer = 64 * 1024;  // bytes of a server's message to a kiosk
 
 std::chrono::steady_clock::duration seconds(double s) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -94,7 +94,7 @@ struct ServerLink::Impl {
   ServerAddress address;
   ServerLinkSettings settings;
   asio::io_context io{1};
-  asio::ssl::context trust{asio::ssl::context::tls_client};  // of TLS
+  asio::ssl::context trust{asio::ssl::context::tls_client};  // certificates for TLS
   asio::steady_timer wake{io};  // cancelled when there is something to send or it is time to go
   Latest<std::string> newest;
   Latest<EyeOrder> order;
@@ -104,7 +104,7 @@ struct ServerLink::Impl {
   using PlainSocket = websocket::stream<beast::tcp_stream>;
   using TlsSocket = websocket::stream<beast::ssl_stream<beast::tcp_stream>>;
 
-  // Whose certificates are believed. Throws std::runtime_error.
+  // Chooses whose certificates are believed. Throws std::runtime_error.
   void choose_trust() {
     SSL_CTX_set_min_proto_version(trust.native_handle(), TLS1_2_VERSION);
     trust.set_verify_mode(asio::ssl::verify_peer);
@@ -119,7 +119,7 @@ struct ServerLink::Impl {
     asio::post(io, [this] { wake.cancel(); });
   }
 
-  // Reads what the server says, also so that pings are answered and a close is noticed.
+  // Reads the server's orders, also so that pings are answered and a close is noticed.
   template <class Socket>
   asio::awaitable<void> listen(std::shared_ptr<Socket> socket, std::shared_ptr<bool> open) {
     beast::flat_buffer buffer;
@@ -135,7 +135,7 @@ struct ServerLink::Impl {
     wake.cancel();
   }
 
-  // Why the server did not open the connection.
+  // Returns why the server did not open the connection.
   std::string refusal(const error_code& ec, unsigned status) const {
     if (ec != websocket::error::upgrade_declined) return ec.message();
     if (status == 308) return "it asks for TLS: --server wss://..., or --trusted ADDRESS there";
@@ -145,7 +145,7 @@ struct ServerLink::Impl {
                : "it does not know this kiosk token";
   }
 
-  // Whom the certificate must be of.
+  // Sets the host that the certificate must name.
   void expect_host(SSL* tls) const {
     error_code no_address;
     asio::ip::make_address(address.host, no_address);
@@ -157,7 +157,7 @@ struct ServerLink::Impl {
     }
   }
 
-  // Why TLS did not begin.
+  // Returns why TLS did not begin.
   std::string distrust(const error_code& ec, SSL* tls) const {
     const long verdict = SSL_get_verify_result(tls);
     if (verdict != X509_V_OK)
@@ -179,7 +179,7 @@ struct ServerLink::Impl {
     co_return ec;
   }
 
-  // One connection from its start to its end. Returns why it ended.
+  // Runs one connection from its start to its end. Returns why it ended.
   asio::awaitable<std::string> talk() {
     if (!address.tls) {
       auto socket = std::make_shared<PlainSocket>(io);
@@ -250,7 +250,7 @@ struct ServerLink::Impl {
     std::mt19937 random(std::random_device{}());
     std::uniform_real_distribution<double> uniform(0, 1);
     int attempt = 0;
-    std::string told;  // why there was none
+    std::string told;  // reason of the last failure that was logged
     while (!leaving) {
       uint64_t before = connections;
       const std::string why = co_await talk();
@@ -279,7 +279,7 @@ ServerLink::ServerLink(const ServerAddress& address, const ServerLinkSettings& s
 
 ServerLink::~ServerLink() {
   impl_->leaving = true;
-  // One second for the last words where somebody listens; none where nobody does.
+  // The last text has one second if there is a connection, none if there is not.
   auto limit =
       std::make_shared<asio::steady_timer>(impl_->io, seconds(impl_->connected ? 1.0 : 0.0));
   limit->async_wait([impl = impl_.get(), limit](error_code) { impl->io.stop(); });

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way to the server: a WebSocket, by TLS where its address says so, that is kept open in a
-// thread of its own. The newest text wins, nothing queues, no call blocks; a lost connection is
-// tried again after a pause that doubles up to a limit, with jitter so that many kiosks do not come
-// back in step.
+// Keeps a WebSocket to the server open, by TLS if its address says so, in a thread of its own. The
+// newest text wins, there is no queue, no call blocks; a lost connection is tried again after a
+// pause that doubles up to a limit, with jitter so that many kiosks do not come back in step.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,25 +12,26 @@
 
 namespace wellspring::kiosk {
 
-// Where a kiosk's server is, as people write it.
+// Reads the address of a kiosk's server, as people write it.
 
 struct ServerAddress {
   std::string host, port = "80", path;
   bool tls = false;
 };
-// ws://HOST[:PORT][/PATH] or wss://, an IPv6 address in brackets; no path: /api/v1/eye; no port:
-// 80, or 443. Nothing for anything else.
+// Reads ws://HOST[:PORT][/PATH] or wss://, an IPv6 address in brackets; no path: /api/v1/eye; no
+// port: 80, or 443. Returns nothing for anything else.
 std::optional<ServerAddress> parse_address(const std::string& url);
 
-// Seconds to wait before attempt 1, 2, ...: first * 2^(attempt - 1), at most `longest`, times 0.5
-// to 1 by `jitter` (0..1).
+// Returns the seconds to wait before attempt 1, 2, ...: first * 2^(attempt - 1), at most `longest`,
+// times 0.5 to 1 by `jitter` (0..1).
 double retry_pause(int attempt, double first, double longest, double jitter);
 
 struct ServerLinkSettings {
   double first_pause = 0.25, longest_pause = 5;  // seconds
-  double patience = 5;                           // for connecting and for a write
+  double patience = 5;                           // seconds for connecting and for a write
   std::string token{};                           // shown to the server; empty: none
-  std::string ca_file{};  // PEM: who must have signed its certificate; empty: one of the system's
+  // PEM file of who must have signed the server's certificate; empty: the system's
+  std::string ca_file{};
 };
 
 class ServerLink {
@@ -40,7 +40,7 @@ class ServerLink {
   explicit ServerLink(const ServerAddress& address, const ServerLinkSettings& settings = {});
   ~ServerLink();  // sends what is left and says goodbye, at most one second
   void send(std::string text);
-  // The newest order of the server that was not taken yet; what else it says is forgotten.
+  // Returns the newest order of the server not taken yet; its other messages are dropped.
   std::optional<EyeOrder> take_order();
   bool connected() const;
   uint64_t sent() const;         // texts written

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Observations in a file, a line each, as they went to the server: numbers only. To be played again
-// without a camera.
+// Keeps observations in a file, a line each, as they went to the server: numbers only. They can be
+// played again without a camera.
 #pragma once
 #include <cstdio>
 #include <fstream>
@@ -13,8 +13,8 @@ namespace wellspring::kiosk {
 
 class Recorder {
  public:
-  explicit Recorder(const std::string& file);  // begins it anew; throws LoadError
-  // At once in the file. False: it is full or gone.
+  explicit Recorder(const std::string& file);  // begins the file anew; throws LoadError
+  // Writes at once into the file. False: it is full or gone.
   bool write(const std::string& line);
 
  private:
@@ -27,8 +27,8 @@ class Recorder {
 class Replay {
  public:
   explicit Replay(const std::string& file);  // throws LoadError
-  // The next one, with its text; false: there are no more. Empty lines are passed over. Throws
-  // LoadError naming the line that is no observation, or whose time runs back.
+  // Reads the next observation, with its text; false: there are no more. Empty lines are passed
+  // over. Throws LoadError naming the line that is no observation, or whose time runs back.
   bool next(Observation& seen, std::string& text);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a technique is asked (Request) and what it answers (Sample). The answer keeps apart what the
-// render cache treats differently: reflectance, light that is smooth and does not depend on the
-// view, and the rest. Radiance towards the eye = albedo * (smooth * known - raised) + rest.
+// Defines what a technique is asked (Request) and what it answers (Sample). The answer keeps apart
+// what the render cache treats differently: reflectance, light that is smooth and does not depend
+// on the view, and the rest. Radiance towards the eye = albedo * (smooth * known - raised) + rest.
 #pragma once
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 namespace wellspring::light {
 
 inline constexpr uint32_t no_cache_id = 0xffffffffu;
-inline constexpr uint32_t no_pixel = 0xffffffffu;  // of a request for what is not in view yet
+inline constexpr uint32_t no_pixel = 0xffffffffu;  // pixel of a request for what is not in view yet
 
 struct Request {
   Ray ray;
@@ -43,13 +43,14 @@ struct Sample {
   vec3 smooth{0};  // diffusely reflected light over albedo: indirect, area lights, environment
   vec3 rest{
       0};  // emission, specular, and diffusely reflected light of punctual lights (sharp shadows)
-  // Of `rest`, what the surface emits, and panes before it, where it reflects light, too: a picture
-  // that is drawn (VisibilityPass) knows that exactly. 0 of the sky and of what only emits light.
+  // The part of `rest` that the surface, and panes before it, emit, if the surface reflects light,
+  // too: a picture that is drawn (VisibilityPass) knows that exactly. 0 for the sky and for what
+  // only emits light.
   vec3 glow{0};
-  // Where an illumination map tells the diffuse light of the surface (sample_mapped): that light.
-  // `smooth` counts in multiples of it, and the light of punctual lights is part of it.
+  // The diffuse light of the surface by an illumination map (sample_mapped), else 1. `smooth`
+  // counts in multiples of it, and the light of punctual lights is part of it.
   vec3 known{1};
-  float raised = 0;  // `known` is more than the map's light by that, and `smooth` counts it, too
+  float raised = 0;  // light that `known` has beyond the map's; `smooth` counts it, too
   uint8_t flags = 0;
   vec3 radiance() const { return albedo * max(smooth * known - vec3(raised), vec3(0)) + rest; }
 };

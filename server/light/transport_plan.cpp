@@ -13,15 +13,15 @@ constexpr const char* names[] = {
     "coats",           "caustics",   "kept light",        "dynamic lights"};
 static_assert(std::size(names) == transport_parts);
 
-// What the decisions are made from.
+// Holds what the decisions are made from.
 struct Census {
-  std::vector<MaterialUse> use;  // of each material
+  std::vector<MaterialUse> use;  // one for each material
   size_t triangles = 0;          // visible, instances counted
-  size_t emitting = 0;           // still and emitting, of those
-  size_t lit = 0;                // that light makes a difference to
-  size_t still_rough = 0;        // that stand still and scatter
+  size_t emitting = 0;           // visible triangles that stand still and emit
+  size_t lit = 0;                // triangles that light makes a difference to
+  size_t still_rough = 0;        // triangles that stand still and scatter
   size_t moving = 0;
-  size_t lamps = 0, dark_lamps = 0;  // punctual
+  size_t lamps = 0, dark_lamps = 0;  // punctual lights with power, and without
   bool sky = false, sky_varies = false, sun = false;
   bool any_light() const { return emitting > 0 || lamps > 0 || sky || sun; }
 };
@@ -83,7 +83,7 @@ std::string count_of(size_t n, const char* one, const char* many) {
   return text + " " + (n == 1 ? one : many);
 }
 
-// As a file names it, short and without anything a terminal would handle.
+// Returns a name from a file, short and without anything a terminal would interpret.
 std::string shown_name(const std::string& name) {
   constexpr size_t longest = 40;
   std::string text = name.substr(0, longest);
@@ -93,7 +93,7 @@ std::string shown_name(const std::string& name) {
   return "'" + text + (text.size() < name.size() ? "...'" : "'");
 }
 
-// The materials in use that `is` holds for, by name: "'glass', 'water' and 3 more".
+// Returns the materials in use that `is` holds for, by name: "'glass', 'water' and 3 more".
 std::string materials_where(const Scene& scene, const Census& census, bool MaterialUse::*is) {
   std::vector<std::string> found;
   for (size_t i = 0; i < census.use.size(); i++)
@@ -112,7 +112,8 @@ bool any_where(const Census& census, bool MaterialUse::*is) {
                      [&](const MaterialUse& use) { return use.*is; });
 }
 
-// A material in use that asks for something its factors, textures or alpha take away again.
+// Counts the materials that ask for something which they cannot show: their factors, textures or
+// alpha take it away again, or they are not in use.
 size_t declared_in_vain(const Scene& scene, const Census& census, bool (*declares)(const Material&),
                         bool MaterialUse::*is) {
   size_t count = 0;
@@ -129,7 +130,8 @@ class Deciding {
   void decide(TransportPart part, bool used, std::string yes, std::string no) {
     plan_.decisions[size_t(part)] = {used, used ? std::move(yes) : std::move(no)};
   }
-  // A part that some material in use asks for. `declares`: by its plain factors.
+  // Decides a part that some material in use asks for. `declares`: whether a material's plain
+  // factors ask for it.
   void by_material(TransportPart part, bool MaterialUse::*is, const char* yes, const char* no,
                    bool (*declares)(const Material&)) {
     size_t vain = declared_in_vain(scene_, census_, declares, is);
@@ -238,7 +240,7 @@ TransportPlan make_transport_plan(const Scene& scene, std::span<const Mesh* cons
 
 namespace {
 
-// Where techniques differ in what they make of a part.
+// Returns notes on a part that techniques treat differently.
 std::span<const char* const> technique_notes(TransportPart part) {
   static constexpr const char* dispersion[] = {
       "path, direct, gather: the eye's walk carries wavelengths from the first such surface on",

@@ -38,10 +38,10 @@ struct Scenery {
   const Truth& truth;
   int max_depth;
   uint32_t object;
-  std::vector<size_t> pixels;  // that show it
+  std::vector<size_t> pixels;  // pixels that show the object
 };
 
-// Of one run: error after so many samples a pixel.
+// Holds one run's error after so many samples a pixel.
 struct Curve {
   std::vector<double> samples, thing, whole;
 };
@@ -52,7 +52,7 @@ double mean_over(const FlipMap& map, const std::vector<size_t>& pixels) {
   return sum / double(pixels.size());
 }
 
-// What the show's analysis makes of a picture whose visitor points at the thing.
+// Holds the show's analysis of a picture whose visitor points at the object.
 struct Analysis {
   SaliencyWork work;
   SaliencyMap saliency;
@@ -87,7 +87,7 @@ std::vector<size_t> find_pixels(const VisibilityPass& visibility, const View& vi
   return pixels;
 }
 
-// What answers samples: of who has just come, and of who stands.
+// Says how samples are traced for a visitor who has just come, and for one who stands.
 struct Answers {
   const char* technique;
   float clamp;  // as ShowSettings

@@ -69,7 +69,7 @@ DiffuseView find_diffuse(const World& world, const Lights& lights, const View& v
   return seen;
 }
 
-// What a picture takes from the map, maps of normals counted.
+// Returns the light that a picture takes from the map, with normal maps.
 vec3 light_of(const World& world, const Lights& lights, const IlluminationMap& map, const Ray& ray,
               const Hit& hit) {
   Transport transport{world, *lights.tables};

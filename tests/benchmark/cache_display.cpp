@@ -144,7 +144,7 @@ double measure_yardstick(int width, int height, int points, int frames) {
   std::vector<float> depth(shown.size());
   View view = stroll(0, width, height);
   for (size_t i = 0; i < position.size(); i++) {
-    // As the plan would: sweeps over the picture, each a fortieth of its pixels.
+    // The requests go in sweeps over the picture, as the plan's do, each a fortieth of its pixels.
     uint64_t random = mix64(i);
     float y =
         float(i % (position.size() / 40 + 1)) / float(position.size() / 40 + 1) * float(height);
@@ -155,7 +155,7 @@ double measure_yardstick(int width, int height, int points, int frames) {
   std::vector<double> times;
   for (int frame = 0; frame < frames; frame++) {
     view = stroll(frame, width, height);
-    // With one core, what others do on the machine does not count.
+    // One core's own time is taken, so that the machine's other work does not count.
     double start = thread_seconds_now();
     std::fill(depth.begin(), depth.end(), 1e30f);
     float scale = float(height) * 0.5f / view.tan_half_fov;
@@ -191,7 +191,7 @@ std::vector<NamedValue> report_cache_display(int width, int height, bool quick) 
     stroll.now = thread_seconds_now;
     one = measure(stroll, width, height, frames);
     yardstick = measure_yardstick(width, height, stroll.cache.stats().points, frames);
-    // As where a visitor looks at the second column.
+    // The visitor looks at the second column.
     std::vector<float> weights(14, 0.7f);
     weights[11] = RenderCache::most_weight;
     stroll.cache.set_weights(weights);

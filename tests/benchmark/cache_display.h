@@ -10,7 +10,7 @@ namespace wellspring::test {
 struct NamedValue {
   std::string name, unit;
   double value = 0;
-  std::string stage = {};  // of cache.display.stage_ms
+  std::string stage = {};  // which stage of cache.display.stage_ms
 };
 
 // cache.display.ms (all cores), .ms_one_core, .yardstick_ms_one_core (the bare loop "transform,

@@ -13,7 +13,7 @@ void bench_cache_display(BenchReport& report, const BenchOptions& options) {
     if (!value.stage.empty()) fields["stage"] = value.stage;
     report.add(value.name, value.value, value.unit, fields);
   }
-  // Whether time grows with pixels alone.
+  // These sizes show whether time grows with pixels alone.
   for (auto [across, down] : {std::pair(640, 360), std::pair(1920, 1080)})
     for (const NamedValue& value : report_cache_display(across, down, options.quick)) {
       bool one_core = value.name == "cache.display.ms_one_core";

@@ -29,9 +29,9 @@ constexpr double full_width = 1280, full_pixels = 1280.0 * 720.0;
 constexpr double judged_at[] = {0.5, 1, 2, 5, 20};
 constexpr float moving_clamp = 4, still_clamp = 12;  // as ShowSettings
 
-// Where visitors stand. `part`: not the whole picture but so many pixels of one that is 1280 wide,
-// around (right, up) of its centre in halves of its height: edges and textures are as wide as
-// visitors see them.
+// Holds a place where visitors stand. `part`: not the whole picture but so many pixels of one that
+// is 1280 wide, around (right, up) of its centre in halves of its height: edges and textures are as
+// wide as visitors see them.
 struct Place {
   const char *name, *scene, *viewpoint;
   bool part = false;
@@ -132,7 +132,7 @@ void stand(BenchReport& report, const BenchOptions& options, const Stand& at,
   }
 }
 
-// What `gather` would show if there were plenty of samples, with and without their bound.
+// Judges what `gather` would show if there were plenty of samples, with and without their bound.
 void judge_technique(BenchReport& report, const BenchOptions& options, const Stand& at) {
   for (float clamp : {0.0f, moving_clamp}) {
     StillSettings still;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// cache.switch.right: a lamp is switched before a visitor, and how many of the pixels that this
-// changes by more than 10 % are within 10 % of right (converged `path`) some time later. The cache
-// is told (relight), has to find out, or begins from nothing (cleared), which says what so few
-// samples can tell at all. Pictures are 60 a second. Of an exhibit's own lamps it is told where
-// light changes and by how much (light/known/lamps.h), and what that takes is measured:
-// cache.switch.light_ms once for everybody, cache.switch.visitor_ms for each visitor.
+// Measures cache.switch.right: a lamp is switched before a visitor, and of the pixels that this
+// changes by more than 10 % a share is within 10 % of right (converged `path`) some time later. The
+// cache is told (relight), has to find out, or begins from nothing (cleared), which says what so
+// few samples can show at all. Pictures are 60 a second. If the lamp is an exhibit's own, the cache
+// is told where light changes and by how much (light/known/lamps.h), and the time for that is
+// measured: cache.switch.light_ms once for everybody, cache.switch.visitor_ms for each visitor.
 #include <cmath>
 #include <filesystem>
 
@@ -29,7 +29,7 @@ constexpr float tolerance = 0.1f, darkest = 1e-4f;
 // A scene in one of its lights.
 struct Lit {
   Scene scene;
-  LampLevels lamps;  // of an exhibit; empty: another scene is another light
+  LampLevels lamps;  // levels of an exhibit's lamps; empty: another scene is another light
   std::unique_ptr<World> world;
   Lights lights, all;  // `all`: while all of the exhibit's lamps are full
   std::shared_ptr<const LampCells> cells;
@@ -49,7 +49,8 @@ bool is_right(vec3 shown, vec3 wanted) {
   return std::abs(luminance(shown) - luminance(wanted)) <= tolerance * luminance(wanted) + darkest;
 }
 
-// Of an exhibit even many samples do not tell every pixel: judged are those of which they do.
+// Returns whether the converged picture is sure of pixel `i`. An exhibit's pictures are noisy at
+// some pixels even after many samples; only pixels are judged where both halves agree.
 bool is_known(const Lit& lit, size_t i) {
   return lit.lamps.empty() || is_right(lit.truth.half[0].color[i], lit.truth.half[1].color[i]);
 }
@@ -60,8 +61,8 @@ bool is_affected(const Lit& a, const Lit& b, size_t i) {
   return std::abs(one - other) > tolerance * std::max(one, other) + darkest;
 }
 
-// Of the affected pixels. `map`: those that are right green, too bright ones red, too dark ones
-// blue.
+// Returns the share of the affected pixels that are right. `map` shows right ones green, too bright
+// ones red, too dark ones blue.
 float share_right(const Frame& shown, const Lit& was, const Lit& is, Frame& map) {
   int affected = 0, all_right = 0;
   map = shown;
@@ -92,7 +93,7 @@ struct Onlooker {
   std::vector<Sample> samples{};
   Frame frame{};
   int pictures = 0;
-  // Who moves passes the judged place every second picture.
+  // A moving visitor passes the judged place every second picture.
   void show(const Lit& lit, int mismatch) {
     View view = lit.view;
     if (way == Way::moving && pictures % 2 == 0)
@@ -208,8 +209,9 @@ void make_exhibit_lamps(const std::string& name, Lit& off, Lit& on) {
   if (off.lamps == on.lamps) throw LoadError("castle", "/lamps", "there is no '" + name + "'");
 }
 
-// What is switched: a spot light beside the box's lamp or beside a point light instead of that, the
-// lamp beside a point light, or all lamps of the castle but its sun.
+// Makes the lamps before and after the switch. `what` is switched: a spot light beside the box's
+// lamp, or beside a point light instead of that lamp; the box's lamp beside a point light; or all
+// lamps of the castle but its sun.
 void make_lamps(const std::string& what, Scene& off, Scene& on) {
   off.lamps.clear(), on.lamps.clear();
   PunctualLight lamp;

@@ -86,7 +86,7 @@ std::vector<double> unknown_shares(const std::vector<double>& yaws, double drawi
 // ---- the same in the castle's hall, against true pictures ----
 
 constexpr int hall_width = 640, hall_height = 360;
-constexpr double surroundings_time = 0.2;  // of what drawing a keyframe takes, as in the castle
+constexpr double surroundings_time = 0.2;  // share of a keyframe's drawing time, as in the castle
 
 struct TurnErrors {
   double flip = 0, unknown = 0, drawn = 0;  // means; pictures of surroundings a keyframe

@@ -85,7 +85,7 @@ Image8 through_jpeg(const Image8& image, int quality) {
   return decode_jpeg(bytes, "a picture just made");
 }
 
-// What has been seen of a trace so far: this frame and the one before.
+// Holds what a trace's cameras have seen so far: this frame and the one before.
 struct PrimaryHit {
   TrueView now, before;
   std::vector<vec2> motion;

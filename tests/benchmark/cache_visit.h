@@ -20,7 +20,7 @@ struct VisitSettings {
   int jpeg_quality = 82;  // as a visitor's pictures while it moves, 4:2:0
   std::string technique = "gather";
   std::string exhibit, traces, truths;  // folders: package, traces, kept converged pictures
-  std::vector<std::string> methods;     // of these names; empty: all
+  std::vector<std::string> methods;     // names of the methods to run; empty: all
   std::string only;                     // one trace's name; empty: all
   std::string pictures;                 // folder for what was judged, as PNG; empty: none
 };
@@ -30,7 +30,7 @@ struct VisitFrame {
   float temporal = 0;       // motion-compensated change; NaN: nothing compares
   float wrong_surface = 0;  // shares of the picture's pixels
   float empty = 0;
-  CacheStats stats;  // of the cache; else nothing
+  CacheStats stats;  // the cache's; empty for other methods
 };
 
 // A judged one. FLIP at 67 pixels a degree; rmse of display values, 0 to 1, free of the converged
@@ -47,8 +47,8 @@ struct VisitRun {
   std::vector<VisitInstant> instants;
 };
 
-// How far the converged pictures themselves can be trusted: their halves against each other (the
-// mean of both has half of that rmse).
+// Says how far the converged pictures themselves can be trusted: their halves against each other
+// (the mean of both has half of that rmse).
 struct TruthNoise {
   std::string trace;
   double flip = 0, rmse = 0;
@@ -64,7 +64,7 @@ inline constexpr double visit_rate = 60;  // displayed frames a second
 // Minutes. Throws LoadError, ExhibitError.
 VisitResult simulate_visits(const VisitSettings& settings);
 
-// Of a run: means over its judged instants, and over its frames from `from` seconds on.
+// Return a run's means: over its judged instants, and over its frames from `from` seconds on.
 VisitInstant mean_instant(const VisitRun& run);
 VisitFrame mean_frame(const VisitRun& run, double from);
 // Mean of the traces' means; the runs of one method at one mismatch ratio.

@@ -17,15 +17,15 @@
 namespace wellspring::test {
 namespace {
 
-// As the show has them.
+// These are the show's values.
 constexpr float predicted_frames = 2, barely_covered = 0.1f;
-constexpr double predicted_share = 0.3;                     // of the budget, at most
-constexpr double more_asked = 1.2;                          // than is traced
-constexpr double tested_share = 0.0625, spread_from = 0.8;  // of samples at rest
-constexpr float task_weight = 0.5f;                         // of attention
+constexpr double predicted_share = 0.3;                     // largest share of the budget
+constexpr double more_asked = 1.2;                          // requests for each traced sample
+constexpr double tested_share = 0.0625, spread_from = 0.8;  // shares of the samples at rest
+constexpr float task_weight = 0.5f;                         // share of attention
 constexpr int analysed_every = 3;                           // frames: at most 25 a second
 constexpr int still_after = 15;                             // frames
-constexpr int first_pass = 29;  // likewise; then at so many times as many samples:
+constexpr int first_pass = 29;  // frames; the next pass comes after `growth` times as many samples
 constexpr double growth = 1.3;
 constexpr uint64_t still_seed = 17;
 
@@ -79,7 +79,7 @@ class Drawn : public VisitMethod {
   }
 
  private:
-  // As show/state/lamps.cpp: follow_lamps().
+  // Does as show/state/lamps.cpp: follow_lamps().
   void follow_light(const VisitMoment& moment) {
     cache_.set_reference(moment.technique == find_technique("path"));
     cache_.resize(moment.view.width, moment.view.height);
@@ -137,7 +137,7 @@ class Drawn : public VisitMethod {
     compositor_.follow_changes(cache_);
     if (!passing) compositor_.add_samples(view, requests_, samples_);
   }
-  // As show/draw/steer.cpp, of the picture just drawn, for the next.
+  // Does as show/draw/steer.cpp, with the picture just drawn, for the next.
   void steer(const VisitMoment& moment, const Frame& frame) {
     PictureJob job;
     job.view = moment.view;

@@ -16,12 +16,12 @@ double display_rmse(const Image8& test, const Image8& reference);
 // of the differences, in which the noise of neither counts. 0 where chance makes it negative.
 double display_rmse(const Image8& test, const Image8& one, const Image8& other);
 
-// What a view really shows, by primary rays without samples of light: through every pixel's centre
-// and, for objects, through the pixels' corners too.
+// Holds what a view really shows, by primary rays without samples of light: through every pixel's
+// centre and, for objects, through the pixels' corners too.
 struct TrueView {
   View view;
   std::vector<uint32_t> object, corner;  // corner: (width + 1) * (height + 1)
-  std::vector<vec3> position;  // of the centres' hits; unit direction where nothing is hit
+  std::vector<vec3> position;  // hits of the centres' rays; unit direction where nothing is hit
   std::vector<uint8_t> hit;
   std::vector<Hit> where;  // on a moving mesh: which triangle; else invalid
 };
@@ -30,8 +30,8 @@ struct TrueView {
 // even for a sample anywhere in the pixel.
 double wrong_surface_share(const TrueView& truth, std::span<const uint32_t> shown);
 
-// Where the surface at each pixel's centre was in the picture before, in pixels; NaN where it was
-// not seen then. `moved_back(hit)`: where a place on a moving mesh was then.
+// Returns where the surface at each pixel's centre was in the picture before, in pixels; NaN where
+// it was not seen then. `moved_back(hit)`: where a place on a moving mesh was then.
 template <class MovedBack>
 std::vector<vec2> motion_vectors(const TrueView& now, const TrueView& before, MovedBack moved_back);
 

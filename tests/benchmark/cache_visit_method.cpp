@@ -168,7 +168,7 @@ class Hold : public VisitMethod {
     int width = moment.view.width, height = moment.view.height, pixels = width * height;
     changed_ |= moment.changed;
     size_frame(shown_, width, height);
-    if (started_ && traced_ >= pixels) {  // what was begun frames ago is complete
+    if (started_ && traced_ >= pixels) {  // the picture begun frames ago is complete
       complete_ = true;
       pictures_ = begun_changed_ ? 1 : pictures_ + 1;
       for (size_t i = 0; i < shown_.color.size(); i++) {

@@ -17,21 +17,21 @@ namespace wellspring::test {
 struct VisitMoment {
   const World* world = nullptr;
   const Lights* lights = nullptr;               // without maps
-  std::shared_ptr<const IlluminationMap> maps;  // of the same lights; for who uses them
-  const LightChange* change = nullptr;  // of the light since the frame before, for who is told
+  std::shared_ptr<const IlluminationMap> maps;  // the same lights' maps, for methods that use them
+  const LightChange* change = nullptr;          // since the frame before, for methods that are told
   const Technique* technique = nullptr;
   TransportSettings transport;
   View view;            // wanted now
   bool changed = true;  // anything in the view moved, or its light changed, since the frame before
   int frame = 0;        // counted from 0
-  uint64_t seed = 1;    // of this frame
+  uint64_t seed = 1;    // this frame's
 };
 
-// What the screen shows. `object` is 0 where `empty` is not.
+// Holds the picture on the screen. `object` is 0 where `empty` is not.
 struct VisitPicture {
   Frame frame;       // color and object are always there
   double empty = 0;  // share of pixels that show nothing at all
-  CacheStats stats;  // of the cache only
+  CacheStats stats;  // the cache's alone
 };
 
 class VisitMethod {
@@ -81,8 +81,8 @@ std::unique_ptr<VisitMethod> make_hold();
 // While nothing changes, a pixel's samples add up.
 std::unique_ptr<VisitMethod> make_frameless();
 
-// How many columns and rows of a width x height picture `budget` samples can pay for, one each, at
-// about its aspect; at least 1x1.
+// Returns how many columns and rows of a width x height picture `budget` samples can pay for, one
+// each, at about its aspect; at least 1x1.
 ivec2 affordable_size(int width, int height, int budget);
 // Bilinear colour, nearest object; overwrites the planes of `large` (whose size is set).
 void upsample(const Frame& small, Frame& large);

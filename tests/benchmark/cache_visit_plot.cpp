@@ -25,7 +25,7 @@ struct Curve {
 };
 
 struct Panel {
-  double left = 0, top = 0, width = 0, height = 0;  // of the plotted area, pixels
+  double left = 0, top = 0, width = 0, height = 0;  // the plotted area, pixels
   dvec2 low{0}, high{1};                            // its corners in data
   double x(double v) const { return left + width * (v - low.x) / (high.x - low.x); }
   double y(double v) const { return top + height * (high.y - v) / (high.y - low.y); }
@@ -125,7 +125,7 @@ double largest_y(const std::vector<Curve>& curves) {
   return largest;
 }
 
-// Of the methods that were run; each has its colour, whichever others were.
+// Makes a curve for each method that was run; a method has its colour, whichever others were run.
 std::vector<Curve> empty_curves(const VisitResult& result) {
   std::vector<Curve> curves;
   size_t colour = 0;

@@ -20,7 +20,7 @@ std::unique_ptr<Show> open_show(const std::string& folder, const std::string& te
   return make_show(load_exhibit(folder), settings);
 }
 
-// Without the lamps that have a place: daylight stays.
+// Returns levels at which the lamps that have a place are off: daylight stays.
 LampLevels dark_levels(const Exhibit& exhibit) {
   LampLevels levels = first_levels(exhibit);
   for (size_t i = 0; i < levels.size(); i++) {
@@ -68,7 +68,7 @@ void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
     before_[size_t(i - first)] = world.mesh_of(uint32_t(i)).positions;
   Show& show = *show_;
   if (show.figures.empty()) return;
-  // As show/tick.cpp behaves and animates for one visitor.
+  // The figure behaves and moves as show/tick.cpp does it for one visitor.
   StorytellerInput input;
   input.time = time;
   input.dt = dt;

@@ -10,7 +10,7 @@
 namespace wellspring::test {
 
 struct TruthSettings {
-  int spp = 64;          // of each half
+  int spp = 64;          // samples a pixel in each half
   int max_depth = 6;     // as the show's
   uint64_t content = 0;  // hash of the exhibit's files
   std::string folder;    // made when missing
@@ -27,7 +27,7 @@ struct Truth {
 Truth find_truth(const World& world, const Lights& lights, const View& view,
                  const TruthSettings& settings);
 
-// Of the bytes and names of all files below a folder.
+// Hashes the bytes and names of all files below a folder.
 uint64_t hash_files(const std::string& folder);
 
 }  // namespace wellspring::test

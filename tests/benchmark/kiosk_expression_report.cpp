@@ -33,7 +33,8 @@ std::vector<VisitorSequence> make_sequences(bool quick) {
           frame.seconds = 2, frame.judged = true;
           frame.shot.visitors[0].expression = emotion;
           frame.shot.visitors[0].strength = strength;
-          frame.shot.visitors[0].eyes.x = 0.01f;  // who never stirs is a picture on the wall
+          // A visitor who never stirs is a picture on the wall.
+          frame.shot.visitors[0].eyes.x = 0.01f;
           sequence.frames.push_back(frame);
           frame.shot.visitors[0] = rest.shot.visitors[0];
           sequence.frames.push_back(frame);

@@ -63,7 +63,7 @@ std::vector<VisitorSequence> make_sequences(bool quick) {
   return all;
 }
 
-// Of one group of pictures.
+// Holds the errors in one group of pictures.
 struct Errors {
   VisitorMean axis[3], signed_axis[3], position, found;
   void add(const Visitor& truth, const VisitorSeen& seen) {
@@ -85,7 +85,7 @@ void bench_kiosk_figures(BenchReport& report, const BenchOptions& options) {
   VisitorStage stage = make_kiosk_stage(options);
   const auto sequences = make_sequences(options.quick);
   const auto seen = watch_visitors(stage, sequences, kiosk_watch(options, "figures"));
-  std::map<std::string, std::map<int, Errors>> by_range;  // of each figure, and of all
+  std::map<std::string, std::map<int, Errors>> by_range;  // errors by figure, and of all figures
   std::map<int, Errors> by_yaw;
   std::map<std::string, Errors> by_light;
   std::map<float, Errors> by_distance;

@@ -148,7 +148,7 @@ void report_other_motion(BenchReport& report, const GestureModels& models, int m
              {{"vocabulary", vocabulary}, {"method", "kiosk"}, {"minutes", minutes}});
 }
 
-// What the kiosk program tells of a video: seconds and gestures.
+// Holds what the kiosk program says of a video: seconds and gestures.
 struct Watched {
   double seconds = 0;
   int gestures = 0;

@@ -163,7 +163,7 @@ std::vector<VisitorSequence> make_sequences(VisitorStage& stage) {
 struct Outcome {
   VisitorMean found, rotation, position;
   int most = 0;
-  std::map<int, std::set<uint32_t>> numbers;  // that each figure had
+  std::map<int, std::set<uint32_t>> numbers;  // numbers that each figure had
   std::map<uint32_t, std::set<int>> owners;   // figures that each number was given to
 };
 

@@ -11,7 +11,7 @@ namespace wellspring::test {
 struct CurvePoint {
   int spp = 0;
   double seconds = 0, flip = 0, rmse = 0, relative_mse = 0;
-  double cpu_seconds = 0;  // of all threads: hardly changed by what else the machine does
+  double cpu_seconds = 0;  // all threads' time, which other work on the machine hardly changes
 };
 
 // Ends before a picture would take longer than `longest` seconds; one point at least.

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr int threads = 4, max_depth = 8;
 
-// What is compared: a file, and whether its metals are kept or Lambertian (cycles_job.h).
+// A case is a file, and whether its metals are kept or Lambertian (cycles_job.h).
 struct Case {
   const char* name;
   bool is_castle, metals;
@@ -61,8 +61,8 @@ PicturePair render_ours(const World& world, const Lights& lights, const View& vi
   return pair;
 }
 
-// What ours takes until its noise is theirs: twice the samples until it is below, and a power law
-// between the last two steps.
+// Says what our renderer needs until its noise is as low as theirs: samples are doubled until it is
+// below, and a power law gives the time between the last two steps.
 struct Reached {
   PicturePair pair;
   int spp = 4;

@@ -35,7 +35,7 @@ Scene make_dark(Scene scene) {
   return scene;
 }
 
-// What a picture would show of the dynamic light alone.
+// Draws a picture of the dynamic light alone.
 Frame draw_light(const VisibilityPass& visibility, const DynamicImage& image, const View& view) {
   Frame frame;
   fit_frame(view.width, view.height, frame);
@@ -47,8 +47,8 @@ struct Stages {
   std::vector<double> surfaces, direct, maps, splat, put, whole;
 };
 
-// Of a picture at rest with the torch at a place, milliseconds of processors; `clock`: by the
-// clock. What a stage takes by itself is measured again behind it.
+// Measures a picture at rest with the torch at a place, in milliseconds of processor time; `clock`:
+// in milliseconds of the clock. Each stage is then run again to measure its own time.
 void time_picture(const World& world, const Lights& lights, const VisibilityPass& visibility,
                   const Keyframe& keyframe, const BackdropSurfaces& backdrop,
                   const DynamicLight& torch, const SplatSettings& settings, DynamicImage& image,

@@ -16,7 +16,7 @@
 namespace wellspring::test {
 namespace {
 
-// Of this thread alone: the machine may have other work.
+// Returns the seconds of this thread alone: the machine may have other work.
 double cpu_now() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

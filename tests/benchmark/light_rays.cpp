@@ -147,7 +147,7 @@ double processor_seconds(int of) {
   return seconds(use.ru_utime) + seconds(use.ru_stime);
 }
 
-// What the other program says of itself, and the processor time that the system says of it.
+// Holds the other program's own figures, and the processor time that the system measures for it.
 struct OtherRun {
   double rays_per_second = 0;  // 0: it did not say
   double processor_seconds_per_ray = 0;

@@ -63,8 +63,8 @@ void compare_times(BenchReport& report, const std::string& scene, const std::str
               {"measured", ours.measured && reference.measured}});
 }
 
-// What a visitor waits for: the diffuse hall, as good as `path` leaves it, in what share of its
-// time.
+// Adds how long visitors wait in the diffuse hall: the share of `path`'s time that the technique
+// needs until its picture is as good.
 void add_hall_ratio(BenchReport& report, const std::vector<CurvePoint>& curve,
                     const std::vector<CurvePoint>& path) {
   Reached ours = time_to_flip(by_cpu(curve), flip_level),

@@ -20,7 +20,7 @@ constexpr Crowd crowds[] = {{1, 1280, 720, 1, true},        {4, 1280, 720, 1, tr
                             {8, 1280, 720, 1, true},        {20, 640, 360, 1, true},
                             {12, 1280, 720, 1.0 / 3, true}, {4, 1280, 720, 1, false}};
 
-// Of larger crowds some would wait for a seat.
+// If the crowd were larger, some of it would wait for a seat.
 constexpr int most_seated = 8;
 
 void measure(BenchReport& report, BenchOptions options, const Crowd& crowd) {

@@ -16,7 +16,7 @@
 namespace wellspring::test {
 namespace {
 
-constexpr size_t most_bytes = size_t(64) << 20;  // of a file
+constexpr size_t most_bytes = size_t(64) << 20;  // largest file
 constexpr const char* what = "a picture of the server's";
 
 View view_of(const KeyframeHeader& header, dvec3 origin) {

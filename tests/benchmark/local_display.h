@@ -29,8 +29,8 @@ class LocalDisplay {
   struct Shown {
     View view;
     uint32_t cuts = 0;
-    Image8 color;              // of any size
-    std::vector<float> depth;  // of the view's size; empty: there is none
+    Image8 color;              // any size
+    std::vector<float> depth;  // the view's size; empty: there is none
     Keyframe keyframe;         // made of these; empty: not yet
   };
   void take(Shown shown, bool is_around);

@@ -104,7 +104,8 @@ Cells key_of(const PageTable& table, const json& result) {
   return key;
 }
 
-// With `across` columns are the values of that field, else those of the table that have results.
+// Fills a table. With `across` its columns are the values of that field, else the table's columns
+// that have results.
 Lines fill_table(const PageTable& table, const std::vector<json>& results) {
   struct Cell {
     json value;

@@ -13,13 +13,14 @@ namespace wellspring::test {
 
 constexpr int most_page_lines = 60;
 
-// What a column shows of a result.
+// Says what a column shows of a result.
 struct PageColumn {
-  std::string metric;   // of the results: "flip"; or a whole name, where two metrics are alike
-  std::string heading;  // the unit is put behind it unless it has it
+  // end of the results' name: "flip"; or a whole name, if two metrics are alike
+  std::string metric;
+  std::string heading;  // heading; the unit is put behind it unless it has it
   double scale = 1;
-  std::string unit = {};        // of the scaled value; empty: the result's own
-  std::string field = "value";  // or another of the result's fields
+  std::string unit = {};        // unit of the scaled value; empty: the result's own
+  std::string field = "value";  // field of the result that is shown
 };
 
 struct PageKey {
@@ -31,7 +32,7 @@ struct PageFilter {
   std::vector<nlohmann::json> values;
 };
 
-// Which result is told where several fall into one cell.
+// Says which result is shown if several fall into one cell.
 enum class PageCell { first, last, least, most };
 
 // Rows are in the order of the results.
@@ -39,7 +40,7 @@ struct PageTable {
   std::string caption;
   std::vector<PageKey> rows = {};  // fields that tell rows apart; none: each column is a row
   std::vector<PageColumn> columns = {};
-  std::string across = {};            // of one column: a field whose values stand side by side
+  std::string across = {};            // with one column: a field whose values stand side by side
   std::vector<PageFilter> only = {};  // results with other values are left out
   PageCell cell = PageCell::last;
   int most_rows = 10;
@@ -47,7 +48,7 @@ struct PageTable {
 
 struct ReportPage {
   std::string report;                   // its name for --only
-  std::string question;                 // what it answers
+  std::string question;                 // question that the report answers
   std::vector<std::string> notes = {};  // how its figures are to be read
   std::vector<PageTable> tables = {};
 };
@@ -69,7 +70,7 @@ int count_page_lines(const ReportPage& page);
 // Three digits, or all that are before the point: 0.0372, 60.1, 47,600.
 std::string format_figure(double value);
 
-// What stands in a cell of a table: without line ends, | as \|.
+// Returns a table cell's text: without line ends, | as \|.
 std::string escape_cell(std::string_view text);
 
 }  // namespace wellspring::test

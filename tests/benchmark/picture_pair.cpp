@@ -12,7 +12,7 @@ double luminance_at(const Frame& frame, size_t i) { return double(luminance(fram
 
 }  // namespace
 
-// Of independent errors the difference has twice the variance.
+// If errors are independent, the difference has twice the variance.
 double noise(const PicturePair& pair) {
   double sum = 0;
   for (size_t i = 0; i < pair.a.color.size(); i++) {

@@ -11,29 +11,30 @@ struct BenchOptions {
   bool quick = false;
   std::string content = "content", web = "web";
   std::string scenes = "tests/benchmark/scenes";
-  std::string plots;        // what the names of pictures of curves begin with
+  std::string plots;        // beginning of the file names of curves' pictures
   std::string programs;     // folder of the other programs
   std::string cycles_case;  // light.cycles: only this one
-  // Of the simulated visits: one trace only, what answers samples, where to leave judged pictures.
+  // The simulated visits take these: one trace only, the technique of samples, a folder for judged
+  // pictures.
   std::vector<std::string> visit_methods;  // cache: only these; empty: all
   std::vector<int> visit_mismatches;
   std::string visit_trace, visit_technique = "gather", visit_pictures;
   std::vector<std::string> server_words;  // stream: more of the server's command line
-  double bake_seconds = 0;                // of illumination maps; 0: the run's own
+  double bake_seconds = 0;                // seconds to bake illumination maps; 0: the run's own
   int visit_width = 0, visit_instants = 0, visit_spp = 0;  // 0: the run's own
 };
-// Where converged pictures are kept from run to run.
+// Returns the folder that keeps converged pictures from run to run.
 std::string truths_folder(const BenchOptions& options);
 
-// How a report came about: {"date":"YYYY-MM-DD" (UTC), "commit":.., "arguments":[..]}. The commit
-// is that of the checkout that `folder` lies in, with "-dirty" where files differ from it; without
-// git there is none.
+// Says how a report came about: {"date":"YYYY-MM-DD" (UTC), "commit":.., "arguments":[..]}. The
+// commit is that of the checkout that `folder` lies in, with "-dirty" where files differ from it;
+// without git there is none.
 nlohmann::json describe_run(const std::vector<std::string>& arguments, const std::string& folder);
 
 class BenchReport {
  public:
   explicit BenchReport(nlohmann::json run = {}) : run_(std::move(run)) {}
-  // What is added from now on belongs to this report: "cache.warp".
+  // Names the report that results belong to from now on: "cache.warp".
   void begin(const std::string& part) { part_ = part; }
   // Prints the line as it is added. `fields`: scene, technique and whatever else tells results
   // apart.

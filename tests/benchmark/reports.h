@@ -12,7 +12,7 @@ namespace wellspring::test {
 struct ReportEntry {
   const char* name;
   void (*run)(BenchReport& report, const BenchOptions& options);
-  bool is_part = false;  // of another report: run only when it is named
+  bool is_part = false;  // part of another report: run only when it is named
 };
 
 std::span<const ReportEntry> report_entries();
@@ -39,7 +39,7 @@ ReportPage show_rest_page();
 ReportPage show_storyteller_page();
 ReportPage show_load_page();
 
-// What is declared for this report, else plain_page.
+// Returns the page that is declared for this report, else plain_page.
 ReportPage find_page(const std::string& name);
 
 // Writes a page for each report of `report`: into the file `where` if that ends with .md, one below

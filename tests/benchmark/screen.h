@@ -14,7 +14,8 @@ class Screen {
   Screen(int width, int height);  // black
   // Takes a binary message. False: it is no picture. Throws LoadError where a JPEG is damaged.
   bool receive(std::span<const uint8_t> message);
-  // As large as the screen: pictures of other sizes are scaled, as the page scales its canvas.
+  // Returns a picture as large as the screen: pictures of other sizes are scaled, as the page
+  // scales its canvas.
   Image8 picture() const;
 
  private:

@@ -19,7 +19,7 @@ class ShapedLine {
   ShapedLine(const ShapedLine&) = delete;
   ShapedLine& operator=(const ShapedLine&) = delete;
   void set_rate(double mbit);
-  uint16_t port = 0;  // of its near end
+  uint16_t port = 0;  // the near end's
 
  private:
   pid_t pid_ = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // show.storyteller.flip: a visitor stands before the storyteller of the castle, who tells a story.
-// FLIP of her head, where she is seen, in pictures of what moves as the show lays them over a
-// backdrop, against `path` with many samples of the same moment. A simulated clock: samples are
-// those that so many a second allow, so that the machine's speed is stated and not in the result.
-// show.storyteller.ms, by `part`: what a picture of her costs one core, and what finding her light
-// does, which is done skin_rate times a second. show.storyteller.places, .bytes: of the light kept
-// on figures.
+// It measures FLIP of the storyteller's visible head, in pictures of moving things as the show lays
+// them over a backdrop, against `path` with many samples of the same moment. The clock is
+// simulated: samples are those that so many a second allow, so that the machine's speed is stated
+// and not in the result. show.storyteller.ms, by `part`: what a picture of the storyteller costs
+// one core, and what finding the figure's light costs, which is done skin_rate times a second.
+// show.storyteller.places, .bytes: of the light kept on figures.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -57,7 +57,7 @@ View view_of_head(const World& world, const View& whole) {
   return view;
 }
 
-// Pixels that show her head.
+// Finds the pixels that show the storyteller's head.
 std::vector<bool> find_mask(const World& world, const View& view) {
   const float top = crown_of(world);
   std::vector<bool> mask;
@@ -71,7 +71,7 @@ std::vector<bool> find_mask(const World& world, const View& view) {
   return mask;
 }
 
-// What is around her counts as right.
+// Returns the mean FLIP in the mask; everything outside of it counts as right.
 double judge(Image8 shown, const Image8& truth, const std::vector<bool>& mask) {
   for (size_t i = 0; i < mask.size(); i++)
     if (!mask[i]) std::copy_n(&truth.rgb[3 * i], 3, &shown.rgb[3 * i]);
@@ -82,7 +82,7 @@ double judge(Image8 shown, const Image8& truth, const std::vector<bool>& mask) {
   return sum / std::max(count, 1.0);
 }
 
-// What the show does for a visitor at rest.
+// Draws for a visitor at rest as the show does.
 struct Visit {
   const VisitStage& stage;
   const View view;
@@ -171,7 +171,7 @@ void bench_show_storyteller(BenchReport& report, const BenchOptions& options) {
   trace.telling = true;
   trace.samples = {{0, at.position, at.yaw, at.pitch, at.fov}};
   const View whole = stage.view(trace, 0, width, height);
-  // At once, half a second after, and while she tells.
+  // Pictures are judged at once, half a second after, and while the story is told.
   const std::vector<int> judged =
       options.quick ? std::vector{0, 12, 75} : std::vector{0, 5, 12, 25, 50, 75, 100, 125};
   TruthSettings truths;
@@ -179,7 +179,8 @@ void bench_show_storyteller(BenchReport& report, const BenchOptions& options) {
   truths.content = hash_files(options.content + "/castle");
   truths.folder = truths_folder(options);
   stage.begin(trace);
-  for (int i = 0; i < 50; i++) stage.advance(trace, i / rate, float(1 / rate));  // she has begun
+  // The story has begun by then.
+  for (int i = 0; i < 50; i++) stage.advance(trace, i / rate, float(1 / rate));
   measure(report, stage, whole);
   const View view = view_of_head(stage.world(), whole);
   std::vector<std::unique_ptr<Visit>> visits;

@@ -31,7 +31,7 @@ double mean_flip_within(const Image8& test, const Image8& reference, const Conve
   return sum / (double(truth.window.width) * truth.window.height);
 }
 
-// As show/http/still.cpp lights a still picture, but for flicker.
+// Returns changing lights as show/http/still.cpp takes them for a still picture, but for flicker.
 std::vector<PunctualLight> mean_changing_lights(const Exhibit& exhibit, const LampLevels& levels) {
   std::vector<PunctualLight> lights;
   for (ChangingLight light : exhibit.lights) {

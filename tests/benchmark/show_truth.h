@@ -27,7 +27,7 @@ Image8 cut(const Image8& picture, const Window& window);
 
 struct Converged {
   Window window, around;    // around: what the pictures show; an edge wider, as FLIP sees that, too
-  Image8 picture, half[2];  // of `around`
+  Image8 picture, half[2];  // cut to `around`
 };
 // Mean FLIP of the window. `shown`: the whole picture.
 double judge(const Image8& shown, const Converged& truth);
@@ -45,7 +45,7 @@ class ShowTruth {
   Converged converge(const View& whole, const Window& window) const;
   Converged converge(const View& whole) const { return converge(whole, all_of(whole)); }
   const Exhibit& exhibit() const { return exhibit_; }
-  int spp() const { return 2 * settings_.spp; }  // of both halves
+  int spp() const { return 2 * settings_.spp; }  // samples a pixel of both halves together
 
  private:
   static Window all_of(const View& view) { return {0, 0, view.width, view.height}; }

@@ -16,8 +16,8 @@ namespace wellspring::test {
 namespace {
 
 constexpr double pose_interval = 1.0 / 60, rest = 2, first_within = 60;  // seconds
-constexpr int windows = 8;                                               // of a row and of a column
-constexpr double while_worst = 0.5;                                      // seconds
+constexpr int windows = 8;           // windows in a row and in a column
+constexpr double while_worst = 0.5;  // seconds
 
 // Neighbouring poses look at places far from each other.
 Window window_of(uint32_t seq) {
@@ -189,7 +189,7 @@ double WalkJudge::add_had(BenchReport& report, const std::string& name, const Sh
   };
   for (const auto& message : walk.before) take(message);
   Mean flip, halves, own;
-  // What the newest keyframe is wrong by itself, seen from where it was drawn.
+  // Judges the newest keyframe's own error, seen from where it was drawn.
   auto judge_own = [&](const ShownPicture& one) {
     View view = local.newest_view();
     view.width = shown_width, view.height = shown_height;

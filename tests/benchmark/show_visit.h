@@ -38,10 +38,10 @@ struct ShownWalk {
 // Throws LoadError.
 VisitTrace load_walk(const BenchOptions& options, std::string name = {});
 
-// How somebody visits.
+// Says how somebody visits.
 struct WalkWay {
   bool local = false;  // hello {display: "local"}
-  uint16_t port = 0;   // of a line to the server; 0: there is none
+  uint16_t port = 0;   // port of a line to the server; 0: there is none
 };
 // Two seconds at rest after the first picture, then the walk. Throws std::runtime_error where the
 // visit ends by itself.

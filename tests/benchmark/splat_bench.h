@@ -14,7 +14,7 @@ ReportPage splat_page();
 void bench_splat_error(BenchReport& report, const BenchOptions& options);
 ReportPage splat_error_page();
 
-// What every pixel of a view sees, by rays.
+// Holds what every pixel of a view sees, by rays.
 struct SeenPixels {
   View view;
   std::vector<float> depth, nx, ny, nz;
@@ -23,6 +23,6 @@ struct SeenPixels {
 };
 // A bulb that is carried: `step` two centimetres further each.
 SplatSource carried_torch(const View& view, int step);
-double processor_seconds();  // of all threads
+double processor_seconds();  // all threads together
 
 }  // namespace wellspring::test

@@ -22,7 +22,7 @@ struct Arrived {
   PacketHeader header;
 };
 
-// Until `seconds` have passed, or `enough` says so.
+// Turns until `seconds` have passed, or `enough` says so.
 template <class Enough>
 std::vector<Arrived> turn(WsClient& client, uint32_t& seq, double seconds, const Enough& enough) {
   constexpr double interval = 1.0 / 30;
@@ -69,7 +69,7 @@ void bench_line(BenchReport& report, const BenchOptions& options) {
     std::vector<double> lags, qualities, widths, gaps;
     double bytes = 0;
     for (size_t i = 0; i < pictures.size(); i++) {
-      // With the way back, as an acknowledgement would have it.
+      // The way back is added, as an acknowledgement would have it.
       lags.push_back(1000 * pictures[i].lag + trip_ms / 2);
       qualities.push_back(pictures[i].header.quality);
       widths.push_back(pictures[i].header.width);

@@ -13,8 +13,8 @@
 
 namespace wellspring::test {
 
-// A server of its own on a free port, as `./wellspring run` starts one, ended with this value. What
-// it finds out is kept in a folder of its own, empty at first and removed in the end, unless
+// Runs a server of its own on a free port, as `./wellspring run` starts one, and ends it with this
+// value. The server's cache is a folder of its own, empty at first and removed in the end, unless
 // BenchOptions::server_words name another by --cache=FOLDER. Throws std::runtime_error if it cannot
 // be started.
 class ServerProcess {
@@ -24,7 +24,7 @@ class ServerProcess {
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;
   double resident() const;      // memory in bytes
-  double core_seconds() const;  // of processor time so far
+  double core_seconds() const;  // processor time so far
   uint16_t port = 0;
   double started = 0;  // seconds_now() when its process began
 
@@ -39,7 +39,7 @@ void join_visit(WsClient& client, uint16_t port, int width = 1280, int height = 
 
 // The body of what it answers; empty where it does not. `path` begins with a slash.
 std::string fetch(uint16_t port, const std::string& path);
-// Of the server's /metrics; NaN where it has none of that name.
+// Returns a figure of the server's /metrics; NaN if it has none of that name.
 double read_metric(uint16_t port, const std::string& name);
 
 }  // namespace wellspring::test

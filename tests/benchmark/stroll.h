@@ -15,9 +15,9 @@ namespace wellspring::test {
 Input stroll(double t, uint32_t seq, double interval);
 
 struct Stroll {
-  std::vector<double> arrivals;   // of pictures, seconds from the first that counts
+  std::vector<double> arrivals;   // pictures' arrivals, seconds from the first that counts
   std::vector<double> latencies;  // milliseconds from an input to the first picture that shows it
-  std::vector<double> bytes;      // of pictures
+  std::vector<double> bytes;      // pictures' sizes
   size_t repeated = 0;            // the same as the one before
   double walked = 0;              // seconds
   double fps() const;

@@ -53,10 +53,10 @@ async function visit(options, path = '/e/castle') {
   return page;
 }
 
-// What axe-core finds on the page as it is: a line each.
+// Returns what axe-core finds on the page as it is, a line each.
 async function look(page, state) {
   await page.evaluate(() => document.body.classList.remove('quiet'));
-  // What appears slowly is there.
+  // The page is looked at once slow appearances have ended.
   await page.waitForFunction(() => document.getAnimations().every((one) =>
     one.playState !== 'running' || one.effect.getComputedTiming().endTime === Infinity));
   if (pictures) await page.screenshot({ path: join(pictures, `access-${state}.png`) });
@@ -132,7 +132,7 @@ for (const [size, options] of Object.entries(sizes)) {
   });
 }
 
-// Of the element that has the focus: its name in a list, whether it is inside the window, and its
+// Describes the focused element: its name in a list, whether it is inside the window, and its
 // outline.
 const focused = (page) => page.evaluate(() => {
   const at = document.activeElement, box = at.getBoundingClientRect(), style = getComputedStyle(at);
@@ -190,8 +190,8 @@ test('the Tab key goes from above to below, and what has the focus is seen', { s
   await page.context().close();
 });
 
-// What can be pressed and is seen, where it is smaller than a finger, or sticks out of the window
-// sideways. Links within sentences are as high as those.
+// Returns visible controls that are smaller than a finger or stick out of the window sideways.
+// Links within sentences are as high as their lines and are not judged.
 const misfits = (page, least) => page.evaluate((size) => {
   const found = [];
   for (const one of document.querySelectorAll('button, input, select, summary, a[href]')) {

@@ -10,10 +10,10 @@ export const skip = !executable && 'no Chromium on this machine';
 // a folder for screenshots, for people to look at
 export const pictures = process.env.WELLSPRING_PICTURES;
 
-// By which it draws in three dimensions: by the processor, slowly.
+// With these arguments the processor draws in three dimensions, slowly.
 export const by_processor = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
-// Without `drawing` it draws nothing in three dimensions, so that pictures come finished and cores
-// are left for the server.
+// Starts the browser. Without `drawing` it draws nothing in three dimensions, so that pictures come
+// finished and cores are left for the server.
 export async function launch(drawing = ['--disable-gpu', '--disable-3d-apis']) {
   const browser = await load_module('playwright-core').chromium.launch({
     executablePath: executable,

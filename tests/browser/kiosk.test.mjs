@@ -84,7 +84,7 @@ async function open_book(page) {
 const shot = async (page, name) => {
   if (pictures) await page.screenshot({ path: join(pictures, `kiosk-${name}.png`) });
 };
-// What is visible lies in the window, does not scroll it, and can be hit by a finger.
+// Visible controls lie in the window, do not scroll the page, and can be hit by a finger.
 async function holds(page, where) {
   const bad = await page.evaluate(() => {
     const out = [];
@@ -397,7 +397,7 @@ test('ten thousand random touches and observations leave no broken state', { ski
   }
   const ours = problems.filter((one) => !/setPointerCapture|InvalidPointerId/.test(one));
   assert.deepEqual(ours, []);
-  // And it still works.
+  // The page still works.
   kiosk('farewell');
   await view_is(page, 'well');
   kiosk('sleep');

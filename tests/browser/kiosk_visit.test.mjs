@@ -33,7 +33,7 @@ test('from sleep to farewell by touch alone', { skip }, async (context) => {
   const view_is = (view) => page.waitForFunction(
       (wanted) => document.body.dataset.view === wanted, view);
 
-  // Who stands there: a filmed man, or one who comes, stands for ten seconds, and goes again.
+  // The camera sees a filmed man, or one who comes, stands for ten seconds, and goes again.
   const film = join(data, '5_faces', 'headtrackr', 'capture4.mp4');
   const camera = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_kiosk'), ['--camera',
     ...(existsSync(film) ? [film] : ['synthetic', '--width', '320', '--rate', '10']),

@@ -94,7 +94,7 @@ test('without a WebSocket the page says what it needs', { skip }, async () => {
   assert.match(await page.textContent('#too-old'), /needs a newer browser/);
   assert.doesNotMatch(await page.textContent('#veil'), /Opening/);
   await close(page, 'modest-socket');
-  // And in the visitor's language.
+  // The page says it in the visitor's language, too.
   const german = await open(() => { delete /** @type {any} */ (window).WebSocket; }, '/',
       { locale: 'de-DE' });
   await german.waitForSelector('#too-old:lang(de)');

@@ -130,7 +130,7 @@ test('a visitor and a kiosk choose who tells', { skip }, async () => {
       document.querySelector('#places [aria-current=true]')?.dataset.viewpoint === 'chronicler');
   await sleep(2500);
   await shot(page, 'chronicler');
-  // A story of the other one brings her back.
+  // A story of the other storyteller brings that one back.
   await page.locator('#menu-button').click();
   await page.locator('#stories [data-story=well]').click();
   await page.waitForFunction(() =>
@@ -228,7 +228,7 @@ test('the hour of the day is a slider that says the time', { skip }, async () =>
     assert.fail(`it does not get dark: ${after} after ${before}`);
   }
   await shot(page, 'hour-late');
-  // What the server says stands when the page is loaded again.
+  // The server's state stands when the page is loaded again.
   await sleep(2500);
   await page.reload();
   await page.waitForFunction(() => document.getElementById('hour').value === '22');
@@ -244,7 +244,7 @@ test('the hour of the day is a slider that says the time', { skip }, async () =>
 test('lamps are switched in the menu, for oneself', { skip }, async () => {
   const { page, problems } = await open();
   const { page: other } = await open();
-  for (const of of [page, other])  // where there is little but the day's light
+  for (const of of [page, other])  // there is little light but the day's
     await of.locator('#places button', { hasText: 'Courtyard' }).click();
   const level = async (of) => (await look(of))
       .reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0) / (24 * 14 * 3);

@@ -5,8 +5,8 @@
 export const difference = (a, b) =>
   a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
 
-// In a page: hides all but the museum's picture, wherever it is drawn, or shows it again; what is
-// focused stays so.
+// Runs in a page: hides all but the museum's picture, wherever it is drawn, or shows it again; the
+// focus stays.
 export function hide_in_page(hides) {
   const all = /** @type {any} */ (globalThis);
   if (!all.only_picture) {
@@ -18,7 +18,7 @@ export function hide_in_page(hides) {
   document.adoptedStyleSheets = hides ? [all.only_picture] : [];
 }
 
-// In a page: mean colours, RGBA, of a grid of cells of a PNG in base64.
+// Runs in a page: returns mean colours, RGBA, of a grid of cells of a PNG in base64.
 export async function shrink_in_page([base64, columns, rows]) {
   const image = new Image();
   image.src = `data:image/png;base64,${base64}`;

@@ -45,7 +45,7 @@ async function close(page) {
   assert.deepEqual(page.heard.filter(({ type }) => type === 'error'), []);
   await page.context().close();
 }
-// Of a card that opens when its object is chosen in the menu.
+// Opens the card of an object, which is chosen in the menu.
 async function look_closer(page, id) {
   await page.click('#menu-button');
   await page.locator(`#objects [data-object=${id}]`).click();
@@ -65,7 +65,7 @@ const shot = async (page, name) => {
   if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`) });
 };
 const look = (page) => look_at(page, 32, 20);
-// Until it has changed by that much.
+// Waits until the picture has changed by that much.
 async function changes(page, from, least) {
   const ends = performance.now() + 20000;
   let now = 0;

@@ -21,8 +21,8 @@ after(async () => {
 const laptop = { viewport: { width: 1280, height: 800 } };
 const phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
-// options: of Playwright's context. `script`: run in the page before its own. What the page says to
-// the server and hears from it is kept in page.said and page.heard.
+// Opens the page. options: as of Playwright's context. `script`: run in the page before its own.
+// The page's messages to the server and from it are kept in page.said and page.heard.
 async function open({ path = '/', options = laptop, script } = {}) {
   const context = await browser.newContext(options);
   const page = await context.newPage();
@@ -134,7 +134,7 @@ test('an object is looked at closer, read about, and its story heard', { skip },
   const went = await message(page.heard, 'went');
   await message(page.heard, 'state', ({ position }) => distance(position, went.place) < 0.05);
   await shot(page, 'card');
-  // In the middle of the picture is the horse, which a click finds as well.
+  // The horse is in the middle of the picture, and a click finds it as well.
   page.heard.length = 0;
   await sleep(1000);
   await page.mouse.click(640, 400);

@@ -28,12 +28,12 @@ inline Bytes take_until(Bytes& bytes, uint8_t end) {
   return taken;
 }
 
-// What a reader promises of everything that it accepts.
+// Checks a rule that a reader keeps for everything that it accepts.
 inline void require(bool holds, const char* rule) {
   if (!holds) throw std::logic_error(rule);
 }
 
-// To be refused with a LoadError is an answer.
+// Runs a reader; a LoadError that says what is wrong is an answer, too.
 template <class Read>
 void load(const Read& read) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What browsers send. What is accepted can be written, and is read back.
+// Feeds messages of browsers. Accepted messages can be written, and are read back.
 #include "fuzz/fuzz.h"
 #include "wire/json.h"
 

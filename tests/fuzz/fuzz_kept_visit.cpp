@@ -10,7 +10,7 @@
 
 namespace wellspring::fuzz {
 
-// What stands in a sealed text, which an older program may have written.
+// Feeds the content of a sealed text, which an older program may have written.
 void fuzz_kept_visit(Bytes bytes) {
   ShowStage stage;
   begin_small_show(stage);

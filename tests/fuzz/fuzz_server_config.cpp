@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program's configuration file. What is accepted can be written, and is read back.
+// Feeds a program's configuration file. Accepted files can be written, and are read back.
 #include <CLI/CLI.hpp>
 
 #include "config/config_file.h"

@@ -31,7 +31,7 @@ struct Corpus {
     std::ofstream out(path(target, name), std::ios::binary);
     out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
   }
-  // What stands behind the head of a kept file.
+  // Puts the bytes behind a kept file's head.
   void put_contents(const std::string& target, const std::string& name) const {
     put(target, name, folder.read(name).substr(24));
   }

@@ -24,7 +24,7 @@ SpotCounts count_spotted(std::span<const TrueGesture> truth,
                          std::span<const SpottedGesture> spotted) {
   SpotCounts counts;
   counts.tests = int(truth.size());
-  // Of those that meet the same true gesture one of its own label is preferred.
+  // If several meet the same true gesture, one of its own label is preferred.
   std::vector<int> state(truth.size());  // 0: missed, 1: another label, 2: correct
   for (const SpottedGesture& found : spotted) {
     double most = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well gestures are recognised and spotted (Elmezain et al. 2009, section 4, equations 15 and
-// 16).
+// Measures how well gestures are recognised and spotted (Elmezain et al. 2009, section 4, equations
+// 15 and 16).
 #pragma once
 #include <span>
 
@@ -14,13 +14,13 @@ struct SpotCounts {
   SpotCounts& operator+=(const SpotCounts& other);
 };
 
-// correct / tests, and correct / (tests + inserted); 0 without tests.
+// Return correct / tests, and correct / (tests + inserted); 0 without tests.
 double recognition_ratio(int correct, int tests);
 double reliability(const SpotCounts& counts);
 
-// Compares what was spotted with what was there. A spotted gesture belongs to the true one with
-// which it shares most time, at least a third of the shorter one; each true one takes one. Of the
-// same label: correct; of another: substituted. True ones without any are deleted, spotted ones
+// Compares spotted gestures with true ones. A spotted gesture belongs to the true one with which it
+// shares most time, at least a third of the shorter one; each true one takes one. With the same
+// label it is correct, with another substituted. True ones without any are deleted, spotted ones
 // without any are inserted.
 SpotCounts count_spotted(std::span<const TrueGesture> truth,
                          std::span<const SpottedGesture> spotted);

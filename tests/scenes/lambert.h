@@ -10,7 +10,8 @@
 
 namespace wellspring::scenes {
 
-// What of a polygon lies above the plane through the origin with normal n (Sutherland and Hodgman).
+// Returns the part of a polygon above the plane through the origin with normal n (Sutherland and
+// Hodgman).
 inline std::vector<dvec3> above_horizon(const std::vector<dvec3>& polygon, dvec3 n) {
   std::vector<dvec3> result;
   for (size_t i = 0; i < polygon.size(); i++) {
@@ -36,8 +37,8 @@ inline double polygon_irradiance(dvec3 p, dvec3 n, std::vector<dvec3> polygon) {
   return std::abs(sum) / 2;
 }
 
-// From a convex body of radiance 1: the sum over the triangles that face p, exact for the body as
-// it is tessellated.
+// Returns the irradiance from a convex body of radiance 1: the sum over the triangles that face p,
+// exact for the body as it is tessellated.
 inline double convex_irradiance(dvec3 p, dvec3 n, const Mesh& mesh, const mat4& to_world) {
   double sum = 0;
   for (const uvec3& t : mesh.triangles) {

@@ -17,7 +17,7 @@ import { write_pyramid } from './pyramid.mjs';
 const soak = Number(process.env.WELLSPRING_SOAK ?? 0);  // seconds
 const scale = soak ? 4 : 1;
 const secret = 'a secret that no log may hold';
-const places = 400 * scale;  // of the server, in all
+const places = 400 * scale;  // connections to the server, in all
 const may_grow = 96;         // MiB, over all attacks together
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-attack-'));

@@ -10,7 +10,7 @@ const text = Buffer.from(JSON.stringify(
     { type: 'hello', exhibit: '', width: 160, height: 90, lang: 'en', role: 'visitor' }));
 const hello = Buffer.concat([Buffer.from([0x81, 0x80 | text.length, 0, 0, 0, 0]), text]);
 
-// What is said first, and what after the server's first words.
+// A client says the first item at once, and the others after the server's first words.
 const states = [
   [''], ['G'], ['GET / HTTP/1.1\r\nHost: loc'], [request('GET /')],
   [`${request('POST /api/v1/admin/announce', 'Content-Length: 99\r\n')}{`],

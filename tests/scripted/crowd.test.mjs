@@ -10,7 +10,7 @@ const seconds = Number(process.env.WELLSPRING_SOAK ?? 20);
 const seed = Number(process.env.WELLSPRING_SEED ?? 1);
 const crowd_size = 20;
 const long_enough = 300;  // seconds after which memory is judged
-const warm_up = 120;      // of which memory is only looked at
+const warm_up = 120;      // seconds at first in which memory is not judged
 const may_grow = 96;      // MiB from then on
 const most_waiting = 60000;  // ms for a welcome, on cores that others use, too
 
@@ -41,8 +41,8 @@ async function metric(name) {
   return Number(new RegExp(`^wellspring_${name}(?:\\{.*\\})? (\\S+)$`, 'm').exec(text)[1]);
 }
 
-// What may be answered to an order that is right: a place that cannot be gone to, a group that has
-// gone or whose leader decides.
+// Lists errors that may answer an order that is right: there is no way to the place, or the group
+// has gone or its leader decides.
 const may_refuse = {
   go: ['no_way', 'nothing_there', 'in_group'], group: ['no_group', 'unknown_group'],
   tour: ['in_group'], lamp: ['in_group'], storyteller: ['in_group'], ask: ['in_group'],
@@ -50,7 +50,7 @@ const may_refuse = {
 // Errors do not say what they answer: an order's are those that it and what is under way may get.
 const settled = 5000;  // ms after which an order is no longer under way
 
-const codes = new Set();  // of groups that are led
+const codes = new Set();  // codes of groups that are led
 
 class Guest {
   constructor(number) {
@@ -84,11 +84,11 @@ class Guest {
     this.resumed += this.home.resumed;
   }
 
-  // What it did not ask for must not come.
+  // Notes messages that this guest did not ask for.
   hear(message) {
     const { type } = message;
     if (type === 'welcome') {
-      if (message.resumed) return;  // what was asked for before goes on, and lamps are as they were
+      if (message.resumed) return;  // earlier orders go on, and lamps are as they were
       for (const lamp of message.lamps) this.lamps[lamp.name] = [lamp.on];
       this.asked = new Set();
       this.asked_story = this.asked_tour = false;
@@ -153,7 +153,7 @@ class Guest {
       [2, () => this.send('storyteller', { teller: dice.among(home.storytellers).id })],
       [7, () => {
         const { name } = dice.among(home.lamps), on = dice.next() < 0.5;
-        // Until the order has come it may be either.
+        // Until the order has come the lamp may be either.
         this.lamps[name] = [true, false];
         this.send('lamp', { name, on });
       }],
@@ -180,7 +180,7 @@ class Guest {
     const code = this.dice.among([...codes, '']);
     const action = this.dice.among(code ? ['lead', 'follow', 'rejoin', 'leave', 'leave']
         : ['lead', 'leave']);
-    if (action === 'follow') {  // what its leader is told it hears, too
+    if (action === 'follow') {  // a follower hears what its leader is told
       this.asked_story = this.asked_tour = true;
       this.follows ||= 'perhaps';
     }

@@ -116,14 +116,14 @@ test('keyframes of a walk show the same places', async () => {
   assert.equal(position.length, 3);
   assert.ok(share_alike(before_turn, turned) > 0.85, 'places are found again');
   assert.ok(share_alike(turned, before_turn) > 0.85, 'and the other way round');
-  // What lies around is a wide view of few pixels.
+  // The surroundings are a wide view of few pixels.
   const { view, unit, units } = await wide;
   assert.ok(view.tan_half_fov * view.width / view.height > 1.4);
   assert.ok(view.width * view.height < before_turn.view.width * before_turn.view.height / 5);
   const pixel = (one) => one.tan_half_fov / one.height;
   const reach = Math.ceil(pixel(view) / pixel(turned.view));
   assert.ok(share_alike({ view, unit, units }, turned, reach) > 0.8, 'it shows the same room');
-  // At rest what has changed of it comes in parts.
+  // At rest, changes of the picture come in parts.
   await visitor.picture(({ parts, flags }) => parts?.length > 0 && !(flags & 4));
   await visitor.close();
 });
@@ -175,7 +175,7 @@ test('what moves before who stands comes as a layer of its own', async (t) => {
   assert.deepEqual(layer.view.forward, whole.view.forward);
   const moved = await next_keyframe(visitor, ({ layer, frame }) => layer && frame > whole.frame);
   assert.notDeepEqual(moved.payload, layer.payload, 'she breathes');
-  // Who walks gets her in the keyframe.
+  // A visitor who walks gets the storyteller in the keyframe.
   visitor.send({ type: 'input', seq: 2, move: [0.3, 0, 0], look: [0, 0] });
   await next_keyframe(visitor, ({ seq, still, around }) => seq === 2 && !still && !around);
   await visitor.close();

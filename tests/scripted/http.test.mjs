@@ -32,7 +32,7 @@ function raw(text) {
   });
 }
 
-// What is on the line: fetch() unpacks.
+// Returns the reply as it is on the line; fetch() would unpack it.
 function on_the_line(path, headers = {}, method = 'GET') {
   return new Promise((resolve, reject) => {
     http.request(server.url + path, { method, headers, agent: false }, (reply) => {

@@ -13,14 +13,14 @@ let server;
 before(async () => { server = await start_server(); });
 after(async () => { if (server) assert.equal(await server.stop(), 0); });
 
-// Whom an earlier test has seen is gone.
+// Each test begins when guests of an earlier one are gone.
 const is_empty = [/^wellspring_kiosk_cameras 0$/m, /^wellspring_audience\{state="absent"\} 1$/m];
 beforeEach(async () => {
   await until(async () => {
     const metrics = await (await fetch(`${server.url}/metrics`)).text();
     return is_empty.every((line) => line.test(metrics));
   });
-  await sleep(2200);  // what a camera said last counts for two seconds
+  await sleep(2200);  // a camera's last words count for two seconds
 });
 
 function start_kiosk(cameras, more = [], on = server) {
@@ -214,7 +214,7 @@ test('a filmed man: the storyteller\'s gaze follows his head',
   }, 100);
   context.after(() => clearInterval(timer));  // a failed test ends, too
   context.after(() => kiosk.stop());
-  // What she says before he is seen is for somebody else, of whom she still takes leave.
+  // Subtitles before he is seen are for somebody else, of whom the storyteller still takes leave.
   const says = (item) => item.message?.type === 'subtitle' && item.message.text;
   do await page.next(says, 'greeting');
   while (!kiosk.observations.some((one) => one.state === 'person'));

@@ -26,8 +26,8 @@ test('who switches a lamp is told, and sees it; others do not', async () => {
   const { name } = welcome.lamps.find((lamp) => lamp.name === 'daylight');
   assert.ok(welcome.lamps.every((lamp) => lamp.on && lamp.title && !lamp.shared));
   assert.notEqual(greeted.lamps[0].title, welcome.lamps[0].title);
-  // Where nothing moves, so that pictures are alike but for their light, and most of that is the
-  // day's.
+  // Both visitors stand at the well: nothing moves there, so that pictures are alike but for their
+  // light, and most of that light is the day's.
   for (const visitor of [one, other])
     visitor.send({ type: 'viewpoint', seq: 1, name: 'well' });
   const told = other.message('state', (message) => message.lamps[name] === false);
@@ -56,7 +56,7 @@ test('what is no lamp is refused', async () => {
   }
   const about = await (await fetch(`${server.url}/api/v1/exhibits/castle`)).json();
   assert.ok(about.lamps.every((lamp) => lamp.name && lamp.title.en && lamp.on_at_first === true));
-  // What /metrics tells is made anew now and then.
+  // The server renews /metrics now and then.
   const switched = /^wellspring_lamps_switched_total 2$/m;
   const metrics = async () => (await fetch(`${server.url}/metrics`)).text();
   for (let i = 0; i < 50 && !switched.test(await metrics()); i++) await sleep(100);

@@ -48,7 +48,7 @@ test('a slow line gets smaller pictures, is named, and recovers', async () => {
     await visitor.picture();
     const slow = await turn_until(visitor, 3, 1, ({ pictures, last }) =>
       pictures.length >= 6 && last.quality <= 40 && last.width < 1280);
-    // What the line carries in that time, and what lay in its queue.
+    // The limit is what the line carries in that time, and what lay in its queue.
     assert.ok(slow.bytes < (slow.seconds + 0.5) * 125000, `${slow.bytes} bytes`);
     for (let i = 0; (await visitor.message('state')).limit !== 'network'; i++)
       assert.ok(i < 100, 'the line is named as what limits');
@@ -92,7 +92,7 @@ test('at rest only what changes is sent, at last finer, and then nothing', async
   await visitor.hello({ width: 160, height: 96, parts: true });
   const { position, yaw } = await visitor.message('state');
   visitor.send({ type: 'settings', max_quality: 95 });
-  // To the floor, where nothing moves.
+  // The visitor looks at the floor, where nothing moves.
   visitor.send({ type: 'camera', seq: 1, position, yaw, pitch: -1.4 });
   const fine = await visitor.picture(
       ({ seq, parts, quality }) => seq === 1 && parts && quality === 95, 60000);
@@ -101,7 +101,7 @@ test('at rest only what changes is sent, at last finer, and then nothing', async
     assert.ok(x % 32 === 0 && y % 32 === 0 && x + width <= 160 && y + height <= 96);
     assert.deepEqual([...jpeg.subarray(0, 2), ...jpeg.subarray(-2)], [0xff, 0xd8, 0xff, 0xd9]);
   }
-  // Until the picture has all its samples, and every tile is fine.
+  // The loop goes on until the picture has all its samples, and every tile is fine.
   for (let quiet = 0, count = visitor.pictures, turns = 0; quiet < 2; turns++) {
     assert.ok(turns < 200, 'it comes to rest');
     await sleep(500);

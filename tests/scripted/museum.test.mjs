@@ -90,7 +90,7 @@ test('visitors come to the exhibit that they ask for, and are by themselves ther
 });
 
 test('figures of all exhibits, told apart', async () => {
-  // What /metrics tells is made anew now and then.
+  // The server renews /metrics now and then.
   let text = '';
   const visited = (id) =>
     new RegExp(`^wellspring_visits_total\\{exhibit="${id}"\\} [1-9]`, 'm').test(text);

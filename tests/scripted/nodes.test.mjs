@@ -81,14 +81,16 @@ class Page {
       assert.ok(Date.now() < end, 'the page is never told where it is');
   }
 
-  // Whether its text tells of the pose: a server seals it, but it is no secret.
+  // Says whether the token's text has the pose: a server seals the token, but its text is no
+  // secret.
   is_kept() {
     if (!this.token) return false;
     const { place } = JSON.parse(Buffer.from(this.token.split('.')[0], 'base64url'));
     return this.pose.position.every((v, i) => Math.abs(v - place[i]) < 1e-3);
   }
 
-  // What follows of a broken line happens by itself. `seen`: what came first on this line.
+  // Opens a line; when it breaks, another is opened later. `seen`: the first messages of each type
+  // on this line.
   async open() {
     const headers = { cookie: `wellspring=${this.cookie}` };
     const line = new Visitor(front, { options: { headers } });

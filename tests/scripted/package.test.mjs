@@ -76,7 +76,8 @@ test('the server runs from where it is unpacked, with what lies beside it', asyn
   const printed = call(join(programs, 'wellspring_server'), ['--print-config']);
   assert.match(printed, /^content = \/var\/lib\/wellspring\/exhibits$/m, 'it reads its own file');
   assert.equal(readFileSync(config, 'utf8'), printed);
-  // What cannot be written here is elsewhere; what is changed counts.
+  // The file's folders cannot be written here, so others are put into it: changes of the file
+  // count.
   const content = join(folder, 'content');
   call(join(root, 'usr/bin/wellspring'),
       ['new', 'giza', write_pyramid(folder), '--content', content]);
@@ -107,7 +108,7 @@ test('the words of the documents work once installed', () => {
 test('systemd takes the units, and finds the services shut off', (context) => {
   if (spawnSync('systemd-analyze', ['--version']).error)
     return context.skip('there is no systemd-analyze here');
-  // As they are, but that programs lie where they are unpacked.
+  // The units are checked as they are, but their programs lie where they are unpacked.
   const place = (name) => join(folder, 'units', name);
   mkdirSync(join(folder, 'units'));
   const take = (kind, name) => writeFileSync(place(name),

@@ -39,7 +39,7 @@ async function say_hello(fields = {}) {
   visitor.send({ type: 'hello', ...size, ...fields });
   return visitor;
 }
-// Who turns now and then is not asked whether they are there.
+// Turns now and then: such a visitor is not asked whether they are there.
 function keep_busy(visitor) {
   let seq = 1000;
   const timer = setInterval(() =>
@@ -85,7 +85,7 @@ test('who does nothing is asked, rests, and goes on where they were', async () =
   const { seconds } = await visitor.message('idle', ({ state }) => state === 'asked');
   assert.equal(seconds, 1);
   await visitor.message('idle', ({ state }) => state === 'paused');
-  // What is told to the page is done before the next report.
+  // The page hears of the pause before the next report of /metrics shows it.
   await until(async () => await metric('visits_resting') === 1, 'the visit rests');
   assert.equal(await metric('seats_taken'), 0);
   const { pictures } = visitor;

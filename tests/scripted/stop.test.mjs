@@ -48,7 +48,7 @@ const still = (server, query, options) =>
 const dear = (i) => `width=1920&height=1080&spp=64&seconds=600&denoise=0&yaw=${i / 10}`;
 
 test('dear pictures are given up when nobody waits, and when the server ends', async () => {
-  // Of pictures of an hour an address may ask for two: on no machine are these ten too many.
+  // An address may ask for two pictures of an hour each: on no machine are these ten too many.
   const server = await start_server([...usual, '--still-seconds', '3600']);
   const leaving = new AbortController();
   const left = still(server, dear(0), { signal: leaving.signal }).catch(() => 'left');
@@ -115,7 +115,7 @@ test('it ends while it loads, and a second signal ends it at once', async () => 
   server.child.kill('SIGTERM');
   await until(async () => (await health(server.port)).join() === '503,draining', 'it drains');
   const late = new Visitor(server);
-  await late.hello();  // who comes all the same is served
+  await late.hello();  // a visitor who comes all the same is served
   assert.equal(await ends(server, 'SIGINT'), 130);
   assert.equal((await late.closed).code, 1006);
 });

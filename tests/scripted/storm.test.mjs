@@ -6,8 +6,8 @@ import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { Visitor, judges_memory, sleep, start_server } from '../server.mjs';
 
-const seconds = 1.5;    // of each count
-const least_kept = 0.3;  // of the pictures: half would be the other's by right
+const seconds = 1.5;    // length of each count
+const least_kept = 0.3;  // share of the pictures; half would be the other's by right
 
 let server;
 before(async () => { server = await start_server(['--no-bake']); });

@@ -14,7 +14,7 @@ before(async () => {
   assert.equal((await run('wellspring_new', ['giza', model, '--content', content])).status, 0);
 });
 after(() => rmSync(folder, { recursive: true, force: true }));
-// Where what is there to see does not matter: an exhibit that is soon loaded.
+// Starts a server with an exhibit that is soon loaded: these tests do not look at it.
 const start_small = (args = []) => start_server(['--exhibit', 'giza', ...args], { content });
 
 // {"what key": value} of all days.

@@ -58,7 +58,7 @@ function ask(url, options = {}) {
   });
 }
 
-// What a handshake comes to: {protocol, cipher, name}, or the error's code.
+// Returns the end of a handshake: {protocol, cipher, name}, or the error's code.
 function shake_hands(options = {}) {
   return new Promise((resolve) => {
     const socket = tls.connect({ host: '127.0.0.1', port: server.port, ca, ...options }, () => {
@@ -138,7 +138,7 @@ test('the page opens its visit over TLS, too', { skip }, async () => {
   }
 });
 
-// Of a kiosk's program: what its log says that matches, or all of it after a long time.
+// Runs a kiosk's program until its log matches `wanted`, or for a minute; returns the log.
 function kiosk_says(address, args, wanted) {
   return new Promise((resolve) => {
     const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_kiosk'),

@@ -40,7 +40,7 @@ test('all that is linked is listed, with licence, version and purpose', async ()
       .map((line) => basename(line.trim().split(' ')[0])).filter((name) => /\.so/.test(name))
       .filter((name) => !name.startsWith('linux-vdso')).sort();
   assert.ok(linked.length > 10, linked.join());
-  // Where it is installed, oneTBB loads its allocator itself.
+  // If oneTBB's allocator is installed, oneTBB loads it itself.
   const loads = (name) => name.startsWith('libtbbmalloc.');
   assert.deepEqual(listed.filter((name) => linked.includes(name) || !loads(name)), linked);
   const needed = [...output('readelf', ['-d', server]).matchAll(/\(NEEDED\).*\[(.+)\]/g)];

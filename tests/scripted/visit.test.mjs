@@ -77,7 +77,7 @@ test('standing still gives stills of better quality', async () => {
   const { storyteller } = await visitor.hello();
   const [x, y, z] = storyteller.position;
   visitor.send({ type: 'settings', quality: 60, max_quality: 91 });
-  // Beside the storyteller, looking away from her: nothing in the picture moves.
+  // The visitor stands beside the storyteller and looks away: nothing in the picture moves.
   visitor.send(
       { type: 'camera', seq: 1, position: [x + 2, y + 1.6, z], yaw: -Math.PI / 2, pitch: 0 });
   const moving = await visitor.picture((picture) => picture.seq === 1 && !(picture.flags & 1));
@@ -179,7 +179,7 @@ test('a viewer that stops reading costs nothing that grows, and the others go on
   const other = new Visitor(server);
   await other.hello();
   await sleep(1500);
-  // What reconstruction takes is taken once, for all.
+  // Reconstruction takes its memory once, for all.
   const learns = await metric('denoiser') === 1, before = await metric('reconstructions_total');
   for (let i = 0; learns && i < 60 && await metric('reconstructions_total') < before + 2; i++)
     await sleep(500);

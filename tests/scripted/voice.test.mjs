@@ -59,7 +59,7 @@ test('a story is heard, and the mouth moves in time with it', { skip }, async ()
     at += piece.samples.length;
   }
   assert.ok(loudness(heard) > 300, `loudness ${loudness(heard)}`);
-  // Where the mouth is: on the storyteller's head.
+  // The mouth is on the storyteller's head.
   const [right, up, back] = mouth.map((x, axis) => x - storyteller.position[axis]);
   assert.ok(Math.hypot(right, back) < 0.5);
   assert.ok(up > 1.2 && up < 1.9, `mouth at ${mouth}`);
@@ -107,8 +107,8 @@ test('stop is heard at once, and nothing is sent to those who do not listen', { 
   await deaf.close();
 });
 
-// Where sound begins after 100 ms of silence: the first 5 ms that are louder than 40 dB under the
-// loudest.
+// Returns when sound begins after 100 ms of silence: the first 5 ms that are louder than 40 dB
+// under the loudest.
 function onsets(samples, rate) {
   const window = Math.round(rate / 200), energy = [];
   for (let i = 0; i + window <= samples.length; i += window)

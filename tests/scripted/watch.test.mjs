@@ -28,7 +28,7 @@ const save = (exhibit) => writeFileSync(file, JSON.stringify(exhibit, null, 2));
 const findings = async () =>
   (await (await fetch(`${server.url}/api/v1/status`)).json()).findings.map((one) => one.about);
 
-// As a page does: tries again until the server is back.
+// Does as a page does: tries again until the server is back.
 async function come_back() {
   for (let i = 0; ; i++) {
     const visitor = new Visitor(server);

@@ -64,7 +64,7 @@ function is_declaration(code, begin, open) {
 const layers = ['server', 'avatar', 'kiosk', 'voice'];
 const programs = [...layers, 'tests/benchmark'];
 
-// Of files, [path, text] each: the functions that their headers declare and nothing calls.
+// Returns the functions that headers declare and nothing calls; files: [path, text] each.
 function find_idle(files) {
   const declared = new Map();  // name -> file
   const used = new Set();      // names that stand elsewhere than in declarations and definitions

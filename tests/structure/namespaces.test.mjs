@@ -49,7 +49,7 @@ test('no type is defined twice in a namespace', () => {
   for (const file of all)
     for (const { line, space } of spaced_lines(file)) {
       const [, type] = /^(?:struct|class|enum class) (\w+)(?: : [\w:<> ,]+)? \{/.exec(line) ?? [];
-      if (!type || space.endsWith('::')) continue;  // what is nameless is its file's own
+      if (!type || space.endsWith('::')) continue;  // a nameless one is its file's own
       const name = `${space}::${type}`;
       homes.set(name, [...(homes.get(name) ?? []), file.name]);
     }

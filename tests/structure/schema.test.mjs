@@ -11,7 +11,8 @@ const schema = JSON.parse(read('content/exhibit.schema.json'));
 
 const type_of = (value) => value === null ? 'null' : Array.isArray(value) ? 'array' : typeof value;
 
-// What of `value` does not fit, each with its place. The words of JSON Schema that the schema uses.
+// Returns how `value` breaks the rule, each fault with its place. `words` are the words of JSON
+// Schema that the schema uses.
 const words = new Set(['$schema', '$ref', '$defs', 'title', 'description', 'type', 'properties',
   'required', 'additionalProperties', 'items', 'minItems', 'maxItems', 'minimum', 'maximum', 'enum',
   'const', 'anyOf', 'oneOf']);

@@ -8,7 +8,7 @@ import { make_ground, make_walker } from './walker.js';
 import { make_warp } from './warp.js';
 
 const least_rate = 24;       // pictures a second in motion: fewer are too slow
-const judged_ms = 2000;      // of motion, after which the rate is looked at
+const judged_ms = 2000;      // motion, after which the rate is looked at
 const lost_ms = 3000;        // without a context: it does not come back
 const most_broken = 3;       // keyframes one after the other that could not be decoded
 
@@ -47,7 +47,7 @@ export function make_display(canvas, { on_shown, on_weak, round_trip }) {
   const decoding = new Map();  // frame -> what takes the worker's answer
   let size = [canvas.width, canvas.height], deep = false;
   let last = performance.now(), drawn = 0, work = Promise.resolve();
-  const times = [];  // of the last second's pictures
+  const times = [];  // times of the last second's pictures
 
   worker.onmessage = ({ data }) => {
     decoding.get(data.id)(data);

@@ -2,8 +2,8 @@
 // Every pixel of a picture of another view looks along its epipolar line in a keyframe, from the
 // nearest disparity there may be to the farthest, for the first surface that it would see, and a
 // step of fixed-point iteration finds it (Bowles, Mitchell, Sumner, Moore, Gross 2012, "Iterative
-// Image Warping", section 3). What a keyframe does not show is taken from the next, and what none
-// shows goes on as the first has it. server/picture/warp_picture.cpp does the same.
+// Image Warping", section 3). Surfaces that a keyframe does not show are taken from the next, and
+// those that none shows go on as the first has them. server/picture/warp_picture.cpp does the same.
 import { block } from './view.js';
 
 export const most_layers = 3;

@@ -51,7 +51,7 @@ export function make_mapping(from, to) {
     baseline: seen(add(from.eye, to.eye, -1)) };
 }
 
-// Whether the pixels of a keyframe of view `from` are larger than those of the picture.
+// Says whether the pixels of a keyframe of view `from` are larger than those of the picture.
 export const is_coarse = (from, view) =>
   from.tan_half_fov * view.height > larger_pixel * view.tan_half_fov * from.height;
 

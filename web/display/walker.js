@@ -20,7 +20,7 @@ export function make_walker() {
   let pose = null, velocity = [0, 0, 0], move = [0, 0, 0], cut = -1, led = false, ground = null;
   let apart = [0, 0, 0], apart_yaw = 0, apart_pitch = 0;  // from where the server has it
   let apart_lens = [0, 0, 0];
-  let rates = null;         // of a led camera, a second: {position, yaw, pitch, lens, at}
+  let rates = null;         // a led camera's motion a second: {position, yaw, pitch, lens, at}
   let past = [];            // {time, position}
   const turned = new Map();  // seq -> yaw and pitch after that input
   let shown = null;          // the pose that advance() left

@@ -6,7 +6,7 @@ import { fragment, most_layers, vertex } from './shaders.js';
 import { block, carry_bounds, is_coarse, is_same, make_mapping } from './view.js';
 
 const fade_ms = 50;      // from one keyframe to the next
-const seam_across = 64;  // of its width, a keyframe passes into the next
+const seam_across = 64;  // in this part of its width a keyframe passes into the next
 
 // Returns where uniforms are: {height, as_it_is, masked, layers: fields and textures of each}.
 function find_places(gl, program) {
@@ -156,9 +156,9 @@ export function make_warp(canvas, on_lost) {
       newest = replace(goes_on ? null : newest, keyframe);
       came = now;
     },
-    // What lies around the others, in fewer pixels.
+    // Sets the surroundings, which lie around the others in fewer pixels.
     set_around(keyframe) { around = replace(around, keyframe); },
-    // What moves over still ones, where its disparity is not 0.
+    // Sets the layer that moves over still keyframes, where its disparity is not 0.
     set_layer(keyframe) { moving = replace(moving, keyframe); },
     // Pieces, {bitmap, x, y} in a picture of that size, replace colours of the newest keyframe.
     async change(pieces, width, height) {

@@ -6,7 +6,7 @@ import { make_pages } from './pages.js';
 import { kiosk_word } from './words.js';
 
 const turn_seconds = 0.7;
-const least_text = 0.62;  // of its usual size; smaller text is scrolled instead
+const least_text = 0.62;  // share of the usual size; smaller text is scrolled instead
 
 // place: the element that it lives in. orders: as of pages.js, and close(), turned(), lang(tag).
 export function make_book(place, orders) {
@@ -184,7 +184,7 @@ export function make_book(place, orders) {
   });
 
   return {
-    // What the exhibit has, in that language; the chapter stays open.
+    // Fills the book with the exhibit, in that language; the chapter stays open.
     fill(what, tag) {
       about = what;
       lang = tag;
@@ -195,7 +195,7 @@ export function make_book(place, orders) {
       if (yes) { jump('contents'); show(); }
     },
     turn,
-    // Which stories this guest has heard.
+    // Takes the stories that this guest has heard.
     heard(ids) {
       if (ids.join() === heard.join()) return;
       heard = ids;

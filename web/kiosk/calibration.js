@@ -38,7 +38,7 @@ function make_panel() {
   return { made, step, still, progress };
 }
 
-// Of a kiosk message: {step, metres, progress}; undefined: there is no calibration.
+// Shows a kiosk message's calibration: {step, metres, progress}; undefined: there is none.
 export function show_calibration(calibration, lang) {
   if (!calibration && !panel) return;
   panel ??= make_panel();

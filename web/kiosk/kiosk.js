@@ -27,8 +27,8 @@ const double_touch = { seconds: 0.6, pixels: 160 };
 const touch_interval = 500;   // milliseconds between two touches that the server hears of
 const alone_after = 60;       // seconds without a touch; then the book sinks without a server
 const idle_fps = 1;           // pictures a second while something else covers them
-// In the address: kiosk: its name; teller: who shall be there; lang: the house's language; pixels:
-// of the well's pictures, for measuring.
+// The address has: kiosk: its name; teller: the storyteller who shall be there; lang: the house's
+// language; pixels: how many the well's pictures have, for measuring.
 const asked = new URLSearchParams(location.search);
 const house_lang = first_language();
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -131,7 +131,7 @@ function want_pictures() {
   send({ type: 'settings', fps: fps = wanted });
 }
 
-// what: well, book, slides or museum; activity: story, tour, walk or call.
+// Shows a view. what: well, book, slides or museum; activity: story, tour, walk or call.
 function show(what, activity = '') {
   const before = view;
   clearTimeout(opening);
@@ -241,7 +241,7 @@ function hear_kiosk(message) {
   book.heard(message.heard ?? []);
   by_id('gestures').hidden = cameras === 0;
   const at = message.stage ?? { absent: 'sleep', motion: 'awake', person: 'person' }[message.state];
-  // Without a camera the well is always awake: nobody else could wake it for who passes by.
+  // Without a camera the well is always awake: nobody else could wake it for a passer-by.
   enter(at === 'sleep' && cameras === 0 ? 'awake' : at);
   if (message.gesture && message.gesture.number !== gesture_seen) {
     if (gesture_seen !== null || message.gesture.number === 1) gesture(message.gesture.name);

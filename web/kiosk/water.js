@@ -18,7 +18,7 @@ export function make_water(damping = 0.55) {
   const before = new Float32Array(side * side), now = new Float32Array(side * side);
   const next = new Float32Array(side * side), shown = new Float32Array(4 * cells * cells);
   const inside = new Uint8Array(side * side);
-  const rows = [];  // of the cells inside: first and last, a row each
+  const rows = [];  // first and last cell inside, a row each
   for (let j = 1; j <= cells; j++) {
     const y = (j - 0.5) * dx - 1;
     let first = side, last = -1;
@@ -40,7 +40,7 @@ export function make_water(damping = 0.55) {
   const count = inside.reduce((sum, value) => sum + value, 0);
   let behind = 0, resting = true, buffers = [before, now, next];
 
-  // One step. What lies beyond the rim is as high as the cell at the rim.
+  // Goes a step on. Cells beyond the rim are as high as the cell at the rim.
   function advance() {
     const [old, current, out] = buffers;
     const loss = 0.5 * damping * step, keep = 1 / (1 + loss);
@@ -67,7 +67,7 @@ export function make_water(damping = 0.55) {
 
   return {
     // Presses the water down by `depth` around (x, y), both -1..1, or lifts it where depth is
-    // negative; water is neither made nor lost. What lies outside the well does nothing.
+    // negative; water is neither made nor lost. A place outside the well does nothing.
     press(x, y, depth = 0.03, radius = 0.09) {
       if (!(Math.hypot(x, y) < 1) || !Number.isFinite(depth)) return false;
       const [old, current] = buffers, reach = Math.max(radius, 4 * dx);

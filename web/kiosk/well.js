@@ -4,8 +4,8 @@
 import { cells, make_water } from './water.js';
 import { noise, picture, stone, triangle } from './well_shaders.js';
 
-// How the well looks at each stage. light: from the sky; lantern: warm; glimmer: of the book;
-// stirred: fine ripples; across: 0 looks down into the well, 1 across it to whoever stands behind.
+// Says how the well looks at each stage. light: from the sky; lantern: warm; glimmer: the book's;
+// stirred: fine ripples; across: 0 looks down into the well, 1 across it to somebody behind it.
 const looks = {
   sleep: { light: 0.13, lantern: 0.03, glimmer: 0, stirred: 0.1, across: 0, rate: 20 },
   awake: { light: 0.75, lantern: 0.55, glimmer: 0, stirred: 0.6, across: 0, rate: 60 },
@@ -40,14 +40,15 @@ const ray_at = ({ right, up, forward, tangent, shift, width, height }, x, y) => 
   const v = tangent * ((height - 2 * y) / side + shift[1]);
   return unit(forward.map((f, i) => f + u * right[i] + v * up[i]));
 };
-// Where the water is that is seen at (x, y), pixels from the upper left: [x, y] in radii, or null.
+// Returns the place of the water that is seen at (x, y), pixels from the upper left: [x, y] in
+// radii, or null.
 export function water_at(camera, x, y) {
   const ray = ray_at(camera, x, y), t = -camera.eye[2] / ray[2];
   if (!(t > 0)) return null;
   const at = [camera.eye[0] + t * ray[0], camera.eye[1] + t * ray[1]];
   return Math.hypot(...at) < 1 ? at : null;
 }
-// Pixels from the upper left at which a point is seen.
+// Returns the pixels from the upper left at which a point is seen.
 export function seen_at({ eye, right, up, forward, tangent, shift, width, height }, point) {
   const d = point.map((p, i) => p - eye[i]), depth = dot(d, forward);
   const side = Math.min(width, height);
@@ -293,7 +294,7 @@ export function make_well(canvas, events = {}, { calm = false, fixed = 0 } = {})
     book_is_up: () => rise >= 1,
     // Nothing is drawn while nobody sees it.
     hide(yes) { hidden = yes; canvas.style.visibility = yes ? 'hidden' : ''; },
-    // Of the last pictures: milliseconds between them, and their size.
+    // Returns figures of the last pictures: milliseconds between them, and their size.
     figures: () => ({ milliseconds: [...times], pixels: canvas.width * canvas.height }),
     water,
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The well as its shaders see it (GLSL ES 3.00). The axis of the well is z, the water lies at z = 0
-// with radius 1. What does not move (stone, ground) is drawn once for a camera, in two lights; only
-// the water is traced for each picture.
+// Draws the well (GLSL ES 3.00). The axis of the well is z, the water lies at z = 0 with radius 1.
+// Still things (stone, ground) are drawn once for a camera, in two lights; only the water is traced
+// for each picture.
 
 export const triangle = `#version 300 es
 void main() {

@@ -14,27 +14,30 @@
 namespace wellspring::light {
 namespace {
 
-// Pilot samples of a tile, by which its nodes become finer or not, and of each node.
+// Pilot samples decide whether a tile's nodes become finer: samples of a tile, and least and most
+// samples of each of its nodes.
 constexpr uint32_t pilots_a_tile = 256, least_pilot_samples = 8, most_pilot_samples = 64;
-constexpr uint32_t first_samples = 4;  // of a direct node, in its first pass
-// Places held out of the bake, and samples of their halves a pass: a small part of its own.
+constexpr uint32_t first_samples = 4;  // samples of a direct node in its first pass
+// One place is held out of the bake for so many gathering nodes, within bounds, and each pass adds
+// samples to it: a small part of the pass's own.
 constexpr size_t nodes_a_held_out = 64, least_held_out = 64, most_held_out = 4096;
 constexpr int held_out_samples = 8;
 constexpr int refine_rounds = 3;
-constexpr int gathers_a_pass = 8;  // samples of a gathering node for one of a direct node
+constexpr int gathers_a_pass = 8;  // samples of a gathering node for each one of a direct node
 constexpr int tiles_a_step = 64;
-constexpr double tile_nodes = 64;  // of a tile, on average, before refinement
-// A thing that lies nearer than either covers a place: shares of the widths of a cell and a tile.
+constexpr double tile_nodes = 64;  // nodes of a tile, on average, before refinement
+// A thing covers a place if it lies nearer than both of these: shares of the widths of a cell and a
+// tile.
 constexpr float cell_covering = 0.3f, tile_covering = 0.03f;
-// Neighbouring nodes that differ by that share of their light, root mean square, of which a share
-// of the scene's mean counts as there everywhere.
+// A tile may be refined if its neighbouring nodes differ by more than rough_contrast of its light,
+// root mean square, to which contrast_floor times the scene's mean light is added.
 constexpr float rough_contrast = 0.05f, contrast_floor = 1;
 
 uint64_t node_seed(const Bake& bake, int field, uint32_t tile, uint32_t node) {
   return mix64(bake.settings.seed + mix64(uint64_t(tile) << 32 | node << 1 | uint32_t(field)));
 }
 
-// One sample finds this of each layer.
+// Holds what one sample finds for each layer.
 struct LayerLight {
   std::vector<vec3> light, slope;  // luminance times slope_of()
   explicit LayerLight(int layers) : light(size_t(layers)), slope(size_t(layers)) {}
@@ -52,8 +55,8 @@ void add_light(BakeField& field, size_t node, const LayerLight& found, float sca
   field.count[node] += 1;
 }
 
-// Something lies upon the surface there, or closely before it: no eye comes between, and the dark
-// there must not bleed into what is seen.
+// Returns whether something lies upon the surface there, or closely before it: no eye comes
+// between, and the dark there must not bleed into visible places.
 bool is_covered(const World& world, const SurfacePlace& place, float distance) {
   Ray up;
   up.origin = offset_origin(place, place.geometric_normal);
@@ -62,8 +65,8 @@ bool is_covered(const World& world, const SurfacePlace& place, float distance) {
   return world.occluded(up);
 }
 
-// A place of each node of a tile that is not covered: visit(node, place, sampler). `seed_of` gives
-// each node's seed.
+// Calls visit(node, place, sampler) for a place of each node of a tile, unless it is covered.
+// `seed_of` gives each node's seed.
 template <class Seed, class Visit>
 void for_each_place(const BakeScene& scene, const Bake& bake, uint32_t tile, BakeField& field,
                     uint32_t number, const Seed& seed_of, const Visit& visit) {
@@ -85,7 +88,7 @@ void for_each_place(const BakeScene& scene, const Bake& bake, uint32_t tile, Bak
   }
 }
 
-// One more sample of each node of a tile: visit(node, place, sampler).
+// Takes one more sample of each node of a tile: visit(node, place, sampler).
 template <class Visit>
 void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, BakeField& field,
                      const Visit& visit) {
@@ -137,7 +140,7 @@ void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
     bool inside = false;
     if (leave(lit, sampler, walk)) {
       gather_light(scene, walk, sampler, found.light, inside);
-      // Coarse light knows its mean only when it is whole.
+      // Coarse light has a mean only when it is complete.
       if (bake.refined > 0) cut_off(scene, found.light);
       if (!field.slope.empty()) {
         const vec3 slope = slope_of(walk.ray.direction, lit.surface.normal);
@@ -162,13 +165,13 @@ void for_each_pair(const IlluminationTile& tile, const Visit& visit) {
     }
 }
 
-// Looks at a tile with the same random numbers at all its nodes, so that what differs between them
-// is their places' and not chance's.
+// Samples a tile with the same random numbers at all its nodes, so that differences between nodes
+// come from their places and not from chance.
 PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
   BakeField& field = bake.direct;
   const IlluminationTile& grid = field.tiles[tile];
   const Transport all{scene.world, *scene.lights.tables};
-  // Small tiles have few pairs to learn from.
+  // Small tiles have few pairs of nodes, so their nodes get more samples.
   const uint32_t samples =
       std::clamp(pilots_a_tile / grid.nodes(), least_pilot_samples, most_pilot_samples);
   std::vector<float> light(size_t(grid.nodes()) * samples, -1);  // node by node; below 0: no light
@@ -204,13 +207,13 @@ PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
       differ += d, squares += d * d, n++;
     }
     if (n < 2) return;
-    // The square of the mean, without what chance adds to it, and that.
+    // Adds the square of the mean difference without the part that chance adds, then that part.
     unlike += (differ * differ - squares) / (n * (n - 1)), pairs++;
     chance += (squares - differ * differ / n) / (n * (n - 1));
   });
   PilotTile pilot;
   if (count > 0) pilot.light = float(sum / count);
-  // A deviation more: what is near a source is noisy, and mostly uneven.
+  // About a standard deviation is added: light near a source is noisy, and mostly uneven.
   if (pairs > 0)
     pilot.unlike = float(std::max(unlike / pairs + 2 * chance / (pairs * std::sqrt(pairs)), 0.0));
   return pilot;
@@ -225,8 +228,8 @@ float mean_light(const Bake& bake) {
   return count > 0 ? float(sum / count) : 0;
 }
 
-// Tiles whose light differs most from node to node get nodes twice as close, as far as there are
-// more to be had; what their coarser nodes have found is given up.
+// Gives nodes twice as close to the tiles whose light differs most from node to node, as long as
+// the budget of nodes lasts; the samples of their coarser nodes are dropped.
 void refine(const BakeScene& scene, Bake& bake) {
   const BakeField& old = bake.direct;
   const float floor = contrast_floor * mean_light(bake);
@@ -271,7 +274,7 @@ void pass_tile(const BakeScene& scene, Bake& bake, uint32_t tile) {
   for (int k = 0; k < gathers_a_pass; k++) sample_gather(scene, bake, tile, light);
 }
 
-// Tiles from `cursor` on; the next one, or their number.
+// Works on the tiles from `cursor` on; returns the next tile, or the number of tiles.
 uint32_t do_step(const BakeScene& scene, Bake& bake) {
   const uint32_t tiles = bake.charts.tiles, first = bake.cursor;
   const bool pilot = bake.pilot();

@@ -11,17 +11,19 @@
 namespace wellspring::light {
 namespace {
 
-constexpr float occupied_margin = 1e-3f;  // of a tile: rounding puts places that far beside it
-constexpr float least_area = 1e-9f;       // of a cell: what is smaller is none
-constexpr float nearest_eye = 0.5f;       // of the median distance: nearer ones count as that
+// Share of a tile's side; rounding puts places that far beside it.
+constexpr float occupied_margin = 1e-3f;
+constexpr float least_area = 1e-9f;  // share of a cell; a smaller part counts as none
+constexpr float nearest_eye = 0.5f;  // share of the median distance; nearer eyes count as that far
 
-// A convex polygon with room for a triangle clipped by a rectangle.
+// Holds a convex polygon, with room for a triangle clipped by a rectangle.
 struct Polygon {
   vec2 corner[8];
   int count = 0;
 };
 
-// What lies on the side of `line` of an axis where `sign` times the coordinate is less.
+// Returns the part of a polygon on the side of `line` of an axis where `sign` times the coordinate
+// is less.
 Polygon clip(const Polygon& in, int axis, float line, float sign) {
   Polygon out;
   for (int i = 0; i < in.count; i++) {
@@ -70,7 +72,7 @@ vec2 sample_polygon(const Polygon& p, vec2 u) {
   return p.corner[0];
 }
 
-// A triangle's corners in tiles of its chart.
+// Projects a triangle's corners into its chart, in tiles.
 void project(const World& world, const IlluminationChart& chart, uint32_t instance,
              uint32_t triangle, vec2* corners) {
   Face f = make_face(world.placed(instance), triangle);
@@ -106,7 +108,7 @@ void for_each_tile(const IlluminationChart& chart, const vec2* corners, float ma
     }
 }
 
-// Calls visit(number of the chart, triangle, corners) for all of them, charts in parallel.
+// Calls visit(number of the chart, triangle, corners) for all triangles, charts in parallel.
 template <class Visit>
 void for_each_triangle(const World& world, const BakeCharts& charts, const Visit& visit) {
   parallel_ranges(int(charts.surfaces.size()), 16, [&](int begin, int end) {
@@ -133,7 +135,8 @@ vec2 centroid_of(const Polygon& p) {
   return areas != 0 ? sum / areas : p.corner[0];
 }
 
-// Weights of a triangle's second and third corner at a place of its plane; false: it has no area.
+// Finds the weights of a triangle's second and third corner at a place of its plane; returns false
+// if the triangle has no area.
 bool find_barycentric(const vec2* corners, vec2 place, vec2& weights) {
   const vec2 p = place - corners[0], a = corners[1] - corners[0], b = corners[2] - corners[0];
   const float whole = cross(a, b);
@@ -143,7 +146,7 @@ bool find_barycentric(const vec2* corners, vec2 place, vec2& weights) {
   return true;
 }
 
-// A ray towards that place of a triangle, from the side that the chart shows.
+// Returns a ray towards that place of a triangle, from the side that the chart shows.
 Ray look_at(const World& world, const ChartSurface& surface, const Hit& hit) {
   const vec3 normal = eval_face(world, hit.instance, hit.triangle);
   Ray ray;
@@ -285,10 +288,10 @@ std::vector<TileCells> choose_cells(const World& world, const BakeCharts& charts
   if (sorted.empty()) return cells;
   std::nth_element(sorted.begin(), sorted.begin() + long(sorted.size() / 2), sorted.end());
   const float least = std::max(nearest_eye * sorted[sorted.size() / 2], 1e-12f);
-  float low = 1e-6f, high = 1e3f;  // cells as large as that, a metre away
+  float low = 1e-6f, high = 1e3f;  // sizes of cells, metres, a metre away
   std::vector<TileCells> chosen = cells;
   for (int step = 0; step <= 40; step++) {
-    float size = step < 40 ? std::sqrt(low * high) : high;  // which was not too fine
+    float size = step < 40 ? std::sqrt(low * high) : high;  // `high` was not too fine
     for (size_t t = 0; t < cells.size(); t++) {
       if (cells[t].columns == 0) continue;
       const IlluminationChart& chart = charts.places->charts[at[t].chart];
@@ -334,7 +337,7 @@ BakeField make_field(const World& world, const BakeCharts& charts, std::span<con
     field.tiles[t] = {nodes, cells[t].columns, cells[t].rows};
     nodes += field.tiles[t].nodes();
   }
-  // A chart's nodes are its own, so charts may be counted and filled side by side.
+  // Charts share no nodes, so their supports may be counted and filled in parallel.
   std::vector<uint32_t> counts(nodes + size_t(1), 0);
   auto for_each_support = [&](const auto& visit) {
     for_each_triangle(world, charts, [&](uint32_t c, uint32_t triangle, const vec2* at) {

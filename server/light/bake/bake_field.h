@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes of a bake, in the tiles of its charts, and what samples around them have found. A node
-// stands for the surface within half a cell of it: its samples are spread over that.
+// Keeps the nodes of a bake, in the tiles of its charts, and what samples around them have found. A
+// node stands for the surface within half a cell around it: its samples are spread over that part.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,31 +9,31 @@
 
 namespace wellspring::light {
 
-// A triangle's part of what a node stands for.
+// Holds a triangle's part of a node's surface.
 struct NodeSupport {
-  uint32_t triangle = 0;  // of the chart's instance
-  float area = 0;         // in cells
+  uint32_t triangle = 0;  // index in the chart's instance
+  float area = 0;         // cells of the tile
 };
 
-inline constexpr uint32_t no_normal = 0;  // which pack_node_normal() never gives
+inline constexpr uint32_t no_normal = 0;  // a value that pack_node_normal() never returns
 
 struct BakeField {
   std::vector<IlluminationTile> tiles;
-  std::vector<uint32_t> first_support;  // of each node, and the end
+  std::vector<uint32_t> first_support;  // index in `supports` for each node, and the end
   std::vector<NodeSupport> supports;
   int layers = 1;
-  std::vector<vec3> light;           // sums: of each node, each layer's
-  std::vector<vec3> slope;           // likewise, luminance times slope_of(); empty: not wanted
-  std::vector<uint32_t> normal;      // of each node: node_normals(); empty where slopes are
-  std::vector<float> squares;        // of each node: of the luminance of all layers
-  std::vector<float> count, hidden;  // samples that count, and those within something solid
-  std::vector<uint32_t> asked;       // of each tile: samples of each of its nodes
+  std::vector<vec3> light;           // sums of samples, for each node and layer
+  std::vector<vec3> slope;           // likewise, of luminance times slope_of(); empty: not wanted
+  std::vector<uint32_t> normal;      // node_normals(); empty if `slope` is empty
+  std::vector<float> squares;        // sums of each node's squared luminance of all layers
+  std::vector<float> count, hidden;  // samples that count; samples covered, or within a solid
+  std::vector<uint32_t> asked;       // samples of each of a tile's nodes, for each tile
   size_t nodes() const { return count.size(); }
-  // Luminance of all layers: the mean of a node's samples, of which there must be some, and the
-  // variance of one sample.
+  // Return figures for the luminance of all layers: the mean of a node's samples, of which there
+  // must be some, and the variance of one sample.
   double mean_of(size_t node) const;
   double variance_of(size_t node) const;
-  // Unit; 0 where each place has its own.
+  // Returns a unit normal; 0 if each place has its own.
   vec3 normal_of(size_t node) const {
     return normal.empty() || normal[node] == no_normal
                ? vec3(0)
@@ -44,22 +44,24 @@ struct BakeField {
   const vec3* light_of(size_t node) const { return &light[node * size_t(layers)]; }
 };
 size_t memory_bytes(const BakeField& field);
-// What a tile's samples have found, into a tile of as many nodes.
+// Copies what a tile's samples have found into a tile of as many nodes.
 void copy_tile(const BakeField& from, uint32_t from_tile, BakeField& to, uint32_t to_tile);
 
-// Forgets what samples have found, but not how many were asked: the next ones are others.
+// Clears what samples have found, but not how many were asked for: the next samples are new ones.
 void clear_samples(BakeField& field);
 
-// How many cells a tile has along its sides, powers of two; 0: nothing of the surface is in it.
+// Holds the numbers of cells along a tile's sides, powers of two; 0: nothing of the surface is in
+// the tile.
 struct TileCells {
   uint8_t columns = 0, rows = 0;
 };
 inline constexpr int most_cells_a_tile = 64;
 
-// Which tiles hold some of their chart: one cell each.
+// Returns one cell for each tile that holds some of its chart, none for the others.
 std::vector<TileCells> find_occupied(const World& world, const BakeCharts& charts);
-// The largest cells of which there are no more than about `nodes` nodes. Cells are as large as they
-// look from the nearest of `places` (scene coordinates); without any as large as each other.
+// Returns the smallest cells of which there are no more than about `nodes` nodes. All cells look
+// equally large from the nearest of `places` (scene coordinates); without any they are equally
+// large.
 std::vector<TileCells> choose_cells(const World& world, const BakeCharts& charts,
                                     std::span<const vec3> places, size_t nodes);
 size_t node_count(std::span<const TileCells> cells);
@@ -67,23 +69,23 @@ std::vector<TileCells> cells_of(const BakeField& field);
 
 BakeField make_field(const World& world, const BakeCharts& charts, std::span<const TileCells> cells,
                      int layers);
-// The mean of the mesh's normals over what each node stands for, pack_node_normal(), on the side
-// that the chart shows; no_normal of nodes that stand for nothing, and where a chart is not bent.
+// Returns the mean of the mesh's normals over each node's surface, as pack_node_normal(), on the
+// side that the chart shows; no_normal for nodes without surface, and for charts that are not bent.
 std::vector<uint32_t> node_normals(const World& world, const BakeCharts& charts,
                                    std::span<const IlluminationTile> tiles, size_t nodes);
 
-// The chart of each tile, and where it is in it.
+// Holds the chart of a tile, and the tile's place in it.
 struct TilePlace {
   uint32_t chart = 0;
   int column = 0, row = 0;
 };
 std::vector<TilePlace> tile_places(const BakeCharts& charts);
 
-// A place in what a node stands for.
+// Holds a place of a node's surface.
 struct NodePlace {
   bool valid = false;
   Hit hit;
-  Ray ray;  // towards it, from its lit side
+  Ray ray;  // towards the place, from its lit side
 };
 NodePlace sample_node(const World& world, const BakeCharts& charts, const BakeField& field,
                       const TilePlace& at, uint32_t tile, uint32_t node_of_tile, float choice,

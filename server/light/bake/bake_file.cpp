@@ -131,7 +131,7 @@ bool merge_bake(const Bake& part, Bake& bake) {
   bake.shards_done.push_back(a.shard);
   bake.passes = std::min(bake.passes, part.passes);
   if (int(bake.shards_done.size()) < b.shards) return true;
-  // All are there: from now on it is as if it had been one.
+  // All shards are there: from now on the bake is as if it had been one.
   bake.settings.shard = 0, bake.settings.shards = 1, bake.cursor = 0;
   bake.shards_done = {0};
   return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bake on disk, to be gone on with, finished, or merged with its other shards. Same bits as the
-// one that was saved.
+// Keeps a bake on disk, to be continued, finished, or merged with its other shards. A loaded bake
+// has the same bits as the one that was saved.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,20 +10,20 @@
 
 namespace wellspring::light {
 
-// Changes with everything that light depends on: what stands still, its materials and pictures,
-// lights, lamps and environment. Tens of milliseconds.
+// Returns a number that changes with everything that light depends on: what stands still, its
+// materials and pictures, lights, lamps and environment. Takes tens of milliseconds.
 uint64_t hash_scene(const Scene& scene);
 
-// `key`: hash_scene(). False: the file cannot be written.
+// Returns false if the file cannot be written. `key`: hash_scene().
 bool save_bake(const Bake& bake, const std::string& file, uint64_t key);
-// Sets `bake` where the file was read. Never throws. Charts are found anew (seconds).
+// Sets `bake` if the file was read. Never throws. Charts are found anew (seconds).
 KeyedFile load_bake(const World& world, const std::string& file, uint64_t key, Bake& bake);
 
-// The exhibit's folder that a bake was made of; empty: the file is none.
+// Returns the folder of the exhibit that a bake was made of; empty: the file is no bake.
 std::string read_bake_source(const std::string& file);
 
-// The tiles of `part` are added to those of `bake`: another shard of the same bake. False: it is
-// none, or one that is there already; nothing has changed.
+// Adds the tiles of `part`, another shard of the same bake, to those of `bake`. Returns false, and
+// changes nothing, if `part` is no such shard or was added before.
 bool merge_bake(const Bake& part, Bake& bake);
 
 }  // namespace wellspring::light

@@ -12,10 +12,11 @@
 namespace wellspring::light {
 namespace {
 
-constexpr int most_depth = 12, certain_depth = 4;  // edges; those that roulette never cuts
-constexpr int most_steps = 64;                     // panes passed straight included
+// Path edges at most, and edges that roulette never cuts.
+constexpr int most_depth = 12, certain_depth = 4;
+constexpr int most_steps = 64;  // steps of a walk, panes passed straight included
 
-// Behind a face of something opaque with one side: within it.
+// Returns whether a ray meets something opaque with one side from behind, so from within.
 bool meets_inside(const World& world, const Ray& ray, const Hit& hit) {
   const Material& m = world.material_of(hit.instance);
   if (m.double_sided || m.transmission > 0 || m.alpha_mode != AlphaMode::opaque) return false;
@@ -24,8 +25,8 @@ bool meets_inside(const World& world, const Ray& ray, const Hit& hit) {
 
 }  // namespace
 
-// A ray opposite the one that met the inside of something must do so, too: else that may be the
-// back of a sheet that somebody forgot to give two sides.
+// The ray on the opposite side of the normal must meet the inside of something, too: otherwise the
+// hit may be the back of a sheet that somebody forgot to give two sides.
 bool is_inside(const World& world, const Walk& walk, const Hit& met) {
   if (!met.valid() || !meets_inside(world, walk.ray, met)) return false;
   Ray other = walk.ray;
@@ -44,7 +45,7 @@ BakeScene make_bake_scene_of_paths(const World& world) {
   return bake;
 }
 
-// The chart of what the walk met, where coarse light is known.
+// Returns the chart of the surface that the walk met, if there is coarse light on it.
 static uint32_t find_known_chart(const BakeScene& scene, const Walk& walk, const Hit& hit) {
   if (!scene.known || walk.media.here.count > 0) return no_chart;
   return find_chart(*scene.known->places, scene.world, walk.ray, hit);

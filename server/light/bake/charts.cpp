@@ -15,15 +15,16 @@ namespace {
 constexpr float least_facing = 0.766f;  // cosine of 40 degrees, to the chart's normal
 constexpr float smooth_edge = 0.9f;     // cosine between the mesh's normals on its two sides
 constexpr float one_normal = 0.9998f;   // cosine of a degree: normals that count as the same
-constexpr float most_tiles = 1 << 20;   // of a chart, however thin what it holds
+constexpr float most_tiles = 1 << 20;   // tiles of a chart at most, however thin its triangles
 
 struct Triangle {
   Face face;
-  float area = 0;  // 0: it has no chart
+  float area = 0;  // square metres; 0: the triangle has no chart
   uint32_t neighbor[3] = {no_chart, no_chart, no_chart};
 };
 
-// Vertices at one position are one, so that seams of texture coordinates do not cut charts.
+// Returns the first vertex at each vertex's position, so that seams of texture coordinates do not
+// cut charts.
 std::vector<uint32_t> weld(const Mesh& mesh) {
   struct Less {
     bool operator()(vec3 a, vec3 b) const {
@@ -39,7 +40,7 @@ std::vector<uint32_t> weld(const Mesh& mesh) {
   return of;
 }
 
-// Triangles that share an edge with one other are its neighbours.
+// Finds each triangle's neighbours: two triangles are, if they alone share an edge.
 void find_neighbors(const Mesh& mesh, std::vector<Triangle>& triangles) {
   struct Edge {
     uint64_t ends;
@@ -83,7 +84,7 @@ std::vector<Triangle> read_triangles(const World& world, uint32_t instance) {
   return triangles;
 }
 
-// The triangles that hang together with `seed` and face about as it does.
+// Collects the triangles that are connected with `seed` and face about as it does.
 void grow(const std::vector<Triangle>& triangles, uint32_t seed, uint32_t chart,
           std::vector<uint32_t>& chart_of, std::vector<uint32_t>& grown) {
   const vec3 normal = triangles[seed].face.normal;
@@ -99,7 +100,8 @@ void grow(const std::vector<Triangle>& triangles, uint32_t seed, uint32_t chart,
     }
 }
 
-// The rectangle around a chart's triangles, along the longest edge of the first, cut into tiles.
+// Returns the rectangle around a chart's triangles, along the longest edge of the first, cut into
+// tiles.
 IlluminationChart lay_out(const std::vector<Triangle>& triangles,
                           std::span<const uint32_t> of_chart, float tile) {
   const Face& seed = triangles[of_chart.front()].face;
@@ -127,7 +129,7 @@ IlluminationChart lay_out(const std::vector<Triangle>& triangles,
   return chart;
 }
 
-// Whether the mesh's normals differ at the corners of those triangles.
+// Returns whether the mesh's normals differ at the corners of those triangles.
 bool is_bent(const PlacedMesh& placed, std::span<const uint32_t> of_chart) {
   const Mesh& mesh = *placed.mesh;
   vec3 first(0);
@@ -141,7 +143,7 @@ bool is_bent(const PlacedMesh& placed, std::span<const uint32_t> of_chart) {
   return false;
 }
 
-// The mesh's normal at that corner of a triangle; not unit.
+// Returns the mesh's normal at that corner of a triangle; not unit.
 vec3 corner_normal(const PlacedMesh& placed, uint32_t triangle, vec3 place) {
   const Mesh& mesh = *placed.mesh;
   vec3 nearest(0);

@@ -11,12 +11,13 @@
 namespace wellspring::light {
 namespace {
 
-constexpr float most_passed = 1.0f / 9;  // to each neighbour: all nine nodes become equal
-constexpr float edge_deviations = 2;  // by which nodes differ between which a third as much passes
-constexpr float edge_share = 0.02f;   // of their light, which is never known to be evener
+// Share that passes to each neighbour at most: all nine nodes become equal.
+constexpr float most_passed = 1.0f / 9;
+constexpr float edge_deviations = 2;  // deviations by which nodes differ if a third as much passes
+constexpr float edge_share = 0.02f;   // share of two nodes' light that counts as noise in any case
 
 struct Noisy {
-  std::vector<float> light, variance;  // of each node; variance below 0: nothing is known
+  std::vector<float> light, variance;  // one for each node; variance below 0: unknown
 };
 
 // Calls visit(which of the four, neighbour) for the neighbours that come later in the tile.
@@ -30,8 +31,8 @@ void for_each_later(const IlluminationTile& tile, uint32_t i, const Visit& visit
   if (x < tile.columns) visit(3, i + stride + 1);
 }
 
-// A node whose few samples have missed what is bright looks sure of being dark. Nodes side by side
-// are about as sure.
+// Averages variances over nodes side by side, which are about equally sure: a node whose few
+// samples have missed something bright looks sure of being dark.
 void pool_variances(const BakeField& field, Noisy& nodes) {
   const std::vector<float> own = nodes.variance;
   parallel_for(int(field.tiles.size()), [&](int t) {
@@ -70,8 +71,8 @@ uint8_t pass_between(const Noisy& nodes, size_t a, size_t b) {
 
 float share_of(uint8_t pass) { return most_passed / 255 * float(pass); }
 
-// One round of a tile's nodes: lights change hands. Variances follow as of nodes without
-// correlation.
+// Does one round of a tile's nodes, in which neighbours exchange light. Variances follow as if
+// nodes had no correlation.
 void diffuse_noise(const IlluminationTile& tile, std::span<const std::array<uint8_t, 4>> passes,
                    const Noisy& from, Noisy& to) {
   for (uint32_t i = 0; i < tile.nodes(); i++) {
@@ -140,8 +141,9 @@ void filter_nodes(const BakeField& field, const NodeFilter& filter, std::span<co
 namespace {
 
 constexpr float another_light = 1.6f;  // times as bright, beyond a floor
-constexpr float floor_share = 0.15f;   // of the mean light
-constexpr int places_a_node = 4;       // from which eyes are looked for
+// Share of the mean light that is added before light is compared.
+constexpr float floor_share = 0.15f;
+constexpr int places_a_node = 4;  // places of a node from which eyes are looked for
 constexpr uint64_t look_seed = 0x6c6f6f6b;
 
 bool is_seen(const World& world, const BakeCharts& charts, const BakeField& field,
@@ -177,7 +179,7 @@ std::vector<uint8_t> find_leaks(const World& world, const BakeCharts& charts,
   std::vector<uint8_t> leaks(field.nodes(), 0);
   sight.resize(field.nodes(), sight_unknown);
   if (eyes.empty()) return leaks;
-  std::vector<float> light(field.nodes(), -1);  // below 0: nothing is known
+  std::vector<float> light(field.nodes(), -1);  // below 0: unknown
   double sum = 0, count = 0;
   for (size_t n = 0; n < field.nodes(); n++)
     if (field.count[n] > 0) light[n] = float(field.mean_of(n)), sum += double(light[n]), count++;
@@ -201,7 +203,7 @@ std::vector<uint8_t> find_leaks(const World& world, const BakeCharts& charts,
             unseen(i) && !unseen(beside))
           leaks[tile.first + i] = 1;
       });
-    // What hangs together with those and is not seen either is no better.
+    // Unseen nodes beside leaks, and those beside them, leak as well.
     for (bool more = true; more;) {
       more = false;
       for (uint32_t i = 0; i < tile.nodes(); i++)
@@ -212,7 +214,8 @@ std::vector<uint8_t> find_leaks(const World& world, const BakeCharts& charts,
           more = true;
         });
     }
-    // What lies next to those may stand for parts of both: then it is unlike what lies behind it.
+    // A node beside a leak may stand for parts of both surfaces: then its light differs from that
+    // of nodes farther from the leak.
     for (uint32_t i = 0; i < tile.nodes(); i++) {
       const size_t node = tile.first + i;
       if (leaks[node] || light[node] < 0) continue;

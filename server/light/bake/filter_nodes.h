@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noise of a bake's nodes, filtered along the surface as far as their samples say that it is noise:
-// anisotropic diffusion (Perona and Malik 1990, "Scale-Space and Edge Detection Using Anisotropic
-// Diffusion", eq. 7 and 8) whose edges are told by the nodes' own variance. What one node gives
-// another gets, so no light is lost: rare bright samples are spread, not taken for errors.
+// Filters the noise of a bake's nodes along the surface as far as their samples say that it is
+// noise: anisotropic diffusion (Perona and Malik 1990, "Scale-Space and Edge Detection Using
+// Anisotropic Diffusion", eq. 7 and 8) whose edges are found by the nodes' own variance. Another
+// node gets all light that a node gives, so no light is lost: rare bright samples are spread, not
+// taken for errors.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,7 +16,7 @@
 
 namespace wellspring::light {
 
-// Nodes beside a node, in its tile.
+// Visits the nodes beside a node, in its tile.
 
 // Calls visit(node beside) for the up to eight nodes around node `i` of the tile.
 template <class Visit>
@@ -27,29 +28,31 @@ void for_each_beside(const IlluminationTile& tile, uint32_t i, const Visit& visi
       if (row != y || column != x) visit(uint32_t(row * columns + column));
 }
 
-// How much light passes between nodes side by side, the same for all layers.
+// Holds how much light passes between nodes side by side, the same for all layers.
 struct NodeFilter {
   static constexpr int rounds = 6;
   // Each round and node lists the four neighbours that come later in the tile: the next one, and
   // the three of the next row. 255 is as much as may pass.
   std::array<std::vector<std::array<uint8_t, 4>>, rounds> passes;
 };
-// `leaks`: nodes that do not count (light/bake/filter_nodes.h).
+// Makes a filter from a field's samples. `leaks`: nodes that do not count
+// (light/bake/filter_nodes.h).
 NodeFilter make_node_filter(const BakeField& field, std::span<const uint8_t> leaks);
-// Nodes that are not `known` neither change nor count.
+// Filters `light`. Nodes that are not `known` neither change nor count.
 void filter_nodes(const BakeField& field, const NodeFilter& filter, std::span<const uint8_t> known,
                   std::vector<vec3>& light);
 
-// Parts of surfaces that no eye can see, because they lie beyond another surface that passes
-// through theirs: a rib goes on above the vault, a floor below the wall. Light there is another,
-// and must not leak into what is seen beside it.
+// Finds parts of surfaces that no eye can see, because they lie beyond another surface that passes
+// through theirs: a rib goes on above the vault, a floor below the wall. Light there differs, and
+// must not leak into visible places beside it.
 
-// What is known of each node; 0: nobody asked yet.
+// Says whether a node is seen; sight_unknown is 0: eyes were not looked for yet.
 enum NodeSight : uint8_t { sight_unknown, sight_seen, sight_unseen };
 
-// Of each node whether its light is to be taken from its neighbours: no eye sees it while one sees
-// a neighbour whose light is very different, or it stands for parts of both. `eyes`: scene
-// coordinates; without any all is seen. `sight`: kept from call to call, of the same field.
+// Returns for each node whether its light is to be taken from its neighbours (not 0): no eye sees
+// it while one sees a neighbour whose light is very different, or it stands for parts of both.
+// `eyes`: scene coordinates; without any, all nodes count as seen. `sight`: kept from call to call,
+// of the same field.
 std::vector<uint8_t> find_leaks(const World& world, const BakeCharts& charts,
                                 std::span<const TilePlace> places, std::span<const vec3> eyes,
                                 const BakeField& field, std::vector<uint8_t>& sight);

@@ -14,9 +14,10 @@ namespace {
 
 constexpr int seam_sweeps = 3, border_rounds = 2;
 constexpr int most_places_a_seam = 64;
-constexpr float least_squares = 1e-3f;  // of a seam's weights: places that light does not reach
+// Least sum of squared weights and turns at a seam: light does not reach places with less.
+constexpr float least_squares = 1e-3f;
 
-// Nodes that are not known take the mean of their known neighbours, ring by ring.
+// Gives each node that is not known the mean of its known neighbours, ring by ring.
 void fill_holes(const IlluminationTile& tile, std::vector<uint8_t>& known,
                 std::vector<vec3>& light) {
   std::vector<std::pair<uint32_t, vec3>> found;
@@ -36,7 +37,7 @@ void fill_holes(const IlluminationTile& tile, std::vector<uint8_t>& known,
   }
 }
 
-// Four nodes around a place of a chart, and how much each counts.
+// Holds four nodes around a place of a chart, and how much each counts.
 struct NodeTaps {
   uint32_t node[4] = {0, 0, 0, 0};
   float weight[4] = {0, 0, 0, 0};
@@ -51,7 +52,7 @@ NodeTaps taps_in(const IlluminationTile& tile, float u, float v) {
           {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
 }
 
-// How many nodes lie along a line in the tile at its middle.
+// Returns how many nodes lie along a seam in the tile at its middle.
 float nodes_along(const IlluminationChart& chart, std::span<const IlluminationTile> tiles,
                   const ChartSeam& seam) {
   PlaceInTile at = find_tile(chart, tiles, 0.5f * (seam.from + seam.to));
@@ -67,14 +68,14 @@ vec3 read(const NodeTaps& taps, std::span<const vec3> light) {
   return sum;
 }
 
-// Times as much light as the nodes have falls on a mesh of that normal.
+// Returns how many times as much light as at the nodes falls on a mesh of that normal.
 float turn_of(const IlluminationChart& chart, const NodeTaps& taps, vec3 normal,
               const NodeTurns& turns) {
   if (!chart.bent || turns.slope.empty()) return 1;
   return eval_slope(read(taps, turns.slope), read(taps, turns.normal), normal);
 }
 
-// Two rows of nodes that lie on one line.
+// Holds a row of nodes along a tile's border.
 struct Border {
   uint32_t first, step, cells;
   uint32_t node(uint32_t i) const { return first + i * step; }
@@ -221,7 +222,7 @@ static void for_each_sloped(const Bake& bake, const Visit& visit) {
     if (bake.charts.places->charts[bake.places[t].chart].sloped) visit(bake.direct.tiles[t]);
 }
 
-// Slopes of sums, for each unit of their light.
+// Returns the slopes of sums for each unit of their light.
 static std::vector<vec3> relative_slopes(std::span<const vec3> light, std::span<const vec3> sums) {
   std::vector<vec3> slopes(sums.size());
   for (size_t i = 0; i < sums.size(); i++) {
@@ -248,7 +249,7 @@ static std::shared_ptr<const IlluminationMap> finish(const Bake& bake,
   }
   auto if_filtered = [&](const NodeFilter& filter) { return filtered ? &filter : nullptr; };
   auto layers = std::make_shared<std::vector<IlluminationNodes>>(size_t(bake.direct.layers));
-  // Means of a layer's light, or of its slopes.
+  // Returns the means of a layer's light, or of its slopes.
   auto means_of = [&](const BakeField& field, bool slopes, int layer) {
     const bool fine = &field == &bake.direct;
     return layer_means(field, slopes ? field.slope : field.light, layer,
@@ -312,7 +313,8 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
   return finish(bake, direct, gather, true);
 }
 
-static constexpr float least_bounce = 0.002f;  // of the mean light: a bounce that adds less ends it
+// Share of the mean light; a bounce that adds less is the last.
+static constexpr float least_bounce = 0.002f;
 
 BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
                           const CoarseLightSettings& settings) {

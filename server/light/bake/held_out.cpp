@@ -13,7 +13,7 @@ namespace {
 
 constexpr float least_facing = 0.05f;  // cosine between a node's normal and a face of it
 constexpr float least_passing = 0.05f;
-constexpr float most_brightness = 25;  // of a gathered sample, times the mean light
+constexpr float most_brightness = 25;  // bound of a gathered sample, times the mean light
 
 BakePlace light_surface(const BakeScene& scene, const Ray& ray, const Hit& hit,
                         const Surface& surface) {
@@ -59,11 +59,12 @@ void cut_off(const BakeScene& scene, std::span<vec3> light) {
 
 namespace {
 
-constexpr float most_rise = 0.577f;  // tangent of 30 degrees: pictures of eyes that look level
-constexpr size_t most_tries = 4;     // of a place, until some surface has a chart there
+// Tangent of 30 degrees: eyes look level, and up and down as far as that.
+constexpr float most_rise = 0.577f;
+constexpr size_t most_tries = 4;  // tries for each place, until some surface has a chart there
 constexpr uint64_t places_seed = 0x68656c64, samples_seed = 0x6f7574;
 
-// False: no chart is there.
+// Describes a place; returns false if no chart is there.
 bool describe(const World& world, const IlluminationCharts& charts, HeldOutPlace& place) {
   place.chart = find_chart(charts, world, place.ray, place.hit);
   if (place.chart == no_chart) return false;
@@ -82,7 +83,7 @@ Ray look_about(vec3 eye, Sampler& sampler) {
   return ray;
 }
 
-// Areas of all charts' triangles, added up.
+// Returns the areas of all charts' triangles, added up.
 std::vector<double> sum_areas(const World& world, const BakeCharts& charts) {
   std::vector<double> sums;
   double sum = 0;
@@ -95,7 +96,7 @@ std::vector<double> sum_areas(const World& world, const BakeCharts& charts) {
   return sums;
 }
 
-// A place of a chart's triangle, seen squarely.
+// Looks at a place of a chart's triangle along its normal.
 void look_at(const World& world, const BakeCharts& charts, size_t triangle, vec2 u,
              HeldOutPlace& place) {
   const auto surface = std::upper_bound(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places that no node is sampled for: at them a bake is judged. Each is sampled in two halves that
-// know nothing of each other, nor of the map m, so the mean of (a - m)(b - m) is the mean square of
-// what the map is wrong by, whatever the samples' noise: what its nodes are too coarse for counts,
-// maps of normals too. (Cross-validation by independent halves.)
+// Judges a bake at places that no node is sampled for. Each is sampled in two halves a and b that
+// are independent of each other and of the map m, so the mean of (a - m)(b - m) is the map's mean
+// square error, whatever the samples' noise: details that its nodes are too coarse for count, maps
+// of normals too. (Cross-validation by independent halves.)
 #pragma once
 #include <cstdint>
 #include <span>
@@ -15,52 +15,53 @@
 
 namespace wellspring::light {
 
-// Places whose diffuse light is sampled: a white Lambertian surface but for its coat.
+// Finds places whose diffuse light is sampled: a white Lambertian surface but for its coat.
 
 struct BakePlace {
   Surface surface;
   Bsdf bsdf;
-  float uncoated = 1;  // what undoes the coat's darkening towards the viewer
+  float uncoated = 1;  // factor that undoes the coat's darkening towards the viewer
 };
 
-// The place that a ray meets, as its mesh and its map of normals make it face.
+// Returns the place that a ray meets, facing as its mesh and its map of normals have it.
 BakePlace light_seen_place(const BakeScene& scene, const Ray& ray, const Hit& hit);
-// The same as it faces along `normal`, unit; along its mesh's where that is 0 or the face does not
-// show that way. What a map of normals adds is finer than nodes.
+// Returns the same place facing along `normal`, unit; along the mesh's normal if `normal` is 0 or
+// the face does not look that way. Details that a map of normals adds are finer than nodes.
 BakePlace light_node_place(const BakeScene& scene, const Ray& ray, const Hit& hit, vec3 normal);
 
-// The ray over the cosine that leaves the place. False: none does.
+// Lets a ray over the cosine leave the place; returns false if none does.
 bool leave(const BakePlace& lit, Sampler& sampler, Walk& walk);
 
-// A light that one walk in thousands comes upon (the sun in a brass knob) would stay a spark on the
-// wall for hours: gathered light, of all parts together, is cut off at a multiple of the mean.
+// Cuts off gathered light, of all parts together, at a multiple of the mean: a light that one walk
+// in thousands comes upon (the sun in a brass knob) would stay a spark on the wall for hours.
 void cut_off(const BakeScene& scene, std::span<vec3> light);
 
 struct HeldOutPlace {
-  Ray ray;  // towards it, from its lit side
+  Ray ray;  // towards the place, from its lit side
   Hit hit;
   uint32_t chart = 0;
-  vec3 position{0}, mesh{0}, seen{0};  // normals: of the mesh, and with its map of normals
-  float half[2] = {0, 0};              // sums of luminance
+  vec3 position{0}, mesh{0}, seen{0};  // normals: the mesh's, and with its map of normals
+  float half[2] = {0, 0};              // sums of the samples' luminance
 };
 
 struct HeldOut {
   std::vector<HeldOutPlace> places;
-  uint32_t samples = 0;  // of each half
+  uint32_t samples = 0;  // samples of each half
 };
 
-// About `count` places: as eyes at `eyes` (scene coordinates) that look about level see them,
-// without any evenly over all charts.
+// Returns about `count` places as they are seen by eyes at `eyes` (scene coordinates) that look
+// about level; without any eyes, evenly over all charts.
 HeldOut hold_out(const World& world, const BakeCharts& charts, std::span<const vec3> eyes,
                  size_t count, uint64_t seed);
-// Finds anew what follows from the rays and hits of places that were read from somewhere. False:
-// they are none of the world.
+// Finds anew what follows from the rays and hits of places that were read from a file. Returns
+// false if they are not places of the world.
 bool restore(const World& world, const IlluminationCharts& charts, HeldOut& held);
-// Adds that many samples to either half. All cores.
+// Adds that many samples to either half. Uses all cores.
 void sample_held_out(const BakeScene& scene, int samples, HeldOut& held);
 
-// Root mean square of what the map is wrong by, over the mean light; a standard error of that is
-// added, so that few samples do not flatter. 1 where there are no samples; 0 without light.
+// Returns the map's root mean square error over the mean light; a standard error of the mean square
+// is added, so that few samples do not flatter. 1 without samples; without light 0, or 1 if the map
+// has some.
 float held_out_error(const HeldOut& held, const IlluminationMap& map);
 
 }  // namespace wellspring::light

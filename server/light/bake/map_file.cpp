@@ -18,9 +18,10 @@ namespace {
 
 constexpr uint64_t format = 0x33504d4c57535701;  // changes with what is written, and with charts
 constexpr int zstd_level = 19;
-constexpr float light_steps = 24;                   // of the light's logarithm to base 2
-constexpr float least_share = 1e-3f;                // of the mean light, below which steps are even
-constexpr float color_steps = 63, slope_steps = 5;  // of a share; of a unit
+constexpr float light_steps = 24;     // steps to a unit of the light's logarithm to base 2
+constexpr float least_share = 1e-3f;  // share of the mean light, below which steps are even
+// Steps to a colour's share of 1, and to a slope of 1.
+constexpr float color_steps = 63, slope_steps = 5;
 
 // A node is written as light, two of its colour's shares, and a slope.
 constexpr int light_planes = 3, slope_planes = 3;
@@ -54,14 +55,15 @@ struct Quantiser {
   }
 };
 
-// A node's neighbours to the left and below, and the one between these, let expect this.
+// Returns what a node's neighbours to the left and below, and the one between these, let expect.
 int expected(int left, int below, int corner) {
   if (corner >= std::max(left, below)) return std::min(left, below);
   if (corner <= std::min(left, below)) return std::max(left, below);
   return left + below - corner;
 }
 
-// Codes of a tile's nodes. A dark one has no colour and no slope: it counts as its neighbour's.
+// Holds the codes of a tile's nodes. A dark node has no colour and no slope: it gets those that its
+// neighbours let expect.
 struct TileCodes {
   std::vector<NodeCodes> codes;
   int stride = 1;
@@ -78,7 +80,7 @@ struct TileCodes {
   }
 };
 
-// Differences, small ones of either sign as small numbers; light in two bytes.
+// Folds a difference so that small ones of either sign become small numbers; light takes two bytes.
 uint32_t fold(int x) { return x < 0 ? uint32_t(-2 * x - 1) : uint32_t(2 * x); }
 int unfold(uint32_t x) { return x & 1 ? -int((x + 1) / 2) : int(x / 2); }
 
@@ -90,14 +92,15 @@ std::string compress(const std::string& bytes) {
   return packed;
 }
 
-// False: it is not `size` bytes, packed.
+// Returns false if `packed` is not `size` bytes, packed.
 bool decompress(const std::vector<char>& packed, size_t size, std::string& bytes) {
   bytes.resize(size);
   const size_t found = ZSTD_decompress(bytes.data(), size, packed.data(), packed.size());
   return !ZSTD_isError(found) && found == size;
 }
 
-// A layer's differences, plane after plane; light's low bytes, then its high ones.
+// Returns the size of a layer's differences, plane after plane; light's low bytes, then its high
+// ones.
 size_t layer_bytes(size_t nodes, const Quantiser& quantiser) {
   return nodes * size_t(quantiser.planes() + 1);
 }
@@ -150,7 +153,7 @@ void read_layer(const std::vector<IlluminationTile>& tiles, const std::string& b
   }
 }
 
-// How a thing stands, and how many tiles it has: by that its light is found again.
+// Holds how a thing stands, and how many tiles it has: its light is found again by both.
 struct StandingThing {
   uint64_t hash = 0;
   uint64_t tiles = 0;
@@ -188,7 +191,7 @@ struct MapHead {
   uint32_t sloped = 0, layers = 0, tiles = 0;
 };
 
-// Tiles as the file has them, one after the other; empty: they are none.
+// Returns tiles as the file has them, one after the other; empty: they make no sense.
 std::vector<IlluminationTile> read_tiles(const std::string& cells) {
   std::vector<IlluminationTile> tiles(cells.size() / 2);
   size_t nodes = 0;
@@ -210,11 +213,12 @@ size_t count_nodes(std::span<const IlluminationTile> tiles) {
   return sum;
 }
 
-// The map of another scene, or of one that is cut into the same tiles, for the charts of this one:
-// tiles of things that stand as they stood.
+// Fits the map of another scene, or of one that is cut into the same tiles, to the charts of this
+// one: keeps the tiles of things that stand as they stood.
 void take_standing(std::span<const StandingThing> theirs, std::span<const StandingThing> ours,
                    const BakeCharts& charts, IlluminationMap& map) {
-  std::multimap<std::pair<uint64_t, uint64_t>, uint64_t> first_of;  // their first tile
+  // First tile of each thing in the file.
+  std::multimap<std::pair<uint64_t, uint64_t>, uint64_t> first_of;
   uint64_t first = 0;
   for (const StandingThing& thing : theirs) {
     first_of.insert({{thing.hash, thing.tiles}, first});

@@ -59,7 +59,7 @@ void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
 
 namespace {
 
-// Where the light of a run's pixels lies: four places each, or one.
+// Holds where the light of a run's pixels lies: four places each, or one.
 struct RunTaps {
   static constexpr int most = RasterRun::most;
   int count, places;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands still of a picture at rest, as the light of lights that move needs it: found once
-// while the view stays, so that of each picture only the light is new.
+// Keeps the still surfaces of a picture at rest, as the light of lights that move needs them: found
+// once while the view stays, so that only the light is new in each picture.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,20 +11,21 @@
 namespace wellspring::light {
 
 struct BackdropSurfaces {
-  View view;                         // of the picture
-  SurfaceBuffer surfaces;            // in dynamic_light_view() of it, what moves left out
-  std::vector<uint8_t> reflectance;  // of each pixel three: 255 times its root; 0 of what emits
-  // Of each pixel the shares of 255 that the four pixels of light around it have, by
-  // light_taps(), the first in the lowest byte. Empty: light has the picture's resolution.
+  View view;               // view of the picture
+  SurfaceBuffer surfaces;  // in its dynamic_light_view(), without what moves
+  // Three for each pixel: 255 times its root; 0 if the pixel only emits
+  std::vector<uint8_t> reflectance;
+  // For each pixel the weights, in 255ths, of the four pixels of light around it, by light_taps(),
+  // the first in the lowest byte. Empty: light has the picture's resolution.
   RawVector<uint32_t> shares;
 };
 size_t memory_bytes(const BackdropSurfaces& backdrop);
 
-// Needs visibility.rasterises() of the view.
+// Fills `backdrop`. The view must be one that visibility.rasterises().
 void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
                             BackdropSurfaces& backdrop);
 
-// Radiance that the pixels [x, x + count) of row y reflect of that light.
+// Computes the radiance that the pixels [x, x + count) of row y reflect of that light.
 void reflect_light(const BackdropSurfaces& backdrop, const LightPlanes& light, int x, int y,
                    int count, RunKnown& to);
 

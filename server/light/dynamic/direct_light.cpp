@@ -16,11 +16,12 @@
 namespace wellspring::light {
 namespace {
 
-constexpr float plane_share = 0.02f;   // of the depth: farther off the plane is another surface
-constexpr float other_object = 0.01f;  // how much others count that lie in one plane
+// Share of the depth; farther off the plane lies another surface
+constexpr float plane_share = 0.02f;
+constexpr float other_object = 0.01f;  // weight of another object in the same plane
 constexpr float least_weight = 1e-4f;
 
-// How much a pixel of the light shows of the same surface, 0 to 1.
+// Returns how much a pixel of the light shows of the same surface, 0 to 1.
 float likeness(const SurfaceBuffer& light, const PixelGrid& grid, int x, int y,
                const SeenPoint& seen) {
   const size_t at = size_t(y) * size_t(light.view.width) + size_t(x);
@@ -59,9 +60,9 @@ TapWeights weigh_taps(const SurfaceBuffer& light, const PixelGrid& grid, const T
 namespace {
 
 constexpr int wide = lane_count, high = RayPacket::lanes / lane_count;  // pixels of a packet
-constexpr float darkest = 1e-5f;  // radiance: of less nobody sees a shadow
-// How far shadow rays begin from the surface: metres, and of the depth, where normals are those of
-// smooth meshes and a depth has the precision of a float.
+constexpr float darkest = 1e-5f;  // radiance: no visitor sees a shadow of less
+// Distance of shadow rays' origins from the surface: in metres, and as a share of the depth, as
+// normals are those of smooth meshes and a depth has the precision of a float.
 constexpr float clear_of_surface = 2e-3f, clear_share = 1e-3f;
 
 struct Lit {
@@ -92,7 +93,8 @@ Rows read_rows(const SurfaceBuffer& s, const PixelGrid& grid, int x, int y) {
   return r;
 }
 
-// What of the intensity would arrive if nothing were in between, over pi; and the shadow ray.
+// Holds the share of the intensity that would arrive if nothing were in between, over pi; and the
+// shadow ray.
 struct Arriving {
   Lanes strength, dx, dy, dz, t_max;
   Lanes ux, uy, uz;  // towards the light, unit
@@ -134,12 +136,12 @@ Arriving eval_arriving(const Lit& lit, const Rows& r, Lanes ox, Lanes oy, Lanes 
   return a;
 }
 
-// How eight pixels reflect.
+// Holds how eight pixels reflect.
 struct RowGloss {
   bool any = false;
   GlossLanes of;
   Lanes alpha, vx, vy, vz, nv;  // `v`: towards the eye, unit
-  Lanes coat;                   // what the dielectric reflects of light from all around
+  Lanes coat;                   // dielectric's reflectance for light from all around
 };
 
 RowGloss read_gloss(const SurfaceBuffer& s, const Rows& r, int x, int y) {
@@ -162,8 +164,9 @@ RowGloss read_gloss(const SurfaceBuffer& s, const Rows& r, int x, int y) {
   return g;
 }
 
-// GGX's distribution times its shadowing, by Smith, over four cosines, times pi: radiance over that
-// of a white diffuse surface, but for Fresnel's factor. `hl`: cosine between light and facet.
+// Returns GGX's distribution times its shadowing, by Smith, over four cosines, times pi: radiance
+// over that of a white diffuse surface, but for Fresnel's factor. `hl`: cosine between light and
+// facet.
 Lanes eval_highlight(const Rows& r, const RowGloss& g, const Arriving& a, Lanes& hl) {
   Lanes hx = a.ux + g.vx, hy = a.uy + g.vy, hz = a.uz + g.vz;
   const Lanes inverse =
@@ -180,7 +183,7 @@ Lanes eval_highlight(const Rows& r, const RowGloss& g, const Arriving& a, Lanes&
   return 0.5f * alpha2 / (base * base * shadowing);
 }
 
-// What thin panes let through of a ray that something is in the way of.
+// Returns the light that thin panes let through along a ray that is blocked by something.
 vec3 pass_panes(const Transport& transport, const RayPacket& rays, int i) {
   Ray ray;
   ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
@@ -190,8 +193,8 @@ vec3 pass_panes(const Transport& transport, const RayPacket& rays, int i) {
   return eval_visibility(transport, ray);
 }
 
-// Reflectance of facets under a cosine: exact of dielectrics (Cook and Torrance 1982, equation 18),
-// by Schlick of metal.
+// Returns the reflectance of facets under a cosine: exact for dielectrics (Cook and Torrance 1982,
+// equation 18), by Schlick for metal.
 Lanes eval_fresnel(Lanes f0, Lanes metallic, Lanes cosine) {
   const Lanes m = 1.0f - cosine, m2 = m * m;
   const Lanes metal = f0 + (1.0f - f0) * (m2 * m2 * m);
@@ -205,7 +208,8 @@ Lanes eval_fresnel(Lanes f0, Lanes metallic, Lanes cosine) {
   return some ? coat + (metal - coat) * metallic : all_lanes(0);
 }
 
-// Light that arrives at eight pixels goes to what they reflect: white diffuse surfaces, and gloss.
+// Adds up what eight pixels reflect of the light that arrives: as white diffuse surfaces, and as
+// gloss.
 struct RowLight {
   Lanes matte[3] = {}, gloss[3] = {};
   void add(const RowGloss& g, const Lanes (&light)[3], Lanes highlight, Lanes hl) {
@@ -232,7 +236,7 @@ struct RowLight {
   }
 };
 
-// One packet's pixels, from (x, y) on.
+// Lights one packet's pixels, from (x, y) on.
 void light_pixels(const Transport& transport, std::span<const Lit> lights, const SurfaceBuffer& s,
                   const PixelGrid& grid, int x, int y, LightPlanes& to) {
   Rows rows[high];

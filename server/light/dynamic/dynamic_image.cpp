@@ -12,7 +12,7 @@ namespace wellspring::light {
 namespace {
 
 constexpr int probe_count = 64;
-// Most of what the sun shines on is nowhere near what is seen.
+// Most of what the sun shines on is nowhere near the visible surfaces.
 constexpr int parallel_more = 4;  // times as many texels and virtual lights to choose among
 
 void add_irradiance(const RawVector<vec3>& irradiance, LightPlanes& to) {
@@ -49,7 +49,8 @@ SplatSettings dynamic_splat_settings() {
   settings.virtual_lights = 512;
   settings.texels = 2048;
   settings.light_rays = 16;
-  // Three times the time of a picture, and no better under a torch (docs/tried.md).
+  // Shadows take three times the time of a picture, and look no better under a torch
+  // (docs/tried.md).
   settings.visibility = false;
   return settings;
 }
@@ -150,7 +151,7 @@ bool shine_alike(const DynamicLight& a, const DynamicLight& b) {
 
 SplatSettings later_passes(SplatSettings settings) {
   settings.visibility = true;
-  // Of many passes, noise of each is seen less than what takes light from all of them alike.
+  // In the mean of many passes noise shows less than a lack of light that all of them share.
   settings.shadow_rays = 2, settings.probe_rays = 0, settings.smooth_visibility = 0;
   settings.bound = 0.25f;
   return settings;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light of lights that move or change, for one picture: computed at its resolution or half of
-// it and read back per pixel, never across edges.
+// Computes the light of lights that move or change for one picture, at its resolution or half of
+// it; it is read back per pixel, never across edges.
 #pragma once
 #include <span>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace wellspring::light {
 
-// What is scattered once: virtual lights, and what they do to a picture.
+// Holds light that is scattered once: virtual lights, and the light they send to a picture.
 struct DynamicBounce {
   std::vector<SplatSource> sources;
   std::vector<LitProbe> probes;
@@ -20,78 +20,79 @@ struct DynamicBounce {
   SplatPicture picture;
 };
 struct DynamicImage {
-  SurfaceBuffer surfaces;  // where it was computed
-  LightPlanes light;       // of each of its pixels
+  SurfaceBuffer surfaces;  // surfaces for which it was computed
+  LightPlanes light;       // light of each of their pixels
   DynamicBounce bounce;
 };
 size_t memory_bytes(const DynamicImage& image);
 
-// As the lights that move are wanted in pictures of the show: few virtual lights, the same random
-// numbers in every picture, so that light changes as smoothly as what it comes from.
+// Returns the settings for pictures of the show: few virtual lights, the same random numbers in
+// every picture, so that light changes as smoothly as its source.
 SplatSettings dynamic_splat_settings();
 
-// All cores; call after World::commit(), while nothing moves. Memory is used again.
-// Sends the light of `from` into the world, for the next two, and keeps of it what may matter to
-// `seen`. Same seed: the same random numbers.
+// Sends the light of `from` into the world, for the next two functions, and keeps what may matter
+// to `seen`. The same seed gives the same random numbers. Runs on all cores and uses memory again;
+// call it after World::commit(), while nothing moves.
 void begin_bounce(const World& world, const Lights& lights, std::span<const DynamicLight> from,
                   const SurfaceBuffer& seen, const SplatSettings& settings, SplatSeed seed,
                   DynamicBounce& bounce);
-// Adds what of it falls on `surfaces` to `light`.
+// Adds the bounced light that falls on `surfaces` to `light`.
 void add_bounce(const World& world, const Lights& lights, const SurfaceBuffer& surfaces,
                 const SplatSettings& settings, SplatSeed seed, DynamicBounce& bounce,
                 LightPlanes& light);
-// Overwrites `light` by what falls on `surfaces`: straight from `from`, and what begin_bounce() has
-// sent.
+// Overwrites `light` by the light that falls on `surfaces`: straight from `from`, and what
+// begin_bounce() has sent.
 void light_surfaces(const World& world, const Lights& lights, std::span<const DynamicLight> from,
                     const SurfaceBuffer& surfaces, const SplatSettings& settings,
                     DynamicBounce& bounce, LightPlanes& light);
-// Both, for pictures of `view`.
+// Does both, for pictures of `view`.
 void compute_dynamic_light(const World& world, const Lights& lights,
                            const VisibilityPass& visibility, const View& view,
                            std::span<const DynamicLight> from, const SplatSettings& settings,
                            DynamicImage& image);
 
-// At the pixels of a run of a picture of `view`, which compute_dynamic_light() was called for.
+// Holds light at the pixels of a run of a picture of `view`, which compute_dynamic_light() was
+// called for.
 struct RunDynamic {
   bool any = false, any_gloss = false;
   RunKnown light;  // radiance of white diffuse surfaces
-  RunKnown gloss;  // radiance of highlights, where there are any
+  RunKnown gloss;  // radiance of highlights, if there are any
 };
-// `surface`: of the run, with normals.
+// Reads it. `surface`: the run's, with normals.
 void read_dynamic_light(const DynamicImage& image, const View& view, const VisibleRun& run,
                         const RunSurface& surface, RunDynamic& to);
 
-// Light scattered once of those dynamic lights that stay as they are for a while, as the sun at the
-// hour that was chosen: the mean of many passes of virtual lights, of other random numbers each and
-// with their shadows, so that a picture at rest comes to the true light of one bounce.
+// Keeps light scattered once by dynamic lights that stay as they are for a while, as the sun at the
+// hour that was chosen: the mean of many passes of virtual lights, each with other random numbers
+// and with shadows, so that a picture at rest comes to the true light of one bounce.
 
 struct SettledBounce {
   struct Unchanged {
     DynamicLight light;
-    int pictures = 0;  // for how many it has been as it is
+    int pictures = 0;  // number of pictures in which it has not changed
   };
   std::vector<Unchanged> last;  // all lights of the last picture
-  DynamicLights lights;         // those of them that count as settled
-  int pictures = 0;             // since they are these lights
-  int passes = 0;               // in the mean
-  LightPlanes mean;             // of what they scatter
+  DynamicLights lights;         // the settled ones among them
+  int pictures = 0;             // pictures since the settled lights last changed
+  int passes = 0;               // passes in the mean
+  LightPlanes mean;             // mean of their scattered light
 };
 size_t memory_bytes(const SettledBounce& settled);
 
-// Once a picture: moves those of `from` that have settled to settled.lights, leaves the others.
+// Moves those of `from` that have settled to settled.lights, once a picture; leaves the others.
 void take_settled(SettledBounce& settled, DynamicLights& from);
 
-// One of `between_passes` pictures has a pass, so that pictures keep their rate; after
-// `most_passes` one of `between_late` has, for things that were moved.
+// One in `between_passes` pictures has a pass, so that pictures keep their rate; after
+// `most_passes` passes one in `between_late` has, for things that were moved.
 inline constexpr int most_passes = 64, between_passes = 3, between_late = 32;
 bool wants_pass(const SettledBounce& settled);
-// Adds one to the mean. The first, by `settings`, is that of lights that have not settled, and
-// counts as much as `first_weight` of the others, so that from it on the picture changes smoothly.
-// Overwrites `bounce`. All cores; as light_surfaces().
+// Adds a pass to the mean. The first, by `settings`, is the same as for lights that have not
+// settled, and counts as much as `first_weight` of the others, so that the picture changes smoothly
+// from it on. Overwrites `bounce`. Runs on all cores, as light_surfaces() does.
 inline constexpr int first_weight = 8;
 void add_pass(const World& world, const Lights& lights, const SurfaceBuffer& surfaces,
               const SplatSettings& settings, SettledBounce& settled, DynamicBounce& bounce);
-// Adds the mean.
+// Adds the mean to `light`.
 void add_settled(const SettledBounce& settled, LightPlanes& light);
 
 }  // namespace wellspring::light

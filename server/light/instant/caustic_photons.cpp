@@ -13,7 +13,7 @@
 namespace wellspring::light {
 namespace {
 
-// A ray from a source towards the casters, its flux divided by the chance of choosing it.
+// Returns a ray from a source towards the casters, its flux divided by the chance of choosing it.
 EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphere> casters,
                           Sampler& sampler) {
   const LightTables& tables = transport.tables;
@@ -62,7 +62,7 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
                                                 : eval_environment(environment, sky.direction)) /
                sky.pdf;
   }
-  // Parallel light: a place on the discs that the spheres show to it.
+  // Parallel light is aimed at a place on the discs that the spheres show to it.
   float total = 0;
   for (const CasterSphere& c : casters) total += c.weight * c.radius * c.radius;
   float left = sampler.next() * total;
@@ -95,8 +95,8 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
 constexpr float same_surface = 0.7f;  // least cosine between normals
 constexpr float grazing = 1e-3f;      // photons flatter than this do not count
 
-// visit(at, counts) as for_each_photons has it, of those that count for a surface lit from before
-// it.
+// Calls visit(at, counts) as for_each_photons does, for photons that count for a surface lit from
+// its front.
 template <class Visit>
 void for_each_counting(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest,
                        PhotonCells& cells, const Visit& visit) {
@@ -111,7 +111,7 @@ void for_each_counting(const PhotonGrid& grid, vec3 place, vec3 normal, int deep
   });
 }
 
-// Flux that arrives around a place from before it.
+// Returns the flux that arrives around a place from its front.
 vec3 sum_lambert(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest, PhotonCells& cells) {
   Lanes red = all_lanes(0), green = red, blue = red, none = red;
   for_each_counting(grid, place, normal, deepest, cells, [&](size_t at, LaneMask counts) {
@@ -122,8 +122,8 @@ vec3 sum_lambert(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest, P
   return {lanes_sum(red), lanes_sum(green), lanes_sum(blue)};
 }
 
-// What such photons do by a bsdf that fits lanes, gathered until there are eight of them. Diffuse:
-// to be multiplied by the reflectance.
+// Holds the light of such photons scattered by a bsdf that fits lanes, eight photons at a time.
+// `diffuse` is to be multiplied by the reflectance.
 struct Scattered {
   vec3 diffuse, specular;
 };
@@ -131,7 +131,7 @@ Scattered sum_scattered(const PhotonGrid& grid, vec3 place, const Bsdf& bsdf, in
                         PhotonCells& cells) {
   const Lanes none = all_lanes(0);
   const vec3 normal = bsdf.geometric_normal;
-  std::optional<BsdfLanes> lanes;  // once there is something to scatter
+  std::optional<BsdfLanes> lanes;  // made once there is something to scatter
   uint32_t found[lane_count];
   int count = 0;
   Lanes3 diffuse{none, none, none}, specular = diffuse;
@@ -206,7 +206,7 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
   bool sharp = has_sharp(bsdf, place.sharp);
   float hue = place.hue();
   bool hued = hue >= 0 && !grid.hue.values.empty();
-  // One reflectance for all directions.
+  // The reflectance is the same for all directions.
   bool lambertian = !has_specular(bsdf) && bsdf.normal == normal && !hued;
   float area = pi * grid.radius * grid.radius;
   if (lambertian) {

@@ -14,9 +14,10 @@
 namespace wellspring::light {
 namespace {
 
-constexpr float color_step = 0.1f;  // of albedo, between pixels
+// Difference of albedo between pixels beyond which there is an edge.
+constexpr float color_step = 0.1f;
 
-// Of a pixel of the picture, else 0.
+// Flags of a pixel of the picture; 0 outside.
 constexpr int32_t inside = 1, hit = 2, smooth = 4;  // smooth: irradiance is known there
 
 // Neighbours of a row are shifted copies of it: eight pixels are compared at once. Rows have room
@@ -45,7 +46,7 @@ struct Offset {
   bool in_window = false, neighbour = false;
 };
 
-// Half of a window's and half of the eight neighbours: comparisons are mutual.
+// Returns half of a window's offsets and half of the eight neighbours': comparisons are mutual.
 std::vector<Offset> make_offsets(int across, int down, int step, bool edges) {
   std::vector<Offset> offsets;
   int widest = std::max(across, 1), highest = std::max(down, 1);
@@ -61,21 +62,21 @@ std::vector<Offset> make_offsets(int across, int down, int step, bool edges) {
   return offsets;
 }
 
-// Some rows of a picture by their parts.
+// Holds some rows of a picture, each part of the samples by itself.
 struct Band {
   int first_row, rows, width;
   size_t stride;
   Plane3 position, normal, albedo, smooth;
   Plane distance;
   std::vector<int32_t> object, known;
-  std::vector<std::vector<int32_t>> joined;  // of each offset: -1 where light is shared
-  std::vector<float> number;                 // of pixels that a pixel shares with
-  std::vector<int32_t> edge;                 // not 0: there is one
+  std::vector<std::vector<int32_t>> joined;  // for each offset and pixel; -1: light is shared
+  std::vector<float> number;                 // number of pixels that each pixel shares with
+  std::vector<int32_t> edge;                 // not 0: there is an edge
 
   size_t at(int x, int y) const { return size_t(y - first_row) * stride + size_t(x + margin); }
 };
 
-// Of eight samples, each of whose halves is eight numbers side by side.
+// Sets eight pixels from samples, each of whose halves is eight numbers side by side.
 void set_pixels(const Sample* const (&from)[lane_count], unsigned within, size_t i, Band& band) {
   static_assert(offsetof(Sample, distance) == 6 * sizeof(float));
   static_assert(offsetof(Sample, smooth) == offsetof(Sample, albedo) + 3 * sizeof(float));
@@ -127,7 +128,7 @@ Band make_band(const View& view, std::span<const Sample> samples, int first_row,
   return band;
 }
 
-// is_continuous of eight pixels from i on and those from j on.
+// Returns is_continuous for eight pixels from i on and those from j on.
 LaneMask are_continuous(const Band& band, size_t i, size_t j, const DiscontinuitySettings& settings,
                         float pixel) {
   Lanes3 n = band.normal.at(i), m = band.normal.at(j);
@@ -171,7 +172,7 @@ void compare_row(Band& band, int y, const Offset& offset, std::vector<int32_t>& 
   }
 }
 
-// Weighted means of a row's pixels.
+// Computes the weighted means of a row's pixels.
 void filter_row(const Band& band, int y, std::span<const Offset> offsets, Plane3& filtered) {
   for (int x = 0; x < band.width; x += lane_count) {
     size_t i = band.at(x, y);
@@ -198,9 +199,10 @@ void filter_row(const Band& band, int y, std::span<const Offset> offsets, Plane3
 struct Window {
   DiscontinuitySettings settings;
   std::vector<Offset> offsets;
-  int reach = 1;  // rows to a neighbour
-  int later = 0;  // rows beyond a band that later windows look at
-  // A pixel's number of continuous pixels reaches as far, and theirs.
+  int reach = 1;  // rows to the farthest neighbour
+  int later = 0;  // rows beyond a band that later windows read
+  // Returns the rows before a band that it needs: a pixel's neighbours count by their numbers of
+  // continuous pixels, which reach as far again.
   int before() const { return later + 2 * reach; }
 };
 
@@ -218,7 +220,7 @@ std::vector<Window> make_windows(std::span<const DiscontinuitySettings> all, boo
   return windows;
 }
 
-// Rows [top, bottom) of a band become what all windows leave.
+// Applies all windows to the rows [top, bottom) of a band.
 void filter_band(std::span<const Window> windows, int top, int bottom, float pixel, Band& band) {
   Plane3 filtered = band.smooth;
   for (const Window& window : windows) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The discontinuity buffer (Wald et al. 2002, section 4.3): irradiance is averaged over
-// neighbouring pixels where the surface goes on, so that a pixel profits from its neighbours' sets
-// of point lights; reflectance is not touched, so textures stay sharp. Beyond the paper, neighbours
-// belong to one object, and distance is that from the tangent plane, which a floor seen at a
-// grazing angle never fails.
+// Implements the discontinuity buffer (Wald et al. 2002, section 4.3): irradiance is averaged over
+// neighbouring pixels as long as the surface goes on, so that a pixel profits from its neighbours'
+// sets of point lights; reflectance is not touched, so textures stay sharp. Beyond the paper,
+// neighbours belong to one object, and distance is measured from the tangent plane, so that a floor
+// seen at a grazing angle always goes on.
 #pragma once
 #include <span>
 #include <vector>
@@ -14,25 +14,25 @@
 namespace wellspring::light {
 
 struct DiscontinuitySettings {
-  int columns = 3, rows = 3;  // of the window; odd
-  int step = 1;               // pixels from one that it looks at to the next; at most 3
+  int columns = 3, rows = 3;  // pixels of the window; odd
+  int step = 1;               // pixels from one that the window reads to the next; at most 3
   float normal = 0.9f;        // least cosine between normals
-  float distance = 1;         // most distance from each other's tangent plane, in pixels there
+  float distance = 1;         // greatest distance from each other's tangent plane, in pixels there
 };
 
-// Does the surface go on between two pixels? `pixel`: angle of a pixel. Symmetric.
+// Returns whether the surface goes on between two pixels. `pixel`: angle of a pixel. Symmetric.
 bool is_continuous(const Sample& a, const Sample& b, const DiscontinuitySettings& settings,
                    float pixel);
 
-// Is something to be seen between two neighbouring pixels that one ray each cannot show: the end of
-// a surface, or of its colour? Symmetric.
+// Returns whether two neighbouring pixels need more than one ray each, because a surface, or its
+// colour, ends between them. Symmetric.
 bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& settings, float pixel);
 
-// samples[y * width + x].smooth becomes a weighted mean over the window's continuous neighbours.
-// Where n pixels are continuous with one and m with the other, each counts 1 / max(n, m) for the
-// other and the rest for itself: in the middle of a surface the plain mean, and nowhere is light
-// won or lost, so that a picture's mean stays what it was. Windows up to 7 x 7. `edges`, if wanted:
-// of each pixel, not 0 where is_edge between it and one of the eight around it. All cores.
+// Makes samples[y * width + x].smooth a weighted mean over the window's continuous neighbours. If n
+// pixels are continuous with one and m with the other, each counts 1 / max(n, m) for the other and
+// the rest for itself: in the middle of a surface this is the plain mean, and nowhere is light won
+// or lost, so that a picture's mean stays what it was. Windows are up to 7 x 7. `edges`, if wanted,
+// is not 0 for each pixel with is_edge between it and one of the eight around it. Uses all cores.
 // Several windows are applied one after the other; edges are those of the first one.
 void filter_windows(const View& view, std::span<const DiscontinuitySettings> windows,
                     std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);

@@ -15,11 +15,11 @@
 namespace wellspring::light {
 namespace {
 
-// The mean over a pixel's samples, in parts as Sample has them.
+// Holds what the additional samples of a pixel have found.
 struct Refined {
   size_t pixel = 0;
-  int lit = 0;       // samples besides its own
-  vec3 radiance{0};  // their sum
+  int lit = 0;       // samples besides the pixel's own
+  vec3 radiance{0};  // sum over these samples
 };
 
 struct Refining {
@@ -36,7 +36,8 @@ struct Refining {
   float pixel_angle;
 };
 
-// The pixel nearest to (x, y) in the picture that shows the surface of `sample`.
+// Returns the pixel nearest to (x, y) in the picture that shows the surface of `sample`; null:
+// none.
 const Sample* find_same(const Refining& r, const Sample& sample, float x, float y) {
   const Sample* best = nullptr;
   float nearest = std::numeric_limits<float>::infinity();
@@ -53,14 +54,14 @@ const Sample* find_same(const Refining& r, const Sample& sample, float x, float 
   return best;
 }
 
-// Its light, if a neighbour shows the same surface.
+// Takes the light of a neighbour that shows the same surface; returns false if none does.
 bool take_light(const Refining& r, const Sample& sample, vec2 place, vec3& radiance) {
   const Sample* same = find_same(r, sample, place.x, place.y);
   if (same) radiance = sample.albedo * same->smooth + same->rest;
   return same;
 }
 
-// The ray's radiance, if it can be told from its neighbours.
+// Finds the ray's radiance from its neighbours; returns false if they do not suffice.
 bool eval_alike(const Refining& r, const Request& request, vec2 place, vec3& radiance) {
   Transport transport{r.world, *r.lights.tables};
   Sampler sampler(request.seed, request.index);
@@ -76,11 +77,11 @@ bool eval_alike(const Refining& r, const Request& request, vec2 place, vec3& rad
   return take_light(r, sample, place, radiance);
 }
 
-// The rays that a row's edges ask for, and where in the picture.
+// Holds the rays that a row's edges need, and their places in the picture.
 struct Looks {
   std::vector<Request> requests;
   std::vector<vec2> places;
-  std::vector<size_t> pixels;  // in the row's list, of each
+  std::vector<size_t> pixels;  // index in the row's list, for each ray
 };
 
 Looks look_at_edges(const Refining& r, int y, std::vector<Refined>& refined) {
@@ -165,18 +166,18 @@ void refine_edges(const World& world, const Lights& lights, const TransportSetti
 
 namespace {
 
-// One request on its way.
+// Holds one request on its way.
 struct Eye {
   Sampler sampler;
   Sample sample;
   FirstSurface first;
-  std::unique_ptr<std::optional<WavelengthSpread>> spread;  // of its colours, if it parts them
+  std::unique_ptr<std::optional<WavelengthSpread>> spread;  // if the surface parts colours
   PixelGroup group;
   DemodulatedReflectance kept;  // without the tint
   PlaceLight light;
 };
 
-// Of reflectance 1, so that light is kept apart from what reflects it.
+// Gives the surface a reflectance of 1, so that light is kept apart from what reflects it.
 void split_first(Eye& eye) {
   Bsdf& bsdf = eye.first.bsdf;
   eye.kept = demodulated_reflectance(eye.first);
@@ -189,8 +190,8 @@ void split_first(Eye& eye) {
   if (bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f) eye.sample.flags |= sample_specular;
 }
 
-// The components of the first scattering, each on its own (section 4: the eye's path is split
-// once).
+// Follows the components of the first scattering, each on its own (section 4: the eye's path is
+// split once).
 void follow_first(const EyeLight& light, Eye& eye) {
   const Transport& transport = light.transport;
   const FirstSurface& first = eye.first;
@@ -235,7 +236,7 @@ void finish(const EyeLight& light, Eye& eye) {
     eye.sample.rest += follow_mirrors(light, eye.first.reflection, eye.sampler);
 }
 
-// Of whatever material.
+// Answers the requests of those numbers, whatever material they see.
 void trace_others(const Transport& transport, const InstantPass& pass, int max_depth,
                   std::span<const Request> requests, std::span<const uint32_t> numbers,
                   std::span<Sample> samples) {

@@ -27,17 +27,17 @@ void part_seen_colors(const Transport& transport, const Walk& walk, const Surfac
 
 namespace {
 
-// What is seen in mirrors is not filtered, so more than one set lights it; a faint image makes do
-// with fewer of the lights, asked of each set, and so does what is gathered from nearby, a small
-// part of all.
+// Mirror images are not filtered, so more than one set lights them; a faint image makes do with
+// fewer lights of each set, and so does light gathered from nearby, a small part of all.
 constexpr int mirror_sets = 2, near_lights = 2, chained_lights = 6, most_lights = 16;
 int mirror_lights(const Walk& walk) {
   float bright = max_component(walk.throughput);
   return bright > 0.5f ? 8 : bright > 0.25f ? 5 : 3;
 }
-constexpr int mirror_depth = 6;  // chains are not cut short at random before
+constexpr int mirror_depth = 6;  // edges of a chain before it may be cut short at random
 
-// Radiance scattered towards where `walk` came from by the rough lobes of what it met.
+// Returns the radiance scattered towards the origin of `walk` by the rough lobes of the surface
+// that it met.
 vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, const Bsdf& bsdf,
                 float sharp, int sets, int lights, Sampler& sampler) {
   if (walk.depth >= eye.max_depth || !has_rough(bsdf, sharp)) return vec3(0);
@@ -66,7 +66,7 @@ vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, c
   return radiance + rest.sum();
 }
 
-// Lets a walk live with a chance of its throughput.
+// Lets a walk go on with a chance of its throughput.
 bool survives(Walk& walk, float importance, Sampler& sampler) {
   const float most = walk.glass > sure_glass ? glass_survival : 1;
   float chance = std::min(most, max_component(walk.throughput) * importance);
@@ -75,12 +75,12 @@ bool survives(Walk& walk, float importance, Sampler& sampler) {
   return true;
 }
 
-// The walk's ray ends at `hit`.
+// Holds the surface that a walk's ray met.
 struct Met {
   Surface surface;
   const Material* material;
   Bsdf bsdf;
-  std::optional<WavelengthSpread> spread;  // where it parts colours; bsdf refers to it
+  std::optional<WavelengthSpread> spread;  // if the surface parts colours; bsdf refers to it
 };
 void meet(const Transport& transport, Hit& hit, Sampler& sampler, Walk& walk, Met& met) {
   met.surface = meet_surface(transport, walk.ray, hit, walk.media);
@@ -95,7 +95,8 @@ bool go_on(Walk& walk, const Met& met, const BsdfSample& scattered) {
   return advance(walk, met.surface, scattered);
 }
 
-// Of a sky without a picture's brightness to go by: what photons do not bring.
+// Returns the light that photons do not bring from a sky without a picture's brightness to go by:
+// all but the sun's.
 vec3 plain_sky(const EnvironmentLight& environment, vec3 direction) {
   vec3 sky = eval_environment(environment, direction);
   return sample_environment_pdf(environment, direction) > 0 ? sky - environment.sun_radiance : sky;
@@ -108,7 +109,7 @@ vec3 gather_along(const EyeLight& eye, Walk walk, Sampler& sampler) {
   const LightTables& tables = transport.tables;
   float clip = eye.pass.compensate ? eye.pass.clip : 0;
   float run = 0;
-  bool chained = false;  // a sharp lobe was on the way
+  bool chained = false;  // whether a sharp lobe was on the way
   vec3 radiance(0);
   for (int i = 0; i < most_panes; i++) {
     if (!eye.pass.sharp) walk.ray.t_max = clip - run;
@@ -181,7 +182,7 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
                                                asked > 5 ? mirror_sets : 1, asked, sampler);
     }
     BsdfSample scattered;
-    if (last) {  // only straight on, where a shadow ray would have gone too
+    if (last) {  // the walk goes only straight on, as a shadow ray would have
       if (!is_pane(met.surface, *met.material)) return radiance;
       scattered.direction = walk.ray.direction;
       scattered.weight = pane_transmittance(met.surface, *met.material, walk.ray.direction);
@@ -208,7 +209,7 @@ namespace {
 
 constexpr int item_bits = 22, list_bits = 10;
 
-// Up to 16 eyes of one group.
+// Holds up to 16 eyes of one group.
 struct Packet {
   std::span<const LambertHit> eyes;
   uint32_t items[RayPacket::lanes];
@@ -230,7 +231,8 @@ LitGroup make_group(const Packet& packet) {
   return group;
 }
 
-// What clipping took (gather_rest): few rays meet anything so near, which is asked of all at once.
+// Gathers what clipping took (gather_rest): few rays meet anything so near, which is tested for all
+// rays at once.
 void gather_clipped(const EyeLight& light, std::span<const Request> requests, const Packet& packet,
                     const LitGroup& group, LambertLight& sum) {
   constexpr uint32_t direction_dimension = 0, later_dimensions = 1;

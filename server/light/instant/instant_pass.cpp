@@ -61,7 +61,7 @@ void find_photon_cells(const PhotonGrid& grid, vec3 place, PhotonCells& cells) {
   for (int i = 0; i < 8; i++) {
     uint32_t bucket = photon_bucket(grid, x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
     uint32_t begin = grid.first[bucket], end = grid.first[bucket + 1];
-    bool again = begin == end;  // or cells that share a bucket
+    bool again = begin == end;  // the bucket is empty, or another cell's, too
     for (int k = 0; k < cells.count; k++) again |= cells.begin[k] == begin;
     if (again) continue;
     cells.begin[cells.count] = begin;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What instant radiosity draws for one pass over a picture: sets of point lights, which of them
-// each region asks, and photons.
+// Holds what instant radiosity draws for one pass over a picture: sets of point lights, the lights
+// that each region asks, and photons.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -14,21 +14,21 @@
 
 namespace wellspring::light {
 
-// Photons found by place: a grid of cells twice the query's radius wide, hashed, so that a query
-// looks at 8 cells and nothing is stored for empty ones (Wald et al. 2002, section 4.1). The radius
-// is fixed when the grid is made. Photons lie side by side, cell by cell, and are looked at eight
-// at a time.
+// Finds photons by place in a grid of cells twice the query's radius wide, hashed, so that a query
+// reads 8 cells and nothing is stored for empty ones (Wald et al. 2002, section 4.1). The radius is
+// fixed when the grid is made. Photons lie side by side, cell by cell, and are read eight at a
+// time.
 
 struct Photon {
   vec3 position{0};
-  uint32_t depth = 1;  // edges from the source, without what solid glass did
+  uint32_t depth = 1;  // path edges from the source, without those in solid glass
   vec3 flux{0};
-  vec3 direction{0};     // to where it came from
-  vec3 normal{0, 1, 0};  // geometric, of the surface it hit
+  vec3 direction{0};     // unit, to where the photon came from
+  vec3 normal{0, 1, 0};  // geometric normal of the surface that the photon hit
   float hue = -1;        // hue_of its walk; `flux` has that colour
 };
 
-// One number of every photon, and eight more that may be read.
+// Holds one number of every photon, and eight more that may be read.
 struct PhotonColumn {
   std::vector<float> values;
   Lanes at(size_t i) const { return load_lanes(&values[i]); }
@@ -40,13 +40,13 @@ struct PhotonColumns3 {
 
 struct PhotonGrid {
   float radius = 0;
-  double per_metre = 0;         // cells
+  double per_metre = 0;         // cells per metre
   uint32_t mask = 0;            // buckets - 1
-  std::vector<uint32_t> first;  // of each bucket, and the end
-  // Bucket by bucket.
+  std::vector<uint32_t> first;  // first photon of each bucket, and the end
+  // The photons' columns, bucket by bucket.
   PhotonColumns3 position, flux, direction, normal;
   PhotonColumn depth;
-  PhotonColumn hue;  // empty: none has any
+  PhotonColumn hue;  // empty: no photon has a hue
   size_t size() const { return first.empty() ? 0 : first.back(); }
   Photon photon(size_t i) const {
     return {position.at(i), uint32_t(depth.values[i]),
@@ -55,10 +55,10 @@ struct PhotonGrid {
   }
 };
 
-// Photons that are nowhere (not finite) are left out. `radius` > 0.
+// Makes a grid of photons; those whose place or flux is not finite are left out. `radius` > 0.
 PhotonGrid make_photon_grid(const std::vector<Photon>& photons, float radius);
 
-// Where a place is, counted in cells.
+// Returns a place, counted in cells.
 inline dvec3 in_photon_cells(const PhotonGrid& grid, vec3 place) {
   return dvec3(place) * grid.per_metre;
 }
@@ -68,18 +68,18 @@ inline uint32_t photon_bucket(const PhotonGrid& grid, int64_t x, int64_t y, int6
   return uint32_t((hash ^ hash >> 32) * 0xd6e8feb86659fd93ull >> 32) & grid.mask;
 }
 
-// The photons around places between the same eight cells' middles. Neighbouring places mostly have
-// the same, so whoever asks for many in a row keeps this.
+// Holds the photons around places between the same eight cells' middles. Neighbouring places mostly
+// have the same ones, so a caller that looks for many in a row keeps this.
 struct PhotonCells {
-  double x, y, z;  // number of the first cell
-  int count = -1;  // runs of photons; -1: none asked for yet
+  double x, y, z;  // coordinates of the first cell
+  int count = -1;  // runs of photons; -1: none looked for yet
   uint32_t begin[8], end[8];
 };
-// Makes `cells` those around a finite place.
+// Makes `cells` the cells around a finite place.
 void find_photon_cells(const PhotonGrid& grid, vec3 place, PhotonCells& cells);
 
-// visit(at, within) for eights of photons from number `at` on, among them each within the radius of
-// `place` once: those whose lane of `within` is not 0.
+// Calls visit(at, within) for eights of photons from number `at` on, which have each photon within
+// the radius of `place` once: in the lanes of `within` that are not 0.
 template <class Visit>
 void for_each_photons(const PhotonGrid& grid, vec3 place, PhotonCells& cells, const Visit& visit) {
   if (grid.size() == 0 || !is_finite(place)) return;
@@ -95,7 +95,7 @@ void for_each_photons(const PhotonGrid& grid, vec3 place, PhotonCells& cells, co
     }
 }
 
-// visit(photon) for each within the radius of `place`, each once.
+// Calls visit(photon) once for each photon within the radius of `place`.
 template <class Visit>
 void for_each_photon(const PhotonGrid& grid, vec3 place, PhotonCells& cells, const Visit& visit) {
   for_each_photons(grid, place, cells, [&](size_t at, LaneMask within) {
@@ -105,18 +105,18 @@ void for_each_photon(const PhotonGrid& grid, vec3 place, PhotonCells& cells, con
 }
 
 enum class PointLightKind : uint8_t {
-  lambertian,  // as seen by Lambert: area light, or light scattered by a Lambertian surface
-  scattering,  // whatever the surface does: `arrival`
-  distant,     // from infinity
-  punctual,    // of the scene
+  lambertian,  // by Lambert's law: area light, or light scattered by a Lambertian surface
+  scattering,  // by the bsdf of its arrival
+  distant,     // light from infinity
+  punctual,    // a punctual light of the scene
 };
 
 struct PointLight {
   PointLightKind kind = PointLightKind::lambertian;
   bool double_sided = false;
-  bool exact = false;    // in every set alike: what it lights needs no filter
-  uint16_t depth = 0;    // edges from the source
-  uint32_t index = 0;    // of what its kind needs: arrival or punctual light
+  bool exact = false;    // in every set alike: its light needs no filter
+  uint16_t depth = 0;    // path edges from the source
+  uint32_t index = 0;    // index of its arrival or punctual light
   vec3 position{0};      // distant: unit direction to it
   vec3 normal{0, 1, 0};  // geometric
   vec3 target{0};        // a shadow ray ends here, clear of the surface
@@ -124,10 +124,10 @@ struct PointLight {
   float hue = -1;        // hue_of its walk; `radiance` has that colour
 };
 
-// Point lights that each region of the picture asks (region_lights.h).
+// A point light that a region of the picture asks (region_lights.h).
 struct RegionLight {
-  uint32_t light = 0;  // of the pass
-  float factor = 1;    // on its radiance
+  uint32_t light = 0;  // index in the pass
+  float factor = 1;    // factor on the light's radiance
 };
 struct RegionLights {
   static constexpr int across = 4;  // pixels of one list in a row of a region: 16 are a packet
@@ -135,24 +135,24 @@ struct RegionLights {
       2;                        // lists interleave as sets do, in a pattern so many times as wide
   int width = 0, height = 0;    // pixels of a region
   int columns = 0;              // 0: no regions, every pixel asks its whole set
-  std::vector<uint32_t> first;  // of region * lists + list, and the end
+  std::vector<uint32_t> first;  // index in `lights` of each region * lists + list, and the end
   std::vector<RegionLight> lights;
 };
 
-struct LightLanes;  // light_lanes.h
+struct LightLanes;  // point_lights_simd.h
 
-// What one pass has drawn.
+// Holds what one pass has drawn.
 struct InstantPass {
   int columns = 1, rows = 1, width = 1;  // sets, and pixels in a row of the picture
   float clip = 0;
   bool compensate = false, sharp = false;  // sharp: caustics can exist
   std::vector<PointLight> lights;          // set by set, depths ascending in a set
-  std::vector<uint32_t> first;             // of each set, and the end
+  std::vector<uint32_t> first;             // index in `lights` of each set, and the end
   std::vector<Arrival> arrivals;
-  std::shared_ptr<const LightLanes> lanes;  // of all lights
+  std::shared_ptr<const LightLanes> lanes;  // lanes of all lights
   RegionLights regions;
-  std::vector<PhotonGrid> photons;  // of each set; none without caustics
-  // What it was drawn with.
+  std::vector<PhotonGrid> photons;  // one for each set; none without caustics
+  // The pass was drawn with these.
   TransportSettings settings;
   uint64_t seed = 0;
   uint32_t index = 0;
@@ -160,7 +160,7 @@ struct InstantPass {
   int lists() const { return sets() * RegionLights::finer * RegionLights::finer; }
 };
 
-// The list of a pixel among those of its region.
+// Returns the list of a pixel among those of its region.
 inline int list_of_pixel(const InstantPass& pass, uint32_t pixel) {
   int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
   int columns = pass.columns * RegionLights::finer, rows = pass.rows * RegionLights::finer;
@@ -171,7 +171,7 @@ inline int set_of_list(const InstantPass& pass, int list) {
   return list / columns % pass.rows * pass.columns + list % columns % pass.columns;
 }
 
-// The region that a pixel is in; -1: there are none.
+// Returns the region that a pixel is in; -1: there are none.
 inline int region_of_pixel(const InstantPass& pass, uint32_t pixel) {
   const RegionLights& regions = pass.regions;
   if (regions.columns == 0) return -1;

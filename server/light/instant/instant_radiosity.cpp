@@ -21,8 +21,8 @@ namespace wellspring::light {
 namespace {
 
 constexpr int pixels_a_candidate = 2048;
-// First passes of a picture whose irradiance is averaged over more than the paper's window; the
-// mean of many passes has ever less of that blur.
+// The first passes of a picture average irradiance over more than the paper's window; the mean of
+// many passes has ever less of that blur.
 constexpr uint32_t wide_passes = 4;
 
 }  // namespace
@@ -53,7 +53,7 @@ void finish_instant(const World& world, const Lights& lights, const View& view,
   settings.columns = pass.columns;
   settings.rows = pass.rows;
   std::vector<uint8_t> edges;
-  // Lists of lights interleave more coarsely than sets: the second window takes what is left of
+  // Lists of lights interleave more coarsely than sets: the second window removes what is left of
   // their pattern.
   DiscontinuitySettings windows[2] = {settings, settings};
   windows[1].columns = windows[1].rows = windows[1].step = 3;
@@ -63,9 +63,9 @@ void finish_instant(const World& world, const Lights& lights, const View& view,
                mix64(pass.seed ^ 0x6564676573ull), pass.index, edges, samples);
 }
 
-// The point lights of a pass: section 4.4 of the paper. All sets and passes of one seed draw from
-// one randomised low-discrepancy sequence, each a subsequence after the other's, dimensions padded
-// by replication (Kollig and Keller 2001): that is Sampler.
+// Draws the point lights of a pass: section 4.4 of the paper. All sets and passes of one seed draw
+// from one randomised low-discrepancy sequence, each a subsequence after the other's, dimensions
+// padded by replication (Kollig and Keller 2001), as Sampler does.
 
 namespace {
 
@@ -90,7 +90,8 @@ void add_exact(const LightTables& tables, DrawnSet& set) {
   }
 }
 
-// A place on a source: of depth 0. `share`: of the source's light that it stands for.
+// Adds a place on a source as a light of depth 0. `share`: part of the source's light that it
+// stands for.
 void add_place(const Transport& transport, float share, Sampler& sampler, DrawnSet& set) {
   const LightTables& tables = transport.tables;
   const AliasTable& choice = tables.emission.places;
@@ -122,7 +123,7 @@ void add_place(const Transport& transport, float share, Sampler& sampler, DrawnS
   if (max_component(light.radiance) > 0 && is_finite(light.radiance)) set.lights.push_back(light);
 }
 
-// `parted`: what the surface itself makes of the walk's colours.
+// Adds a walk's arrival as a light. `parted`: what the surface itself makes of the walk's colours.
 void add_arrival(const LightWalk& walk, const Arrival& arrival, const WavelengthSpread* parted,
                  float share, DrawnSet& set) {
   const Bsdf& bsdf = arrival.bsdf;
@@ -139,7 +140,7 @@ void add_arrival(const LightWalk& walk, const Arrival& arrival, const Wavelength
     light.kind = PointLightKind::scattering;
     light.index = uint32_t(set.arrivals.size());
     light.radiance = arrival.flux * share;
-    if (parted) {  // one wavelength for all that it emits light on
+    if (parted) {  // one wavelength for all that the light reaches
       light.radiance *= hero_tint(*parted);
       light.hue = parted->before.place;
     }
@@ -165,8 +166,8 @@ void add_walk(const Transport& transport, int deepest, float share, Sampler& sam
   }
 }
 
-// Typical length of a ray between surfaces, from a few walks that are the same for every pass: the
-// clipped picture that passes converge to is one picture.
+// Returns the typical length of a ray between surfaces, from a few walks that are the same for
+// every pass: the clipped picture that passes converge to is one picture.
 float free_path(const Transport& transport) {
   constexpr int walks = 64, bounces = 3;
   std::vector<float> lengths;
@@ -197,7 +198,7 @@ void draw_photons(const Transport& transport, const TransportSettings& settings,
   casters.insert(casters.end(), transport.tables.casters.begin(), transport.tables.casters.end());
   int photons = std::clamp(settings.instant.photons, 0, 1 << 22);
   if (casters.empty() || !(radius > 0) || photons == 0) return;
-  constexpr int pieces = 4;  // of a set's photons, so that all cores have work
+  constexpr int pieces = 4;  // pieces of a set's photons, so that all cores have work
   std::vector<std::vector<Photon>> shot(size_t(pass.sets() * pieces));
   parallel_for(pass.sets() * pieces, [&](int i) {
     int set = i / pieces, piece = i % pieces;
@@ -224,7 +225,7 @@ void sort_by_depth(DrawnSet& set) {
                    [](const PointLight& a, const PointLight& b) { return a.depth < b.depth; });
 }
 
-// Moves `from` behind what `lights` and `arrivals` have.
+// Appends `from` to `lights` and `arrivals`.
 void append(const DrawnSet& from, std::vector<PointLight>& lights, std::vector<Arrival>& arrivals) {
   for (PointLight light : from.lights) {
     if (light.kind == PointLightKind::scattering) light.index += uint32_t(arrivals.size());
@@ -233,7 +234,7 @@ void append(const DrawnSet& from, std::vector<PointLight>& lights, std::vector<A
   arrivals.insert(arrivals.end(), from.arrivals.begin(), from.arrivals.end());
 }
 
-// Numbers to draw; zero where there is no source.
+// Return the numbers to draw; zero if there is no source.
 int places_of(const LightTables& tables, const InstantRadiositySettings& s) {
   return tables.emission.places.cells.empty() ? 0 : std::clamp(s.places, 0, 1 << 16);
 }
@@ -272,13 +273,13 @@ void join_sets(const LightTables& tables, std::vector<DrawnSet>& sets, InstantPa
   pass.lanes = std::make_shared<LightLanes>(make_light_lanes(tables, pass));
 }
 
-// Lights of a pool that a set has besides its exact ones.
+// A light of a pool that a set has besides its exact ones.
 struct KeptPointLight {
   uint32_t light = 0;
-  float factor = 1;  // on its radiance
+  float factor = 1;  // factor on the light's radiance
 };
 
-// Every set: `exact`, then what it keeps of the pool, by depth.
+// Makes every set of `exact` and then the lights that it keeps of the pool, by depth.
 void join_kept(const LightTables& tables, const InstantPass& pool, const DrawnSet& exact,
                std::vector<std::vector<KeptPointLight>>& kept, InstantPass& pass) {
   std::vector<uint32_t> first_arrival(kept.size() + 1, 0);
@@ -317,7 +318,7 @@ void join_kept(const LightTables& tables, const InstantPass& pool, const DrawnSe
   pass.lanes = std::make_shared<LightLanes>(make_light_lanes(tables, pass));
 }
 
-// `places` or `walks` from the number `before` of their sequences on, side by side.
+// Draws the candidates of pass `index` from their two sequences, in parallel: `places` and `walks`.
 void draw_candidates(const Transport& transport, int deepest, int places, int walks, uint64_t seed,
                      uint32_t index, InstantPass& pool) {
   constexpr int at_once = 32;
@@ -375,7 +376,7 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
   const LightTables& tables = transport.tables;
   if (s.candidates <= 1) return draw_instant_pass(transport, settings, view.width, seed, index);
   InstantPass pass = start_pass(transport, s, view.width), pool = pass;
-  // The same for every pass: the clipped picture that they converge to is one picture.
+  // The size is the same for every pass: the clipped picture that they converge to is one picture.
   float size = 0;
   if (s.clip < 0 || (pass.sharp && !(s.photon_radius > 0)))
     size = probe_free_path(transport, probe_view(transport, view, settings.max_depth, size_probes,

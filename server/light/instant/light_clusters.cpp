@@ -11,7 +11,8 @@
 namespace wellspring::light {
 namespace {
 
-// Six ways to face, and what has no such way.
+// Classes 0 to 5 are the six ways to face; lights without such a way have classes of their own, and
+// double_sided and scattering are added.
 constexpr uint32_t distant = 6, all_around = 7, double_sided = 8, scattering = 16, classes = 32;
 
 uint32_t class_of(const PointLight& light) {
@@ -24,9 +25,9 @@ uint32_t class_of(const PointLight& light) {
          (light.kind == PointLightKind::scattering ? scattering : 0);
 }
 
-constexpr int bits = 9;  // of a coordinate; five more name the class
+constexpr int bits = 9;  // bits of a coordinate; five more name the class
 
-// Every third bit of the answer is one of x's.
+// Spreads the bits of x: every third bit of the result is one of x's.
 uint32_t spread_bits(uint32_t x) {
   x = (x | x << 16) & 0x030000ffu;
   x = (x | x << 8) & 0x0300f00fu;
@@ -39,7 +40,8 @@ struct Keyed {
   uint32_t light = 0;
 };
 
-// Ascending by key; what has the same key stays in order. By three digits, the last one first.
+// Sorts by key, ascending; items of the same key stay in order. Sorts by three digits, the last one
+// first.
 void sort_by_key(std::vector<Keyed>& items) {
   constexpr int digit = 11, digits = 3;
   std::vector<Keyed> sorted(items.size());
@@ -87,10 +89,10 @@ std::vector<uint32_t> order_lights(const InstantPass& pass) {
 
 namespace {
 
-constexpr float near_radii = 2;  // a place so many radii away asks each light
+constexpr float near_radii = 2;  // radii; a place nearer than that many asks each light
 constexpr size_t most_points = 16;
 
-// Do all lights of a cluster have the same in `of`?
+// Returns whether all lights of a cluster have the same in `of`.
 bool is_same(const LightLanes& lights, const std::vector<Lanes>& of, size_t c) {
   for (int i = 1; i < lane_count; i++)
     if (lights.number[c * lane_count + size_t(i)] != LightLanes::none && of[c][i] != of[c][0])
@@ -98,7 +100,7 @@ bool is_same(const LightLanes& lights, const std::vector<Lanes>& of, size_t c) {
   return true;
 }
 
-// What takes the place of the lights of cluster c, if they are alike.
+// Makes the light that stands for the lights of cluster c, if they are alike.
 void unite(LightClusters& all, size_t c) {
   const LightLanes& l = all.lights;
   const float power = lanes_sum(l.power[c]);
@@ -129,16 +131,16 @@ void unite(LightClusters& all, size_t c) {
   all.inverse_power[c] = 1 / power;
 }
 
-// A cosine for all lights of a cluster, that of its centre being `middle` and each of theirs within
-// `reach` of it: not 0 where any of theirs may be above 0.
+// Returns a cosine for all lights of a cluster: its centre's is `middle`, and each light's is
+// within `reach` of that. The result is not 0 if any light's may be above 0.
 Lanes lit_cosine(Lanes middle, Lanes reach, LaneMask both_sides) {
   Lanes least = 0.25f * (middle + reach);
   least = both_sides ? lanes_max(-middle, 0.25f * reach) : lanes_max(least, Lanes{});
   return lanes_max(middle, least);
 }
 
-// Irradiance by the clusters of a row as if each were one light, as eval_unshadowed has it, and the
-// bits of those too near for that.
+// Returns the irradiance by the clusters of a row as if each were one light, as eval_unshadowed
+// does; adds to `near` the bits of those too near for that.
 Lanes eval_row(const ClusterRow& row, const LitPoint& point, float most, unsigned& near) {
   const Lanes one = all_lanes(1.0f);
   const vec3 place = point.position;
@@ -178,8 +180,8 @@ LightClusters make_light_clusters(const LightTables& tables, const InstantPass& 
 
 bool share_lights(const LightClusters& clusters, float clip, std::span<const LitPoint> points,
                   ClusterShares& shares) {
-  // Of every so many clusters that are asked light by light, what they do together is guessed: it
-  // is only the weight of a place.
+  // The light of clusters that are asked light by light is guessed from one of so many: it only
+  // serves for the weight of a place.
   constexpr size_t guessed = 8;
   const float most = most_of_clip(clip);
   const size_t count = std::min(points.size(), most_points), rows = clusters.rows.size();
@@ -188,7 +190,7 @@ bool share_lights(const LightClusters& clusters, float clip, std::span<const Lit
   shares.details.clear();
   shares.scratch.resize(rows * most_points);
   Lanes totals[most_points] = {};
-  std::vector<uint32_t> each;  // asked light by light
+  std::vector<uint32_t> each;  // clusters asked light by light
   for (size_t row = 0; row < rows; row++) {
     const ClusterRow here = clusters.rows[row];
     unsigned near = 0;

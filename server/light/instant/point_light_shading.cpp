@@ -16,14 +16,15 @@ namespace {
 constexpr int halves = GroupLane::halves;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// From a target to every lane's surface.
+// Aims rays from a target at every lane's surface.
 void aim(const LitGroup& group, vec3 target, RayPacket& rays) {
   const Lanes3 from = all_lanes(target);
   for (int h = 0; h < halves; h++)
     set_rays(from, group.origin.half(h) - from, all_lanes(1.0f), h * lane_count, rays);
 }
 
-// Those that light reaches on the other side of their surface, or from the other side of the light.
+// Aims the ray of a lane that light reaches on the other side of its surface, or from the other
+// side of the light.
 void aim_lane(const LitGroup& group, vec3 target, const SeenLight& seen, int i, RayPacket& rays) {
   vec3 way = offset_origin(group.place(i), seen.direction.at(i)) - target;
   rays.origin_x[i] = target.x, rays.origin_y[i] = target.y, rays.origin_z[i] = target.z;
@@ -83,7 +84,7 @@ void see_distant(const LitGroup& group, vec3 direction, SeenLight& seen) {
   }
 }
 
-// Colours differ by direction only in strength.
+// Sees a punctual light, whose colours differ by direction only in strength.
 void see_punctual(const LightTables& tables, const LitGroup& group, size_t index, SeenLight& seen) {
   const PunctualLight& punctual = tables.punctual[index];
   if (punctual.type == PunctualType::directional)
@@ -104,7 +105,7 @@ void see_punctual(const LightTables& tables, const LitGroup& group, size_t index
       t = lanes_min(lanes_max(t, zero), one);
       strength *= t * t;
     }
-    if (ends) {  // range_window
+    if (ends) {  // as range_window() does
       Lanes ratio2 = distance2 * (1 / (punctual.range * punctual.range));
       strength *= lanes_max(1 - ratio2 * ratio2, zero);
     }
@@ -160,7 +161,7 @@ LitGroup make_group(const LitPlace* places, int count) {
   return group;
 }
 
-// What of the light arrives through thin panes where something is in between.
+// Returns the share of the light that arrives through thin panes if something is in between.
 vec3 through_panes(const Transport& transport, const LitGroup& group, const SeenLight& seen,
                    int i) {
   vec3 origin{seen.rays.origin_x[i], seen.rays.origin_y[i], seen.rays.origin_z[i]};
@@ -201,7 +202,7 @@ void add_lane(const Transport& transport, const LitPlace& place, const PointLigh
   (light.exact ? sum.exact_specular : sum.specular) += value.specular * radiance;
 }
 
-// Of Lambertian lanes.
+// Adds a light to Lambertian lanes.
 void add_lambert_lanes(const PointLight& light, const InstantPass& pass, const SeenLight& seen,
                        vec3 radiance, uint32_t clear, LambertLight& sum) {
   GroupLane3& to = light.exact ? sum.exact : sum.smooth;

@@ -10,7 +10,8 @@
 namespace wellspring::light {
 namespace {
 
-// Share of the choice that asks for no effect: gloss, and what the estimate leaves out.
+// Share of the choice that does not depend on the effect: for gloss, and what the estimate leaves
+// out.
 constexpr float blind = 0.15f;
 constexpr float glossy_even = 0.25f;
 
@@ -39,7 +40,7 @@ void end_group(LightLanes& all) {
   while (all.number.size() % lane_count) all.number.push_back(LightLanes::none);
 }
 
-// Of the numbers that it has.
+// Sets the lanes of the lights that all.number names.
 void set_lanes(const LightTables& tables, const InstantPass& pass, LightLanes& all) {
   size_t groups = all.number.size() / lane_count;
   for (std::vector<Lanes>* lanes : {&all.x, &all.y, &all.z, &all.nx, &all.ny, &all.nz, &all.power,
@@ -89,8 +90,8 @@ LitPoint make_lit_point(vec3 position, const Bsdf& bsdf) {
 
 int choose_place_lights(const InstantPass& pass, int set, vec3 place, const Bsdf& bsdf, int asked,
                         float u, std::span<RegionLight> chosen) {
-  // Of a large set, groups far from each other: an estimate of all costs more than the rays it
-  // saves.
+  // Only groups far from each other are asked of a large set: an estimate of all costs more than
+  // the rays it saves.
   constexpr size_t most_groups = 12;
   if (asked < 1 || !pass.lanes) return 0;
   const LightLanes& all = *pass.lanes;

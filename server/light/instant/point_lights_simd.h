@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pass's point lights side by side, to choose a few of many by what they would do to a place,
-// were nothing in between.
+// Holds a pass's point lights side by side, to choose a few of many by what they would do to a
+// place if nothing were in between.
 #pragma once
 #include <algorithm>
 #include <span>
@@ -10,27 +10,27 @@
 
 namespace wellspring::light {
 
-// Eight lights a group, each set's groups for themselves; the last ones of a set are filled up with
-// dark lights of number none.
+// Holds lights in groups of eight, those of each set in groups of their own; a set's last group is
+// filled up with dark lights of number none.
 struct LightLanes {
   static constexpr uint32_t none = 0xffffffffu;
-  std::vector<uint32_t> number;   // in the pass, of each lane
-  std::vector<Lanes> x, y, z;     // position, or direction to it
+  std::vector<uint32_t> number;   // number in the pass, for each lane
+  std::vector<Lanes> x, y, z;     // position, or direction to the light
   std::vector<Lanes> nx, ny, nz;  // normal
-  std::vector<Lanes> power;       // of the brightest colour
-  std::vector<Lanes> near, back;  // 1 or 0: falls with distance; emits light to both sides
+  std::vector<Lanes> power;       // power of the brightest colour
+  std::vector<Lanes> near, back;  // 1 or 0: weaker with distance; emits light to both sides
   std::vector<Lanes> even;        // 1: alike to all sides; 0: by Lambert
-  std::vector<uint8_t> plain;     // of a group: all are near, by Lambert, to one side
-  std::vector<uint32_t> first;    // group of each set, and the end
+  std::vector<uint8_t> plain;     // for each group: all are near, by Lambert, to one side
+  std::vector<uint32_t> first;    // first group of each set, and the end
 };
 
 LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass);
-// Of these lights, in this order, as one set.
+// Makes lanes of these lights, in this order, as one set.
 LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass,
                             std::span<const uint32_t> lights);
 
-// A place as the estimate knows it. What is glossy, place or light, may emit light where Lambert
-// would not: it is taken for partly even.
+// Holds a place as the estimate sees it. A glossy place or light may send light where Lambert's law
+// would not: it counts as partly even.
 struct LitPoint {
   vec3 position{0}, normal{0, 1, 0};
   bool both_sides = false;
@@ -38,8 +38,8 @@ struct LitPoint {
 };
 LitPoint make_lit_point(vec3 position, const Bsdf& bsdf);
 
-// Irradiance there by the lights of a group, nothing in between; `most`: what 1 over squared
-// distance is at most.
+// Returns the irradiance at a point by the lights of a group, nothing in between; `most`: greatest
+// value of 1 over squared distance.
 inline Lanes eval_unshadowed(const LightLanes& all, size_t g, const LitPoint& point, float most) {
   const Lanes zero{}, one = all_lanes(1.0f);
   if (all.plain[g] && !point.both_sides && point.even == 0) {  // the same without roots
@@ -66,9 +66,9 @@ inline Lanes eval_unshadowed(const LightLanes& all, size_t g, const LitPoint& po
 }
 inline float most_of_clip(float clip) { return 1 / std::max(clip * clip, 1e-12f); }
 
-// About `asked` of a set's lights, exact ones among them, chosen at random by what they would do to
-// a place, weighed so that their mean is the whole set's; at most chosen.size(). Returns how many.
-// u: uniform in [0, 1).
+// Chooses about `asked` of a set's lights, exact ones among them, at random by what they would do
+// to a place, weighed so that their mean is the whole set's; at most chosen.size(). Returns how
+// many. u: uniform in [0, 1).
 int choose_place_lights(const InstantPass& pass, int set, vec3 place, const Bsdf& bsdf, int asked,
                         float u, std::span<RegionLight> chosen);
 

@@ -14,14 +14,15 @@ namespace wellspring::light {
 namespace {
 
 constexpr int most_mirrors = 4;
-// Share of the choice that does not ask for the effect: lights that no probe happens to see.
+// Share of the choice that does not depend on the effect: for lights that no probe happens to see.
 constexpr double unseen_share = 0.1;
 
-// Of so many candidates one is asked first what it does, to tell whether choosing pays.
+// One of so many candidates is tried on the probes first, to find out whether choosing pays.
 constexpr int pilot = 16;
 
-// Choosing by effect keeps what most candidates do together when few of them do most of it. The
-// effective number of those asked first, as a share of them (Kong 1992), tells.
+// Returns whether effects are too even for a choice. Choosing by effect keeps what most candidates
+// do together if few of them do most of it; this is measured by the effective number of the
+// candidates tried first, as a share of them (Kong 1992).
 bool is_even(const std::vector<double>& effect) {
   constexpr double enough = 0.35;
   double sum = 0, squares = 0, number = 0;
@@ -30,7 +31,7 @@ bool is_even(const std::vector<double>& effect) {
   return sum * sum > enough * number * squares;
 }
 
-// Follows mirrors until something rough; false: nothing is there.
+// Follows mirrors until something rough; returns false if nothing is there.
 bool look_behind_mirrors(const Transport& transport, FirstSurface& first, Sampler& sampler) {
   while (first.scatters && first.walk.depth <= most_mirrors) {
     if (has_rough(first.bsdf, mirror_alpha)) return true;
@@ -106,7 +107,8 @@ std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewPro
   auto ask = [&](int k) {
     PlaceLight light[RayPacket::lanes];
     uint32_t at = begin + uint32_t(k);
-    constexpr size_t turns = 2;  // candidates in turn ask one half of the probes and the other
+    // Groups of candidates are tried on one half of the probes and the other in turn.
+    constexpr size_t turns = 2;
     for (size_t p = size_t(k) / pilot % turns * RayPacket::lanes; p < probes.places.size();
          p += turns * RayPacket::lanes) {
       int count = int(std::min<size_t>(RayPacket::lanes, probes.places.size() - p));
@@ -133,9 +135,8 @@ std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewPro
   });
   double total = 0, number = double(effect.size());
   for (double e : effect) total += e;
-  for (double& e : effect)  // becomes how often a light is wanted
-    e = double(wanted) *
-        (total > 0 ? (1 - unseen_share) * e / total + unseen_share / number : 1 / number);
+  for (double& e : effect)  // from here on, how often a light is wanted
+    e = double(wanted) * (total > 0 ? (1 - blind) * e / total + blind / number : 1 / number);
   // Systematic sampling: neighbours in the sequence of candidates complement each other, and so do
   // those kept.
   uint32_t slot = 0, first_set = std::min(uint32_t(deal_u * float(sets)), uint32_t(sets - 1));
@@ -152,10 +153,11 @@ std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewPro
 namespace {
 
 constexpr uint32_t region_probes = 16;
-// Share of the choice that asks for no effect: surfaces that no probe met, and gloss.
+// Share of the choice that does not depend on the effect: for surfaces that no probe met, and
+// gloss.
 constexpr double blind = 0.15f;
 
-// Places that a region shows.
+// Finds places that a region shows; returns how many.
 int probe_region(const Transport& transport, const View& view, int max_depth,
                  const RegionLights& regions, int region, uint64_t seed, uint32_t first_sample,
                  LitPoint* points) {
@@ -175,8 +177,8 @@ int probe_region(const Transport& transport, const View& view, int max_depth,
   return met;
 }
 
-// The lists by turns of getting a light: those of any window as large as the pattern of sets get
-// lights from all over the order.
+// Returns the lists in the order in which they get lights: the lists of any window as large as the
+// pattern of sets get lights from all over the order of lights.
 std::vector<uint32_t> turns_of_lists(const InstantPass& pass) {
   constexpr int finer = RegionLights::finer;
   std::vector<uint32_t> lists;
@@ -189,14 +191,15 @@ std::vector<uint32_t> turns_of_lists(const InstantPass& pass) {
   return lists;
 }
 
-// Chooses about `wanted` lights. Systematic sampling: neighbours in the order of lights are much
-// alike, so that every so many-th of those chosen are from everywhere.
+// Chooses about `wanted` lights by systematic sampling: neighbours in the order of lights are much
+// alike, so that the lights dealt to a list, every so many-th of those chosen, come from
+// everywhere.
 void choose_lights(const LightClusters& clusters, const ClusterShares& shares, bool lit,
                    double wanted, double worth, float choose_u, std::vector<RegionLight>& chosen) {
   chosen.clear();
   const float even = float(wanted * (lit ? blind : 1) / double(clusters.number));
   const float by_share = lit ? float(wanted * (1 - blind)) : 0;
-  double sum = double(choose_u) - 1;  // whole numbers that it passes are choices
+  double sum = double(choose_u) - 1;  // each whole number that the sum passes is a choice
   for (size_t c = 0; c < clusters.size(); c++) {
     const int held = clusters.held[c];
     const double all = double((lit ? by_share * shares.of_cluster[c] : 0.0f) + even * float(held));
@@ -215,7 +218,7 @@ void choose_lights(const LightClusters& clusters, const ClusterShares& shares, b
   }
 }
 
-// A region's lights list by list, and how many each list has.
+// Holds a region's lights list by list, and how many each list has.
 struct Dealt {
   std::vector<RegionLight> lights;
   std::vector<uint32_t> number;

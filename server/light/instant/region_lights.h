@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Point lights for every region of a picture: of the many that a pass has, a pixel asks a few, and
-// which these are is chosen by what they would do, were nothing in between, to a few places that
-// its region shows. Pixels of a region are of several lists, neighbours of different ones: what a
-// list lacks is noise from pixel to pixel, which the filter and the eye take away, and not a block
-// of one shade. All pixels of a region and list ask the same, so that their shadow rays stay near
-// each other, and a pixel's answer depends on nothing but the pass. As chosen at random and weighed
-// by their chance, they are in the mean worth all of them. After Wang and Akerlund, "Bidirectional
-// Importance Sampling for Unstructured Direct Illumination" (2009), with a picture's regions for
-// clusters.
+// Chooses point lights for every region of a picture: a pixel asks a few of the many that a pass
+// has, chosen by what they would do, if nothing were in between, to a few places that its region
+// shows. Pixels of a region belong to several lists, neighbours to different ones: what a list
+// lacks is noise from pixel to pixel, which the filter and the eye take away, and not a block of
+// one shade. All pixels of a region and list ask the same lights, so that their shadow rays stay
+// near each other, and a pixel's result depends on nothing but the pass. Lights are chosen at
+// random and weighed by their chance, so that in the mean they are worth all of them. After Wang
+// and Akerlund, "Bidirectional Importance Sampling for Unstructured Direct Illumination" (2009),
+// with a picture's regions for clusters.
 #pragma once
 #include "light/instant/instant_pass.h"
 #include "light/instant/point_light_shading.h"
@@ -16,34 +16,34 @@
 
 namespace wellspring::light {
 
-// A few places that a view shows, and point lights chosen by what they do there: Georgiev and
-// Slusallek, "Simple and Robust Iterative Importance Sampling of Virtual Point Lights" (2010). Most
-// light of a castle never comes near the room that is looked at; of many candidates those are kept,
-// at random, that light it, each worth more the likelier it was to be dropped, so that the mean is
-// that of all.
+// Finds a few places that a view shows, and chooses point lights by what they do there: Georgiev
+// and Slusallek, "Simple and Robust Iterative Importance Sampling of Virtual Point Lights" (2010).
+// Most light of a castle never comes near the room that is looked at; of many candidates those that
+// light it are kept, at random, each worth more the likelier it was to be dropped, so that the mean
+// is that of all.
 
 struct ViewProbes {
   std::vector<Surface> surfaces;
   std::vector<Bsdf> bsdfs;
   std::vector<Media> media;
-  std::vector<LitPlace> places;  // of them
+  std::vector<LitPlace> places;  // made of the above
 };
 
-// Places first seen by rays through the picture, behind mirrors where those are all there is.
+// Finds places first seen by rays through the picture, behind mirrors if those are all there is.
 ViewProbes probe_view(const Transport& transport, const View& view, int max_depth, int count,
                       uint64_t seed, uint32_t index);
 
-// Typical length of a ray that leaves the places seen: half of all are shorter. 0: none hits
-// anything.
+// Returns the typical length of a ray that leaves the places seen: half of all are shorter. 0: no
+// ray hits anything.
 float probe_free_path(const Transport& transport, const ViewProbes& probes);
 
 // Chooses `wanted` of the lights [begin, end) of `candidates` by their mean effect on the probes, a
 // share of them regardless of it, and deals them to `sets` sets; the light of each set is in the
-// mean that of all candidates. Where effects are so even that choosing would lose more than it
-// saves, all are dealt. choose_u, deal_u: uniform in [0, 1).
+// mean that of all candidates. If effects are so even that choosing would lose more than it saves,
+// all are dealt. choose_u, deal_u: uniform in [0, 1).
 struct ChosenLight {
   uint32_t light = 0, set = 0;
-  float factor = 1;  // on its radiance
+  float factor = 1;  // factor on the light's radiance
 };
 std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewProbes& probes,
                                        const InstantPass& candidates, uint32_t begin, uint32_t end,

@@ -15,9 +15,10 @@ namespace wellspring::light {
 namespace {
 
 constexpr float wanted_cells = 4000;
-constexpr float places_a_cell = 8;  // of a flat surface
+constexpr float places_a_cell = 8;  // places in a cell of a flat surface
 
-// Calls `visit(instance, triangle, front, chart, normal, area)` for all that the map knows.
+// Calls `visit(instance, triangle, front, chart, normal, area)` for all triangles that the map
+// covers.
 template <class Visit>
 void for_each_known(const World& world, const IlluminationMap& map, const Visit& visit) {
   const uint32_t count = uint32_t(world.scene().instances.size());
@@ -73,7 +74,7 @@ LampCells make_lamp_cells(const World& world, const IlluminationMap& map) {
   for_each_known(world, map, [&](uint32_t instance, uint32_t t, uint32_t chart, vec3 n, float a) {
     const uint32_t count = places_on(a);
     for (uint32_t i = 0; i < count; i++) {
-      // Rank-1 lattice of the plastic number, folded into the triangle.
+      // The places are a rank-1 lattice of the plastic number, folded into the triangle.
       vec2 u = glm::fract(vec2(0.7548776662f, 0.5698402910f) * (float(i) + 0.5f));
       if (u.x + u.y > 1) u = 1.0f - u;
       const vec3 place = eval_position(world, instance, t, u);
@@ -93,13 +94,13 @@ uint32_t find_lamp_cell(const LampCells& cells, vec3 place, vec3 normal) {
 
 namespace {
 
-constexpr float noticed = 0.1f;  // change of light, of the brighter
+constexpr float noticed = 0.1f;  // least change of light, as a share of the brighter
 constexpr size_t most_cells = 1 << 20;
 constexpr int never = 1 << 28;
 
 bool differs(vec3 was, vec3 left, vec3 added) {
   float a = luminance(was), b = luminance(left + added);
-  // Lights that take each other's place are another light, too.
+  // Lights that take each other's place are a change, too.
   return luminance(was - left) + luminance(added) > noticed * std::max(a, b);
 }
 
@@ -145,7 +146,7 @@ LightChange::LightChange(const Scene& scene, const Lights& all,
   guess_unknown();
 }
 
-// Coarser cells, without sides, so that few are unknown.
+// Fills coarser cells, without sides, so that few are without light.
 void LightChange::fill_cells(const Scene& scene, const Lights& all,
                              std::span<const LampLevel> before, std::span<const LampLevel> after) {
   std::vector<char> switched(scene.materials.size(), 0);
@@ -161,7 +162,7 @@ void LightChange::fill_cells(const Scene& scene, const Lights& all,
     box_.low = glm::min(box_.low, corner - exact_->cell);
     box_.high = glm::max(box_.high, corner + exact_->cell);
   }
-  if (!(box_.low.x <= box_.high.x)) return;  // nothing to speak of, anywhere
+  if (!(box_.low.x <= box_.high.x)) return;  // no light changes
   for (cell_ = 2 * exact_->cell;; cell_ *= 2) {
     vec3 cells = (box_.high - box_.low) / cell_ + 1.0f;
     size_ = glm::ivec3(glm::min(cells, vec3(most_cells)));
@@ -180,8 +181,8 @@ void LightChange::fill_cells(const Scene& scene, const Lights& all,
   }
 }
 
-// Steps from cell to cell to the nearest of which `is_from` says so, visited nearest first:
-// `visit(cell, from)`.
+// Returns the steps from each cell to the nearest one for which `is_from` is true, and calls
+// `visit(cell, from)` for the others, nearest first.
 template <class IsFrom, class Visit>
 std::vector<int> LightChange::steps_from(const IsFrom& is_from, const Visit& visit) const {
   std::vector<int> steps(cells_.size(), never);
@@ -209,9 +210,8 @@ std::vector<int> LightChange::steps_from(const IsFrom& is_from, const Visit& vis
   return steps;
 }
 
-// What nothing is known of is as the nearest cell is of which something is. It changes where
-// something does that is not much farther: what is asked for in vain costs less than what stays
-// wrong.
+// Gives each cell without light the values of the nearest cell with light. It changes if a changing
+// cell is not much farther off: asking in vain costs less than light that stays wrong.
 void LightChange::guess_unknown() {
   std::vector<int> to_change =
       steps_from([](const Known& k) { return k.changes; }, [](size_t, size_t) {});

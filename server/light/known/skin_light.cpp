@@ -13,27 +13,33 @@
 namespace wellspring::light {
 namespace {
 
-constexpr float window = 8;              // samples, before they count as older
-constexpr float most_older = 48;         // samples that are remembered of those
-constexpr float least_judged = 4;        // older samples that newer ones are compared with
-constexpr float surprise = 4;            // standard errors between them that say light has changed
-constexpr float kept_nearby = 0.5f;      // samples, of older ones beside such a place
-constexpr float blocked_window = 16;     // samples
-constexpr uint32_t sure_samples = 4;     // that say that a place is hidden
-constexpr float maybe_hidden = 0.25f;    // of them blocked: samples look closer
-constexpr int closer_looks = 4;          // short rays; and how many of them, with the sample's own,
-constexpr int closed = 3;                // say that it is hidden now
-constexpr float seen_share = 0.75f;      // of samples go to what is seen
-constexpr float rays_a_sample = 4;       // that look for it: some miss
-constexpr float least_dense = 0.3f;      // share of samples of what is sparse
-constexpr float well_known = 24;         // samples
-constexpr uint32_t less_of_known = 4;    // a power of two: one of so many that are met is sampled
-constexpr float hidden = 0.8f;           // of them blocked
+constexpr float window = 8;        // samples, before they count as older
+constexpr float most_older = 48;   // older samples that are remembered
+constexpr float least_judged = 4;  // older samples that newer ones are compared with
+// Standard errors between the means that show a change of light
+constexpr float surprise = 4;
+// Samples that older ones beside such a place still count as
+constexpr float kept_nearby = 0.5f;
+constexpr float blocked_window = 16;   // samples
+constexpr uint32_t sure_samples = 4;   // samples before a place can be hidden
+constexpr float maybe_hidden = 0.25f;  // share blocked from which samples look closer
+constexpr int closer_looks = 4;        // short rays
+// So many blocked ones, among them and the sample's own, hide the place
+constexpr int closed = 3;
+constexpr float seen_share = 0.75f;  // share of samples for places that views see
+constexpr float rays_a_sample = 4;   // rays that look for a place: some miss
+constexpr float least_dense = 0.3f;  // least share of samples for sparse places
+constexpr float well_known = 24;     // samples
+// A power of two: one in so many well-known places that are met is sampled
+constexpr uint32_t less_of_known = 4;
+constexpr float hidden = 0.8f;           // share blocked from which a place is hidden
 constexpr uint32_t longest_period = 16;  // turns from sample to sample of a place
-constexpr uint32_t most_tries = 4, again = 48;  // at a direction; dimension of the others
-constexpr uint32_t look = 64;                   // dimension of closer looks
-constexpr float most_over_known = 3;            // times what is known there and of all
-constexpr float gather_blunt = 0.14f;           // as technique `gather` has it
+// Tries for a direction; dimension of those after the first
+constexpr uint32_t most_tries = 4, again = 48;
+constexpr uint32_t look = 64;  // dimension of closer looks
+// As a multiple of the light kept there and the mean light
+constexpr float most_over_known = 3;
+constexpr float gather_blunt = 0.14f;  // as technique `gather` has it
 
 struct Asked {
   uint32_t place = 0, index = 0;
@@ -57,13 +63,13 @@ vec3 find_slope(const Answer& answer) {
   return answer.straight_slope + rest * slope_of(answer.direction, answer.normal);
 }
 
-// A place around the vertex where light is gathered.
+// Holds a place around the vertex where light is gathered.
 struct SkinPoint {
   SurfacePlace place;
   vec3 normal{0, 1, 0};
 };
 
-// Area of that triangle as it is now; 0: it has none that is any use.
+// Returns the area of that triangle as it is now; 0: it has none that is any use.
 float area_of(const World& world, const SkinCorner& c) {
   const Mesh& mesh = world.mesh_of(c.instance);
   uvec3 t = mesh.triangles[c.triangle];
@@ -73,8 +79,8 @@ float area_of(const World& world, const SkinCorner& c) {
   return area > 0 && std::isfinite(area) ? area : 0.0f;
 }
 
-// In the half of the triangles around that is nearest to the vertex, as densely as it is
-// interpolated there.
+// Picks a point in the half of the triangles around that is nearest to the vertex, as densely as it
+// is interpolated there.
 bool pick_point(const World& world, const SkinLight& skin, uint32_t place, Sampler& sampler,
                 SkinPoint& point) {
   std::span<const SkinCorner> around =
@@ -115,7 +121,7 @@ bool pick_point(const World& world, const SkinLight& skin, uint32_t place, Sampl
   return is_finite(at.position) && is_finite(at.geometric_normal);
 }
 
-// What a white Lambertian surface there would reflect.
+// Returns the light that a white Lambertian surface there would reflect.
 Answer gather(const Transport& transport, const WalkRules& rules, const SkinLight& skin,
               uint32_t place, Sampler& sampler) {
   Answer answer;
@@ -154,8 +160,8 @@ Answer gather(const Transport& transport, const WalkRules& rules, const SkinLigh
   return answer;
 }
 
-// Whether the place is hidden at the moment, after a sample that found that the way was blocked or
-// not. What moves opens and shuts it: lips, lids.
+// Returns whether the place is hidden at the moment, after a sample whose way was `blocked` or not.
+// Lips and lids that move hide a place and open it again.
 bool is_shut(const World& world, const SkinLight& skin, uint32_t place, bool blocked,
              Sampler& sampler) {
   int found = blocked;
@@ -198,7 +204,7 @@ uint32_t period_of(const SkinLight& skin, uint32_t place, bool faced) {
   return std::min(period, longest_period);
 }
 
-// Places that are seen, each view as many.
+// Chooses places that are seen, for each view as many.
 void choose_seen(const World& world, const SkinUpdate& update, size_t most, SkinLight& skin,
                  std::vector<Asked>& asked) {
   const size_t each = most / std::max<size_t>(update.views.size(), 1);
@@ -222,7 +228,7 @@ void choose_seen(const World& world, const SkinUpdate& update, size_t most, Skin
   }
 }
 
-// Whose turn it is.
+// Chooses the places to sample now.
 void choose(const World& world, const SkinUpdate& update, SkinLight& skin,
             std::vector<Asked>& asked) {
   const uint32_t count = uint32_t(skin.places.size());
@@ -252,7 +258,8 @@ void choose(const World& world, const SkinUpdate& update, SkinLight& skin,
   }
 }
 
-// Rare samples that are much brighter than what is known would be seen as blotches for seconds.
+// Returns the most light a sample may bring. Rare samples that are much brighter than the light
+// kept would be visible as blotches for seconds.
 float most_light(const SkinLight& skin, uint32_t place, float clamp) {
   const vec4& known = skin.light[place];
   if (!(clamp > 0) || !(known.w > 0)) return clamp;
@@ -267,7 +274,7 @@ void add(SkinMean& mean, vec3 light, vec3 slope) {
   mean.squares += before * luminance(light - mean.mean);
 }
 
-// The newer become part of the older.
+// Makes the newer samples part of the older.
 void join(SkinHistory& h) {
   SkinMean &to = h.older, &from = h.newer;
   if (to.count > most_older - window) {
@@ -292,7 +299,7 @@ void remember(const Answer& answer, const Asked& asked, SkinLight& skin) {
   if (h.newer.count >= window) join(h);
 }
 
-// The difference between newer and older means and its variance, as far as both are known.
+// Adds up the difference between newer and older means and its variance, of places that have both.
 struct Difference {
   float sum = 0, squares = 0, freedom = 0, inverse = 0;
   void add(const SkinHistory& h) {
@@ -307,8 +314,8 @@ struct Difference {
   }
 };
 
-// Where light has changed only the last sample is kept, and what neighbours knew counts little.
-// Reads them as they were.
+// Keeps only the last sample where light has changed, and lets neighbours' older samples count
+// little. All places are compared before any is changed.
 void drop_history(std::span<const Asked> asked, std::span<const Answer> answers, SkinLight& skin) {
   std::vector<uint8_t> dropped(asked.size(), 0);
   auto around = [&](uint32_t place) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the light on what moves is kept (light/known/skin_light.h): places, the triangles around
-// them and their neighbours.
+// Finds where the light on what moves is kept (light/known/skin_light.h): places, the triangles
+// around them and their neighbours.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -15,17 +15,19 @@ namespace wellspring::light {
 namespace {
 
 constexpr float same_normal = 0.8f;    // cosine from which vertices at one position share light
-constexpr float one_position = 1e-5f;  // of the largest coordinate
-// The other side of a thin thing is lit otherwise: but where nothing can be known, as of the root
-// of a strand of hair, it is better than black.
+constexpr float one_position = 1e-5f;  // as a share of the largest coordinate
+// Weight of the other side of a thin thing. It is lit otherwise, but where no sample can
+// find light, as at the root of a strand of hair, its light is better than black.
 constexpr float other_side = 0.02f;
-// Teeth and strands of hair that lie side by side and face one way: cosine, and samples.
+// Teeth and strands of hair that lie side by side and face one way: least cosine, and most weight
+// in samples.
 constexpr float beside_facing = 0.5f, most_beside = 4;
-constexpr float strong = 0.25f;  // of the most alike neighbour: goes into one group with it
+// Share of the most alike neighbour's weight: such neighbours join one group
+constexpr float strong = 0.25f;
 constexpr int most_levels = 12;
-constexpr float most_reach = 0.004f, reach_share = 0.01f;  // metres; of the root of the area
-// By how much light differs along an edge, relative to itself: as the normal turns, by the distance
-// over so many metres, and anyway.
+constexpr float most_reach = 0.004f, reach_share = 0.01f;  // metres; share of the root of the area
+// Relative difference of light along an edge: for a turn of the normal, for each metre of distance,
+// and in any case.
 constexpr float by_normal = 1.2f, by_distance = 1 / 0.08f, anyway = 0.02f;
 
 uint64_t hash_of(glm::ivec3 cell) {
@@ -41,7 +43,7 @@ vec3 unit_or_up(vec3 v) {
 struct Builder {
   const World& world;
   SkinLight& skin;
-  std::vector<vec3> position, normal;              // of places, at rest, towards their side
+  std::vector<vec3> position, normal;              // one for each place, at rest, towards its side
   float near = 1;                                  // metres: positions no farther apart are one
   std::unordered_multimap<uint64_t, uint32_t> at;  // places, by position
 
@@ -54,7 +56,7 @@ struct Builder {
   uint32_t add_vertex(uint32_t instance, uint32_t vertex, bool back) {
     const Mesh& mesh = world.mesh_of(instance);
     vec3 p = mesh.positions[vertex], n = unit_or_up(mesh.normals[vertex]) * (back ? -1.0f : 1.0f);
-    // Cells are twice as wide as what is near, so that only eight hold it.
+    // Cells are twice as wide as `near`, so that only eight can hold the same position.
     bool known = is_finite(p);
     glm::ivec3 low(0);
     if (known) low = glm::ivec3(floor(p / (2 * near) - 0.5f));
@@ -71,7 +73,7 @@ struct Builder {
   }
 };
 
-// Largest coordinate of what moves.
+// Returns the largest coordinate of what moves.
 float extent_of(const World& world, uint32_t first) {
   float extent = 0;
   for (uint32_t i = first; i < uint32_t(world.instance_count()); i++)
@@ -83,7 +85,7 @@ float extent_of(const World& world, uint32_t first) {
 using Pair = std::pair<uint32_t, uint32_t>;
 struct Neighbours {
   Pair places;
-  bool joined = true;  // by a triangle; else only near
+  bool joined = true;  // by a triangle; else they are only near
 };
 
 float alike(const Builder& b, const Neighbours& edge) {
@@ -98,11 +100,12 @@ float alike(const Builder& b, const Neighbours& edge) {
   return edge.joined ? 1 / differs : std::min(1 / differs, most_beside);
 }
 
-// Strands of hair and teeth hang together with nothing: they are lit as those beside them, and
-// those that nothing can be known of take the light of what is near.
+// Joins places that are near but not connected. Strands of hair and teeth are connected with
+// nothing: they are lit as those beside them, and places that no sample can reach take the light of
+// what is near.
 void join_near(const Builder& b, float reach, std::vector<Neighbours>& pairs) {
   if (!(reach > 0)) return;
-  std::unordered_map<uint64_t, uint32_t> last;  // place in a cell
+  std::unordered_map<uint64_t, uint32_t> last;  // last place in each cell
   for (uint32_t i = 0; i < uint32_t(b.position.size()); i++) {
     if (!is_finite(b.position[i])) continue;
     auto [at, first] = last.try_emplace(hash_of(glm::ivec3(floor(b.position[i] / reach))), i);
@@ -112,7 +115,7 @@ void join_near(const Builder& b, float reach, std::vector<Neighbours>& pairs) {
   }
 }
 
-// Both ways, each once.
+// Adds the edges both ways, each once.
 void add_edges(const Builder& b, std::vector<Neighbours>& pairs, SkinLight& skin) {
   std::sort(pairs.begin(), pairs.end(), [](const Neighbours& a, const Neighbours& b) {
     return std::pair(a.places, !a.joined) < std::pair(b.places, !b.joined);
@@ -139,7 +142,7 @@ void add_corners(const std::vector<std::pair<uint32_t, SkinCorner>>& around, Ski
   for (const auto& [place, corner] : around) skin.corners[next[place]++] = corner;
 }
 
-// Groups each of a level with those of its neighbours that are most like it.
+// Groups each place of a level with those of its neighbours that are most like it.
 std::vector<uint32_t> group(std::span<const uint32_t> first_edge, std::span<const SkinEdge> edges,
                             uint32_t& groups) {
   constexpr uint32_t none = 0xffffffffu;

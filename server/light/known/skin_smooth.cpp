@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light between places: a Gaussian Markov random field solved by multigrid
+// Spreads light between places: a Gaussian Markov random field solved by multigrid
 // (light/known/skin_light.h).
 #include <algorithm>
 #include <cmath>
@@ -15,15 +15,15 @@ namespace {
 
 constexpr float least_noise = 0.02f, most_noise = 4;  // relative variance of a sample
 constexpr double prior_noise = 0.4, prior_samples = 1000;
-constexpr float kept_after_switch = 0.25f;  // samples that all light before a switch counts as
-constexpr float least_known = 0.5f;         // samples
-constexpr float damping = 0.8f;             // of Jacobi steps
+constexpr float kept_after_switch = 0.25f;  // samples that all light from before a switch counts as
+constexpr float least_known = 0.5f;         // samples that connected places need to have light
+constexpr float damping = 0.8f;             // factor of Jacobi steps
 constexpr int coarse_steps = 2, coarsest_steps = 8;
-constexpr float sure_of_group = 1;    // sample
-constexpr float prior_slope = 0.25f;  // samples a place that say that there is none
+constexpr float sure_of_group = 1;    // samples a group needs to give its mean
+constexpr float prior_slope = 0.25f;  // prior weight of no slope, in samples a place
 constexpr int grain = 2048;           // places
 
-// What samples say of a place; w: their count.
+// Returns the mean of a place's samples; w: their count.
 vec4 told(const SkinHistory& h, vec3 SkinMean::*what) {
   float count = h.newer.count + h.older.count;
   if (!(count > 0)) return vec4(0);
@@ -31,18 +31,18 @@ vec4 told(const SkinHistory& h, vec3 SkinMean::*what) {
   return vec4(mean, count);
 }
 
-// The equations of one level: what is to be added to the light of a place, times the weights there,
-// is `residual` and what neighbours are given, times theirs.
+// Holds the equations of one level: the amount to be added to a place's light, times the weights
+// there, is `residual` plus what neighbours are given, times their weights.
 struct Equations {
   std::span<const uint32_t> first_edge;
   std::span<const SkinEdge> edges;
   float noise = 1;
-  std::vector<uint8_t> active;  // others stay as they are
-  std::vector<vec4> residual;   // w: samples
+  std::vector<uint8_t> active;  // 0: the place stays as it is
+  std::vector<vec4> residual;   // w: count of samples
   std::vector<vec4> added, before;
 
   size_t size() const { return residual.size(); }
-  // Weight of neighbours in w, and of what they are given in xyz.
+  // Returns the neighbours' weight in w, and the weighted sum of what they are given in xyz.
   vec4 around(size_t i, std::span<const vec4> given) const {
     vec4 sum(0);
     for (uint32_t e = first_edge[i]; e < first_edge[i + 1]; e++) {
@@ -95,7 +95,7 @@ void solve(const SkinLight& skin, size_t level, Equations& finer) {
   for (size_t i = 0; i < finer.size(); i++) finer.added[i] += of.added[here.parent[i]];
 }
 
-// The relative variance of samples, and the mean light of what is visible.
+// Measures the relative variance of samples, and the mean light of visible places.
 void measure(std::span<const uint8_t> visible, SkinLight& skin) {
   double squares = 0, whole = 0, count = 0, samples = 0;
   dvec3 sum(0);
@@ -111,13 +111,13 @@ void measure(std::span<const uint8_t> visible, SkinLight& skin) {
     }
   }
   if (count > 0) skin.mean = vec3(sum / count), skin.samples = float(samples / count);
-  // While most places have one sample, little is known of that.
+  // While most places have one sample, they hardly show the variance.
   const double prior = prior_samples * double(luminance(skin.mean)) * double(luminance(skin.mean));
   squares += prior_noise * prior, whole += prior;
   if (whole > 0) skin.noise = std::clamp(float(squares / whole), least_noise, most_noise);
 }
 
-// Whether anything is known of what hangs together with each place: more than that it is hidden.
+// Marks the places that are connected with samples of light, not with hidden places alone.
 void mark_known(std::span<const vec4> sums, std::span<const uint8_t> active, SkinLight& skin) {
   std::vector<float> known(skin.pieces, 0);
   for (size_t i = 0; i < sums.size(); i++) known[skin.piece[i]] += sums[i].w;
@@ -125,7 +125,7 @@ void mark_known(std::span<const vec4> sums, std::span<const uint8_t> active, Ski
     if (active[i]) skin.light[i].w = known[skin.piece[i]] >= least_known;
 }
 
-// Sums up what samples say of each active place.
+// Sums up the samples of each active place.
 std::vector<vec4> find_sums(const SkinLight& skin, vec3 SkinMean::*what,
                             const std::vector<uint8_t>& active) {
   std::vector<vec4> sums(skin.places.size(), vec4(0));
@@ -139,8 +139,8 @@ std::vector<vec4> find_sums(const SkinLight& skin, vec3 SkinMean::*what,
   return sums;
 }
 
-// A place that nothing was known of begins with the mean of its samples, or of those of the
-// smallest group around it that has any: cycles take long to tell what is far.
+// Lets a place that had no light begin with the mean of its samples, or of those of the smallest
+// group around it that has any: cycles take long to carry light far.
 void begin_unknown(const SkinLight& skin, std::span<const vec4> sums,
                    std::span<const uint8_t> unknown, std::vector<vec4>& values) {
   if (std::find(unknown.begin(), unknown.end(), 1) == unknown.end()) return;
@@ -168,7 +168,8 @@ void begin_unknown(const SkinLight& skin, std::span<const vec4> sums,
   });
 }
 
-// Adds by what neighbours are expected to differ: as their normals do, by the slope between them.
+// Adds the difference that neighbours are expected to have: as their normals differ, by the slope
+// between them.
 void expect_slopes(const World& world, const SkinLight& skin, Equations& of) {
   std::vector<vec3> normals(skin.places.size());
   parallel_ranges(int(normals.size()), grain, [&](int begin, int end) {
@@ -234,7 +235,7 @@ void smooth_skin(const World& world, SkinLight& skin, int cycles) {
     return Equations{skin.first_edge, skin.edges, skin.noise, active, std::move(sums), from, {}};
   };
   Equations of_slopes = equations(std::move(slopes), skin.slope);
-  run_cycles(skin, (cycles + 1) / 2, of_slopes);  // they change less
+  run_cycles(skin, (cycles + 1) / 2, of_slopes);  // slopes change less
   skin.slope = std::move(of_slopes.added);
   Equations of = equations(std::move(lights), skin.light);
   expect_slopes(world, skin, of);
@@ -285,12 +286,12 @@ void relight_skin(const World& world, const SkinChange& change, SkinLight& skin)
   });
 }
 
-// Rays of views find where light on what moves is seen (light/known/skin_light.h).
+// Finds by rays of views where light on what moves is seen (light/known/skin_light.h).
 
 namespace {
 
-constexpr float nearest_seen = 1e-3f;  // metres: what is nearer may be anywhere
-constexpr int most_panes_seen = 8;     // in a row
+constexpr float nearest_seen = 1e-3f;  // metres: nearer things may be anywhere in the picture
+constexpr int most_panes_seen = 8;     // panes in a row
 constexpr uint32_t nowhere = 0xffffffffu;
 
 struct Rectangle {
@@ -322,7 +323,7 @@ Hit look(const World& world, Ray ray) {
   return hit;
 }
 
-// One of the triangle's corners, the likelier the nearer, of the side that is seen.
+// Returns one of the triangle's corners, the likelier the nearer, of the side that is seen.
 uint32_t place_at(const World& world, const SkinLight& skin, const Hit& hit, vec3 direction,
                   float choice) {
   if (!hit.valid() || hit.instance < skin.first_instance) return nowhere;
@@ -347,7 +348,7 @@ SkinSight see_skin(const World& world, const SkinLight& skin, const View& view, 
   if (!(pixels > 0)) return sight;
   const int count = std::clamp(int(std::min(std::ceil(pixels), 1e9f)), 1, std::max(rays, 1));
   std::vector<uint32_t> met(size_t(count), nowhere);
-  // The R2 sequence (Roberts 2018), begun anywhere.
+  // The points are the R2 sequence (Roberts 2018), begun anywhere.
   const uint64_t random = mix64(turn);
   const double begin_x = double(random >> 40) * 0x1p-24,
                begin_y = double(random & 0xffffff) * 0x1p-24;

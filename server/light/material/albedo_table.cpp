@@ -22,7 +22,7 @@ float root_of_row(float row) {
 
 vec3 tilted(float cosine) { return {std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine}; }
 
-// 2 * integral of value(cosine) * cosine, closely spaced near the horizon.
+// Returns 2 * integral of value(cosine) * cosine, closely spaced near the horizon.
 template <class Value>
 float hemisphere_average(const Value& value) {
   constexpr int steps = 256;
@@ -34,7 +34,7 @@ float hemisphere_average(const Value& value) {
   return float(sum);
 }
 
-// `value`(row, root of alpha, root of cosine) is what the table is for.
+// Sets the averages. `value`(row, root of alpha, root of cosine) returns the table's value.
 template <class Value>
 void set_averages(AlbedoTable& table, const Value& value) {
   for (int i = 0; i < AlbedoTable::averages; i++) {
@@ -45,7 +45,8 @@ void set_averages(AlbedoTable& table, const Value& value) {
   }
 }
 
-// Over t / (t + r). Columns of cosines beyond 1 go on as the row ends, for what is in between.
+// Makes a table over t / (t + r). Columns of cosines beyond 1 go on as the row ends, for
+// interpolation.
 template <class Value>
 AlbedoTable loss_table(const Value& kept) {
   constexpr float step = 1.0f / (angles - 1);
@@ -88,7 +89,7 @@ std::unique_ptr<DielectricAlbedo> make_dielectric(float eta) {
 
 }  // namespace
 
-// A Fibonacci lattice over the numbers that sample_visible_normal takes.
+// The points are a Fibonacci lattice over the numbers that sample_visible_normal takes.
 FacetAlbedo sum_albedo(vec3 v, vec2 alpha, float eta, bool glass, int points) {
   int generator = 1;
   for (int next = 1; next < points;) next += std::exchange(generator, next);

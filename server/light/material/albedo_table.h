@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of the light that a rough boundary scatters leaves it after one meeting with a facet, by
-// angle and roughness. What stays behind meets more facets, and is given back by a lobe of its own
-// (Kulla and Conty 2017, "Revisiting physically based shading at Imageworks"); what a dielectric
-// does not reflect goes to the layer beneath.
+// Tabulates how much of the light that a rough boundary scatters leaves it after one meeting with a
+// facet, by angle and roughness. The rest meets more facets, and is given back by a lobe of its own
+// (Kulla and Conty 2017, "Revisiting physically based shading at Imageworks"); light that a
+// dielectric does not reflect goes to the layer beneath.
 //
 // Near the horizon the loss of a GGX surface depends on cosine / alpha alone: a ridge 11 % high
 // where the two are equal, however smooth the surface. A table over the cosine cannot follow it, so
@@ -16,29 +16,29 @@
 
 namespace wellspring::light {
 
-// Lobes smoother than any pixel could tell count as perfect.
+// Lobes too smooth for any pixel to show the difference count as perfect.
 inline constexpr float smooth_alpha = 1e-3f;
 
 struct AlbedoTable {
   static constexpr int angles = 32, roughnesses = 40, averages = 8 * (roughnesses - 1) + 1;
   float value[roughnesses][angles];
-  // Over the hemisphere, weighted by the cosine, of the values as they are looked up: it is by this
-  // that light given back adds up. More closely spaced, as it spans six orders of magnitude.
+  // Mean over the hemisphere, weighted by the cosine, of the values as they are looked up: by this
+  // mean light given back adds up. It is more closely spaced, as it spans six orders of magnitude.
   float average[averages];
 };
 
-// A row of the table at one roughness, ready for look-ups by angle.
+// Holds a row of the table at one roughness, ready for look-ups by angle.
 struct AlbedoRow {
   const float* low = nullptr;
   const float* high = nullptr;
   float weight = 0, average = 0;
 };
-// Where rows of one roughness are, the same in all tables.
+// Holds where rows of one roughness are, the same in all tables.
 struct AlbedoPlace {
   int low, average;
   float weight, average_weight;
 };
-AlbedoPlace albedo_place(float root_alpha);  // of smooth_alpha and above
+AlbedoPlace albedo_place(float root_alpha);  // smooth_alpha and above
 inline AlbedoRow albedo_row(const AlbedoTable& table, const AlbedoPlace& at) {
   return {table.value[at.low], table.value[at.low + 1], at.weight,
           glm::mix(table.average[at.average], table.average[at.average + 1], at.average_weight)};
@@ -59,30 +59,30 @@ inline float eval_loss(const AlbedoRow& row, float root_alpha, float root_cosine
   return glm::max(eval_row(row, root_cosine / (root_cosine + root_alpha)), 1e-7f);
 }
 
-// Share of light lost by a reflector that absorbs nothing.
+// Returns the share of light lost by a reflector that absorbs nothing.
 const AlbedoTable& mirror_loss();
 
-// A dielectric of one index.
+// Holds the tables for a dielectric of one index.
 struct DielectricAlbedo {
-  float fresnel_average = 0;  // of the smooth boundary, from outside
-  AlbedoTable fresnel;        // mean reflectance of the facets whose light leaves; its `average` is
-                              // that of all that is reflected
-  // Share lost of reflection and refraction together, seen from outside and from inside.
+  float fresnel_average = 0;  // mean over the smooth boundary, from outside
+  // Mean reflectance of the facets whose light leaves; its `average` is that of all reflected light
+  AlbedoTable fresnel;
+  // Holds the share lost of reflection and refraction together, seen from outside and from inside.
   struct Glass {
     AlbedoTable into, out_of;
   };
   std::unique_ptr<const Glass> glass;  // null unless asked for
 };
-// 0: an infinite index. Indices are rounded to a fixed set, so that there is a bounded number of
-// tables. Made on first use (some tens of milliseconds, more with `glass`), kept for the life of
-// the process.
+// Returns the tables of an index; 0: an infinite one. Indices are rounded to a fixed set, so that
+// there is a bounded number of tables. They are made on first use (some tens of milliseconds, more
+// with `glass`) and kept for the life of the process.
 const DielectricAlbedo& dielectric_albedo(float ior, bool glass = true);
 
-// The same for one direction by summing over facets, for surfaces that no table knows.
+// Holds the same for one direction, summed over facets, for surfaces that no table covers.
 struct FacetAlbedo {
-  float kept = 1;       // by a mirror
-  float reflected = 1;  // by a dielectric
-  float passed = 1;     // reflected or refracted by it: what glass keeps
+  float kept = 1;       // share kept by a mirror
+  float reflected = 1;  // share reflected by a dielectric
+  float passed = 1;     // share reflected or refracted by it: the light that glass keeps
 };
 FacetAlbedo sum_albedo(vec3 view, vec2 alpha, float eta, bool glass, int points);
 

@@ -12,7 +12,8 @@
 namespace wellspring::light {
 namespace {
 
-// KHR_materials_anisotropy: rougher along the tangent by the square of its strength.
+// Sets the roughness. KHR_materials_anisotropy: rougher along the tangent by the square of its
+// strength.
 void set_roughness(Bsdf& b, const Surface& surface) {
   b.alpha = alpha_of(surface.roughness);
   b.alphas = vec2(b.alpha);
@@ -89,7 +90,7 @@ bool is_clear_solid(const Bsdf& b) {
 
 namespace {
 
-// As if no colours were parted here.
+// Evaluates as if no colours were spread here.
 BsdfValue eval_lobes(const Bsdf& b, vec3 direction) {
   BsdfValue value;
   vec3 l = to_local(b, direction);
@@ -137,7 +138,7 @@ float sample_bsdf_pdf(const Bsdf& b, const BsdfValue& value, Lobes lobes) {
 BsdfSample sample_bsdf(const Bsdf& b, Lobes lobes, Sampler& sampler) {
   float share = lobes == Lobes::all ? b.diffuse_share : lobes == Lobes::diffuse ? 1.0f : 0.0f;
   BsdfSample s;
-  // Where there is nothing to choose, the number's place in the sequence is left out.
+  // If there is nothing to choose, the number's place in the sequence is left out.
   bool choice = share < 1 && (share > 0 || b.beneath < 1);
   float u = choice ? sampler.next() : (sampler.seek(sampler.drawn + 1), 0.0f);
   if (u < share) {
@@ -146,7 +147,7 @@ BsdfSample sample_bsdf(const Bsdf& b, Lobes lobes, Sampler& sampler) {
     return {};
   } else {
     float chance = 1 - share;
-    u = (u - share) / chance;  // anew uniform
+    u = (u - share) / chance;  // uniform again
     float coat = b.beneath < 1 ? clearcoat_share(b) : 0, sheen = b.beneath < 1 ? sheen_share(b) : 0;
     if (u < coat) {
       if (b.clearcoat.alpha == 0) {
@@ -214,7 +215,7 @@ Lanes dot3(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.
 
 void set3(Lanes3& lanes, int i, vec3 v) { lanes.x[i] = v.x, lanes.y[i] = v.y, lanes.z[i] = v.z; }
 
-// eval_row, each lane in rows of its own. `position` in [0, 1].
+// Does eval_row, each lane in rows of its own. `position` in [0, 1].
 Lanes eval_rows(const float* const (&rows)[2][lane_count], Lanes weight, Lanes position) {
   position *= AlbedoTable::angles - 1;
   LaneMask at = __builtin_convertvector(position, LaneMask);
@@ -289,7 +290,7 @@ BsdfLanesValue eval_bsdf_lanes(const BsdfLanes& b, const Lanes3& direction) {
   Lanes3 l{dot3(direction, b.tangent), dot3(direction, b.bitangent), dot3(direction, b.normal)};
   LaneMask lit = (dot3(direction, b.face) > 0) & (l.z > 1e-6f);
   Lanes cosine = lit ? lanes_min(l.z, one) : one;
-  // How much one meeting with a facet keeps back, of light along l.
+  // The loss is the share that one meeting with a facet keeps back, of light along l.
   Lanes root = lanes_sqrt(cosine);
   Lanes loss =
       lanes_max(eval_rows(b.loss, b.loss_weight, root / (root + b.root_alpha)), all_lanes(1e-7f));

@@ -12,21 +12,22 @@ namespace {
 
 constexpr int brushed_points = 377;  // facets summed for each hit of a brushed surface
 constexpr float least_loss = 1e-6f;
-// A dielectric that gives back less of what its facets lost leaves it to the layer beneath.
+// If a dielectric gives back less of what its facets lost, it leaves that to the layer beneath.
 constexpr float faint = 0.01f;
 
 float row_loss(const AlbedoRow& row, float root_alpha, float cosine) {
   return eval_loss(row, root_alpha, std::sqrt(cosine));
 }
 
-// Colour of light that left after more than one meeting, as a share of what one meeting kept back:
-// the series of Kulla and Conty 2017 with each meeting's reflectance at its average.
+// Returns the colour of light that left after more than one meeting, as a share of what one meeting
+// kept back: the series of Kulla and Conty 2017 with each meeting's reflectance at its average.
 vec3 again_color(vec3 average, float loss) {
   return average * average * (1 - loss) / (vec3(1) - average * loss);
 }
 
-// Light that meets several facets mostly meets them, and leaves, where one meeting loses most: the
-// loss goes roughly as 1 / (cosine^2 + alpha^2), which can be inverted.
+// Draws a direction of multiple scattering. Light that meets several facets mostly meets them, and
+// leaves, where one meeting loses most: the loss goes roughly as 1 / (cosine^2 + alpha^2), which
+// can be inverted.
 vec3 sample_again(const Bsdf& b, vec2 u) {
   float k = b.alpha * b.alpha;
   float height2 = glm::clamp(k * (std::pow(1 + 1 / k, u.x) - 1), 0.0f, 1.0f);
@@ -55,11 +56,11 @@ void eval_thin_transmission(const Bsdf& b, vec3 l, vec3& value, float& pdf) {
   pdf = (1 - color.reflect_share) * ggx_masking(b.view, b.alphas) * d;
 }
 
-// Walter et al. 2007, equation 21.
+// Computes Walter et al. 2007, equation 21.
 void eval_refraction(const Bsdf& b, vec3 l, vec3& value, float& pdf) {
   vec3 h = b.view + b.eta * l;
   float length2 = dot(h, h);
-  if (length2 < 1e-12f) return;  // index 1, straight on: no facet is told from any other
+  if (length2 < 1e-12f) return;  // index 1, straight on: all facets look alike
   h /= std::sqrt(length2);
   if (h.z < 0) h = -h;
   float cv = dot(b.view, h), cl = dot(l, h);
@@ -76,11 +77,11 @@ void eval_refraction(const Bsdf& b, vec3 l, vec3& value, float& pdf) {
 
 int largest_channel(vec3 c) { return c.x >= c.y && c.x >= c.z ? 0 : c.y >= c.z ? 1 : 2; }
 
-// Glass: what facets keep back leaves to either side in such shares that both directions agree,
-// eta^2 apart (Kulla and Conty 2017). From outside the average Fresnel share is reflected; from
-// inside what follows from reciprocity.
+// Sets the multiple scattering of glass: light that facets keep back leaves to either side in such
+// shares that both directions agree, eta^2 apart (Kulla and Conty 2017). From outside the average
+// Fresnel share is reflected; from inside the share that follows from reciprocity.
 void set_glass_again(Bsdf& b, const DielectricAlbedo& albedo, float loss, float transmission) {
-  bool inside = !b.thin && b.eta < 1;  // or in what is denser than the solid
+  bool inside = !b.thin && b.eta < 1;  // or in a medium denser than the solid
   const AlbedoTable& here = b.thin   ? mirror_loss()
                             : inside ? albedo.glass->out_of
                                      : albedo.glass->into;
@@ -141,7 +142,7 @@ void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, floa
   set_facets(b, specular, specular_color);
   if (!has_gloss(b)) return;
   bool inside = b.within;
-  // Seen from within a solid, what is opaque of it lies in its substance: nothing reflects first.
+  // Seen from within a solid, its opaque part lies in its substance: nothing reflects first.
   b.dielectric_share = (1 - b.metallic) * (inside ? transmission : 1);
   b.has_coat = !inside && b.metallic < 1;
   int channel = 0;
@@ -196,7 +197,7 @@ void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, floa
     }
     set_glass_again(b, albedo, glass_lost, transmission);
   }
-  // Chances by what each brings; any would do.
+  // Each lobe's chance is its share of the light; any chances would do.
   float here =
       max_component(again) * lost + max_component(b.glass_again) * pi * b.glass_here.average;
   float beyond = max_component(b.glass_again_beyond) * pi * b.glass_beyond.average *
@@ -306,7 +307,7 @@ void eval_clearcoat(const Bsdf& b, vec3 direction, vec3& value, float& pdf) {
   pdf += c.share * d / (1 + masked);
 }
 
-// Equation 3 and table 1 of the paper: the logarithm of the masking function.
+// Returns equation 3 and table 1 of the paper: the logarithm of the masking function.
 float sheen_curve(float x, float blend) {
   auto mixed = [&](float smooth, float rough) { return glm::mix(rough, smooth, blend); };
   float a = mixed(25.3245f, 21.5473f), b = mixed(3.32435f, 3.82987f), c = mixed(0.16801f, 0.19823f);
@@ -319,7 +320,7 @@ float sheen_lambda(float cosine, float alpha) {
   return std::exp(2 * sheen_curve(0.5f, blend) - sheen_curve(1 - cosine, blend));
 }
 
-// Both directions with z > 0; with the cosine of l.
+// Takes both directions with z > 0; the value carries the cosine of l.
 float eval_white_sheen(vec3 v, vec3 l, float alpha) {
   vec3 h = normalize(v + l);
   float sine2 = std::max(h.x * h.x + h.y * h.y, 0.0f), power = 1 / alpha;
@@ -329,7 +330,8 @@ float eval_white_sheen(vec3 v, vec3 l, float alpha) {
   return distribution * seen / (4 * v.z);
 }
 
-// Directional albedo by sqrt(cosine) and the root of the perceptual roughness above the least.
+// Holds the directional albedo by sqrt(cosine) and the root of the perceptual roughness above the
+// least.
 struct SheenTable {
   static constexpr int angles = 32, roughnesses = 24;
   float value[roughnesses][angles];
@@ -347,8 +349,8 @@ SheenTable make_sheen_table() {
       double sum = 0;
       for (int i = 0; i < around; i++)
         for (int j = 0; j < down; j++) {
-          // Half the azimuths, by symmetry; closely spaced near the horizon and near the viewer's
-          // plane, where smooth sheen is bright.
+          // The samples cover half the azimuths, by symmetry; they are close near the horizon and
+          // near the viewer's plane, where smooth sheen is bright.
           float x = (float(i) + 0.5f) / around, phi = pi * x * x * (3 - 2 * x);
           float s = (float(j) + 0.5f) / down, z = s * s, radius = std::sqrt(1 - z * z);
           vec3 l(radius * std::cos(phi), radius * std::sin(phi), z);
@@ -404,7 +406,7 @@ void set_layers(Bsdf& b, const Surface& surface, vec3 view) {
     b.sheen.color *= 1 - coat;
     b.beneath *= 1 - coat;
   }
-  // Chances by what each reflects, of what the specular lobes reflect in all.
+  // Each chance is what a lobe reflects, as a share of what all specular lobes reflect.
   float base = 0;
   if (has_gloss(b)) {
     bool strong = b.metallic > 0 || max_component(b.transmit) > 0;

@@ -9,8 +9,8 @@
 namespace wellspring::light {
 namespace {
 
-// The cluster after an event with these values and densities (the hero's not 0). Returns the
-// event's weight.
+// Updates the cluster after an event with these values and densities (the hero's not 0). Returns
+// the event's weight.
 vec3 add_event(Wavelengths& w, vec3 before, const vec3* value, const float* density) {
   vec3 scale(0);
   for (int i = 0; i < w.carried; i++) scale = glm::max(scale, value[i]);

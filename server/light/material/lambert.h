@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lambert's law alone, for surfaces that is_lambertian: what make_bsdf, eval_bsdf and sample_bsdf
-// come to there, without the lobes that are not.
+// Computes Lambert's law alone, for surfaces that is_lambertian: the results of make_bsdf,
+// eval_bsdf and sample_bsdf there, without the lobes that such surfaces lack.
 #pragma once
 #include <bit>
 
@@ -18,14 +18,14 @@ inline LambertLobe make_lambert(const LambertSurface& surface, vec3 direction) {
           surface.geometric_normal, clean(surface.base_color)};
 }
 
-// Density of sampling and, times the reflectance, value times cosine.
+// Returns the density of sampling, which times the reflectance is also value times cosine.
 inline float eval_lambert_pdf(const LambertLobe& lobe, vec3 direction) {
   float cosine = dot(direction, lobe.normal);
   bool above = dot(direction, lobe.geometric_normal) > 0 && cosine > 1e-6f;
   return above ? std::min(cosine, 1.0f) / pi : 0;
 }
 
-// Weight: the reflectance.
+// Draws a direction. Its weight is the reflectance.
 inline BsdfSample sample_lambert(const LambertLobe& lobe, vec2 u) {
   BsdfSample s;
   vec3 tangent, bitangent;
@@ -37,7 +37,7 @@ inline BsdfSample sample_lambert(const LambertLobe& lobe, vec2 u) {
   return s;
 }
 
-// Lambert's law (Lambertian.h) at eight places side by side.
+// Computes Lambert's law (lambert.h) at eight places side by side.
 
 struct LambertLobeLanes {
   Lanes3 normal, geometric_normal, reflectance;
@@ -63,14 +63,14 @@ inline LambertLobeLanes make_lambert(const LambertSurfaceLanes& surface, const L
   return lobes;
 }
 
-// eval_lambert_pdf.
+// Does eval_lambert_pdf in each lane.
 inline Lanes eval_lambert_pdfs(const LambertLobeLanes& lobes, const Lanes3& direction) {
   Lanes cosine = dot(direction, lobes.normal);
   LaneMask above = (dot(direction, lobes.geometric_normal) > 0) & (cosine > 1e-6f);
   return above ? lanes_min(cosine, all_lanes(1.0f)) * (1 / pi) : Lanes{};
 }
 
-// Directions of sample_cosine_hemisphere around each normal; u, v uniform in [0, 1).
+// Returns directions of sample_cosine_hemisphere around each normal; u, v uniform in [0, 1).
 inline Lanes3 sample_cosine_directions(const Lanes3& n, Lanes u, Lanes v) {
   Lanes quarter = v * 4;
   LaneMask turn = __builtin_convertvector(quarter + 0.5f, LaneMask);
@@ -81,7 +81,7 @@ inline Lanes3 sample_cosine_directions(const Lanes3& n, Lanes u, Lanes v) {
   LaneMask odd = (turn & 1) != 0, back = (turn & 2) != 0;
   Lanes cosine = odd ? -s : c, sine = odd ? c : s, radius = lanes_sqrt(u);
   radius = back ? -radius : radius;
-  // make_frame_axes.
+  // This is make_frame_axes.
   Lanes sign = LaneMask(n.z) < 0 ? all_lanes(-1) : all_lanes(1.0f);
   Lanes a = -1 / (sign + n.z), b = n.x * n.y * a;
   Lanes3 tangent{1 + sign * n.x * n.x * a, sign * b, -sign * n.x};

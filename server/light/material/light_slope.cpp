@@ -6,13 +6,13 @@
 namespace wellspring::light {
 namespace {
 
-constexpr int steps = 64;                         // of the cosine, from 0 to 1
+constexpr int steps = 64;                         // steps of the cosine, from 0 to 1
 constexpr float spread = 0.4f, farthest = 1.05f;  // radians: tilts of mapped normals
 constexpr float least_cosine = 0.05f;             // nearer to the horizon light is no less certain
 
-// The best fit of the clamped cosine max(0, dot(seen, direction)) over normals `seen` around the
-// mesh's, exact at that: cosine + along * (dot(seen, normal) - 1) + across * dot(seen, t), where t
-// is the part of the direction across the normal, unit.
+// Holds the best fit of the clamped cosine max(0, dot(seen, direction)) over normals `seen` around
+// the mesh's, exact at the mesh's: cosine + along * (dot(seen, normal) - 1) + across * dot(seen,
+// t), where t is the part of the direction across the normal, unit.
 struct Fit {
   float along = 0, across = 0;
 };

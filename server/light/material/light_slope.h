@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diffuse light as a function of the direction that a surface faces, near a normal:
+// Describes diffuse light as a function of the direction that a surface faces, near a normal:
 //   light(seen) = light * max(0, 1 + dot(slope, seen - normal)),
-// so folds that share a node, and maps of normals, are lit rightly by what is kept at the node. It
-// is first order, as spherical harmonics of two bands are (Ramamoorthi and Hanrahan 2001, "An
+// so folds that share a node, and maps of normals, are lit rightly by the light kept at the node.
+// It is first order, as spherical harmonics of two bands are (Ramamoorthi and Hanrahan 2001, "An
 // Efficient Representation for Irradiance Environment Maps"), but exact at the mesh's normal and
-// fitted to directions within the tilts that maps of normals have: of light from one direction the
+// fitted to directions within the tilts that maps of normals have: for light from one direction the
 // cosine is followed to where it ends at 0.
 #pragma once
 #include <algorithm>
@@ -17,11 +17,11 @@
 
 namespace wellspring::light {
 
-// Light from `direction` (unit, on the side of `normal`) adds this to the slope, for each unit of
-// the light that it brings there.
+// Returns what light from `direction` (unit, on the side of `normal`) adds to the slope, for each
+// unit of the light that it brings there.
 vec3 slope_of(vec3 direction, vec3 normal);
 
-// Slopes in 32 bits: ten bits a coordinate; what is longer than most_slope is cut to that.
+// Packs slopes in 32 bits: ten bits a coordinate; longer slopes are cut to most_slope.
 inline constexpr float most_slope = 4;
 inline uint32_t pack_slope(vec3 slope) {
   const float longest = max_component(glm::abs(slope));
@@ -42,7 +42,7 @@ inline void unpack_slope(const LaneBits& code, Lanes& x, Lanes& y, Lanes& z) {
   z = (to_float(code >> 20 & 1023u) - 512.0f) * unit;
 }
 
-// Unit normals likewise; what comes back is unit but for rounding.
+// Packs unit normals likewise; unpacked normals are unit but for rounding.
 inline uint32_t pack_node_normal(vec3 normal) { return pack_slope(most_slope * normal); }
 inline vec3 unpack_node_normal(uint32_t code) { return unpack_slope(code) * (1 / most_slope); }
 inline void unpack_node_normal(const LaneBits& code, Lanes& x, Lanes& y, Lanes& z) {
@@ -50,7 +50,7 @@ inline void unpack_node_normal(const LaneBits& code, Lanes& x, Lanes& y, Lanes& 
   x *= 1 / most_slope, y *= 1 / most_slope, z *= 1 / most_slope;
 }
 
-// Times as much light as at the normal that the slope is relative to.
+// Returns the light as a multiple of that at the normal that the slope is relative to.
 inline float eval_slope(vec3 slope, vec3 normal, vec3 seen) {
   return std::max(1 + dot(slope, seen - normal), 0.0f);
 }

@@ -48,7 +48,7 @@ TexelRange color_range(const Mesh& mesh) {
   return range;
 }
 
-// As the BSDF reads a roughness: what is no number is smooth.
+// Returns a roughness as the BSDF reads it: NaN is smooth.
 float usable_roughness(float r) { return r > 0 ? std::min(r, 1.0f) : 0.0f; }
 bool perfect(float roughness) { return roughness * roughness < smooth_alpha; }
 bool same_color(const TexelRange& r) { return vec3(r.low) == vec3(r.high); }
@@ -140,7 +140,7 @@ MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges
     float coat = m.clearcoat_roughness * ranges.of(m.clearcoat_roughness_texture).low.y;
     use.sharp = use.sharp || usable_roughness(coat) < caustic_roughness;
   }
-  // Perfect everywhere, and nothing diffuse beneath: no light is ever sampled on it.
+  // If it is perfect everywhere, and nothing diffuse lies beneath, no light is ever sampled on it.
   bool diffuse_beneath = least_metal < 1 && base_high() > 0 &&
                          (m.transmission < 1 || ranges.of(m.transmission_texture).low.x < 1);
   use.scatters = diffuse_beneath || !perfect(roughest) || use.coated;

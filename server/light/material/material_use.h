@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a material can matter where it is used: its factors together with the darkest and
+// Finds what a material can do where it is used: its factors together with the darkest and
 // brightest texel of its textures and the colours of the mesh, so that an extension of strength
-// zero, a black texture or an alpha that is always cut off counts as not being there. Bounds, not
-// guesses: what is ruled out here cannot happen at any place of the surface.
+// zero, a black texture or an alpha that is always cut off counts as not being there. The results
+// are bounds, not guesses: what is ruled out here cannot happen at any place of the surface.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -15,7 +15,7 @@ namespace wellspring::light {
 // Lobes smoother than this perceptual roughness cast light sharply enough to be called a caustic.
 inline constexpr float caustic_roughness = 0.3f;
 
-// What the first surface that an eye meets keeps of a metal (light/walk/first_surface.h).
+// Says what the first surface that an eye meets keeps of a metal (light/walk/first_surface.h).
 enum class MetalDemodulation : uint8_t {
   none,
   reflectance,  // it is metal all over, and nowhere a mirror
@@ -24,25 +24,25 @@ enum class MetalDemodulation : uint8_t {
 inline constexpr float all_metal = 0.8f;  // metallic
 inline constexpr float least_demodulated_roughness = 0.2f, least_filtered_roughness = 0.25f;
 
-// Of a material in use: each is whether it may be so at some place of the surface.
+// Describes a material in use: each is whether it may be so at some place of the surface.
 struct MaterialUse {
-  bool visible = false;   // by its alpha; nothing else is set where it is not
+  bool visible = false;   // by its alpha; if false, nothing else is set
   bool receives = false;  // light makes a difference to it: it is not unlit
   bool scatters = false;  // and some of its light leaves in other than perfect directions
   bool emits = false;
   bool emission_varies = false;  // over the surface: a picture, vertex colours or alpha
   bool pane = false;             // a thin smooth pane: light passes straight
   bool solid = false;            // refracts, has an inside
-  bool absorbs = false;          // tints what runs in it
+  bool absorbs = false;          // tints light that runs in it
   bool disperses = false;
   bool coated = false;  // clearcoat or sheen
   bool sharp = false;   // casts caustics: some lobe is smoother than caustic_roughness
   MetalDemodulation metal = MetalDemodulation::none;
 };
-// What holds for either.
+// Returns what holds for either.
 MaterialUse merge(const MaterialUse& a, const MaterialUse& b);
 
-// The smallest and largest value of each channel of an image as eval_texture gives it.
+// Holds the smallest and largest value of each channel of an image as eval_texture gives it.
 struct TexelRange {
   vec4 low{1}, high{1};
 };
@@ -52,13 +52,13 @@ class TextureRanges {
  public:
   explicit TextureRanges(const Scene& scene) : scene_(scene) {}
   const TexelRange& image(int index);
-  TexelRange of(const TextureRef& reference);  // 1 where there is no picture
+  TexelRange of(const TextureRef& reference);  // 1 if there is no picture
  private:
   const Scene& scene_;
   std::map<int, TexelRange> known_;
 };
 
-// `mesh`: one that is made of it (its vertex colours multiply the base colour).
+// Finds it. `mesh`: one that is made of the material (its vertex colours multiply the base colour).
 MaterialUse find_material_use(const Material& material, const Mesh& mesh, TextureRanges& ranges);
 
 }  // namespace wellspring::light

@@ -16,7 +16,8 @@ float lobe(float x, float middle, float below, float above) {
   return std::exp(-0.5f * t * t);
 }
 
-// Wyman, Sloan and Shirley 2013, equation 4, to linear Rec. 709, without what is negative.
+// Returns the functions of Wyman, Sloan and Shirley 2013, equation 4, as linear Rec. 709, cut at
+// zero.
 vec3 raw_response(float nm) {
   float x = 1.056f * lobe(nm, 599.8f, 37.9f, 31.0f) + 0.362f * lobe(nm, 442.0f, 16.0f, 26.7f) -
             0.065f * lobe(nm, 501.1f, 20.4f, 26.2f);
@@ -29,8 +30,8 @@ vec3 raw_response(float nm) {
 }
 
 struct Spectrum {
-  std::array<float, places + 1> wavelength;  // where each place begins
-  std::array<vec3, places> response;         // over each place, its mean 1
+  std::array<float, places + 1> wavelength;  // first wavelength of each place
+  std::array<vec3, places> response;         // mean over each place; the mean of all is 1
 };
 
 Spectrum make_spectrum() {
@@ -90,7 +91,7 @@ vec3 tint_of(const Wavelengths& w) {
 vec3 meet_hues(float eye, float light) {
   if (eye < 0 || light < 0) return vec3(1);
   if (std::abs(eye - light) > hue_bandwidth / 2) return vec3(0);
-  // Less is within reach at the ends of the spectrum.
+  // Less of the spectrum is within reach at its ends.
   float reach = std::min(eye + hue_bandwidth / 2, 1.0f) - std::max(eye - hue_bandwidth / 2, 0.0f);
   return divide_tint(vec3(1 / reach), response_at(light));  // both have coloured it
 }

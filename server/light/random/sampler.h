@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a sample's random numbers come from: Sobol' points with hashed Owen scrambling (Burley
-// 2020, "Practical Hash-based Owen Scrambling", sections 3 and 4), one or two dimensions at a time,
-// each padded by its own shuffle of the indices. Samples of one seed are well spread over their
-// first 2^k indices; samples of different seeds are independent; index 0 alone is uniformly random.
+// Draws a sample's random numbers: Sobol' points with hashed Owen scrambling (Burley 2020,
+// "Practical Hash-based Owen Scrambling", sections 3 and 4), one or two dimensions at a time, each
+// padded by its own shuffle of the indices. Samples of one seed are well spread over their first
+// 2^k indices; samples of different seeds are independent; index 0 alone is uniformly random.
 // Techniques draw through here only.
 #pragma once
 #include "base/rng.h"
@@ -18,8 +18,8 @@ inline uint32_t reverse_bits(uint32_t x) {
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-// A random permutation that flips each bit by a hash of the bits below it (Laine and Karras 2011,
-// with the constants of Burley's section 3.1 as improved by Vegdahl 2021).
+// Applies a random permutation that flips each bit by a hash of the bits below it (Laine and Karras
+// 2011, with the constants of Burley's section 3.1 as improved by Vegdahl 2021).
 template <class Bits>  // one number or lanes of them
 inline Bits permute_upwards(Bits x, Bits seed) {
   x ^= x * 0x3d20adeau;
@@ -30,7 +30,7 @@ inline Bits permute_upwards(Bits x, Bits seed) {
   return x;
 }
 
-// Two numbers reversed at once.
+// Reverses the bits of two numbers at once.
 inline void reverse_bits(uint32_t& x, uint32_t& y) {
   uint64_t both = __builtin_bswap64(uint64_t(x) << 32 | y);
   both = ((both >> 4) & 0x0f0f0f0f0f0f0f0full) | ((both & 0x0f0f0f0f0f0f0f0full) << 4);
@@ -40,8 +40,8 @@ inline void reverse_bits(uint32_t& x, uint32_t& y) {
   y = uint32_t(both >> 32);
 }
 
-// Second dimension of Sobol's sequence (generator x + 1), its bits reversed: the matrix is Pascal's
-// triangle modulo 2, a Kronecker power, so that five steps apply it.
+// Returns the second dimension of Sobol's sequence (generator x + 1), its bits reversed: the matrix
+// is Pascal's triangle modulo 2, a Kronecker power, so that five steps apply it.
 inline uint32_t sobol_second_reversed(uint32_t x) {
   x ^= x >> 16;
   x ^= (x >> 8) & 0x00ff00ffu;
@@ -52,18 +52,18 @@ inline uint32_t sobol_second_reversed(uint32_t x) {
 
 inline float unit_float(uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }  // [0, 1)
 
-// Owen's nested scrambling flips each bit by a hash of the bits above it: it is permute_upwards of
-// the reversed bits, reversed. Below, what is to be reversed twice is left as it is: an index is
-// kept reversed, its scrambling is too, which is its place in Sobol's first dimension.
+// Draws one sample's numbers. Owen's nested scrambling flips each bit by a hash of the bits above
+// it: it is permute_upwards of the reversed bits, reversed. Pairs of reversals are left out: the
+// index is kept reversed, and so is its scrambling, which is its place in Sobol's first dimension.
 struct Sampler {
   uint64_t seed = 0;
   uint32_t reversed_index = 0, drawn = 0;
   explicit Sampler(uint64_t seed, uint32_t index = 0)
       : seed(seed), reversed_index(reverse_bits(index)) {}
-  // The next draw is this dimension's: whoever draws a varying count begins at fixed places, so
+  // Sets the dimension of the next draw: whoever draws a varying count begins at fixed places, so
   // that samples of one seed stay well spread together in all later dimensions.
   void seek(uint32_t dimension) { drawn = dimension; }
-  // One number, and two that are well spread together.
+  // Return one number, and two that are well spread together.
   float next() {
     uint64_t hash = mix64(seed + 0xd1b54a32d192ed03ull * ++drawn);
     uint32_t shuffled = reverse_bits(permute_upwards(reversed_index, uint32_t(hash)));
@@ -79,7 +79,7 @@ struct Sampler {
   }
 };
 
-// Eight Samplers side by side: the same numbers, bit for bit.
+// Runs eight Samplers side by side: the same numbers, bit for bit.
 
 inline LaneBits reverse_bits(LaneBits x) {
   x = (x >> 16) | (x << 16);
@@ -114,7 +114,8 @@ struct SamplerLanes {
     sampler.reversed_index = reversed_index[lane];
     return sampler;
   }
-  // What next() and next2() of each lane's Sampler return after seek(dimension of that lane).
+  // Return what next() and next2() of each lane's Sampler return after seek(dimension of that
+  // lane).
   Lanes number(LaneBits dimension) const {
     Hashes hashes = hash(dimension);
     LaneBits shuffled = reverse_bits(permute_upwards(reversed_index, hashes.low()));

@@ -31,7 +31,7 @@ AliasTable make_alias_table(std::span<const float> weights) {
       small.push_back(l);
     }
   }
-  // What rounding leaves over stands for itself, but never an index of weight 0.
+  // An index that rounding leaves over stands for itself, unless its weight is 0.
   uint32_t heaviest = 0;
   for (uint32_t i = 1; i < count; i++)
     if (table.cells[i].probability > table.cells[heaviest].probability) heaviest = i;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uniform numbers in [0, 1) bent into directions and points, with densities; and the frames they
-// live in.
+// Bends uniform numbers in [0, 1) into directions and points, with densities, and makes the frames
+// for them.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace wellspring::light {
 
-// Two unit vectors that complete `n` to a right-handed frame (Duff et al. 2017, JCGT 6(1)).
+// Makes two unit vectors that complete `n` to a right-handed frame (Duff et al. 2017, JCGT 6(1)).
 inline void make_frame_axes(vec3 n, vec3& tangent, vec3& bitangent) {
   float sign = std::copysign(1.0f, n.z);
   float a = -1 / (sign + n.z), b = n.x * n.y * a;
@@ -21,7 +21,7 @@ inline void make_frame_axes(vec3 n, vec3& tangent, vec3& bitangent) {
   bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
-// Cosine and sine of a share of a full turn, u in [0, 1]: within 1e-7.
+// Returns cosine and sine of a share of a full turn, u in [0, 1], within 1e-7.
 inline vec2 unit_circle(float u) {
   float quarter = u * 4;
   int turn = int(quarter + 0.5f);
@@ -32,36 +32,36 @@ inline vec2 unit_circle(float u) {
   return turn & 2 ? vec2(-c, -s) : vec2(c, s);
 }
 
-// z up; density z / pi.
+// Returns a direction with density z / pi; z is up.
 inline vec3 sample_cosine_hemisphere(vec2 u) {
   return {std::sqrt(u.x) * unit_circle(u.y), std::sqrt(std::max(0.0f, 1 - u.x))};
 }
 
-// Uniform over the sphere.
+// Returns a direction, uniform over the sphere.
 inline vec3 sample_sphere(vec2 u) {
   float z = 1 - 2 * u.x, radius = std::sqrt(std::max(0.0f, 1 - z * z));
   return {radius * unit_circle(u.y), z};
 }
 
-// Barycentric weights of the second and third corner, uniform over the triangle.
+// Returns barycentric weights of the second and third corner, uniform over the triangle.
 inline vec2 sample_triangle(vec2 u) {
   float root = std::sqrt(u.x);
   return {root * (1 - u.y), root * u.y};
 }
 
-// Weight of a sample drawn with density `own` where another strategy could have drawn it with
-// density `other`: the power heuristic with exponent 2 (Veach 1997, section 9.2.4). An infinite
-// density wins.
+// Returns the weight of a sample drawn with density `own` that another strategy could have drawn
+// with density `other`: the power heuristic with exponent 2 (Veach 1997, section 9.2.4). An
+// infinite density wins.
 inline float mis_weight(float own, float other) {
   if (other <= 0) return 1;
   float ratio = other / own;
   return 1 / (1 + ratio * ratio);
 }
 
-// Cells of space and of a surface's main direction, by which light at places is remembered in hash
-// tables (Binder, Fricke, Keller 2019, "Massively Parallel Path Space Filtering", section 3).
+// Names cells of space and of a surface's main direction, for hash tables that keep light at places
+// (Binder, Fricke, Keller 2019, "Massively Parallel Path Space Filtering", section 3).
 
-// `cell` metres a side; the key is never 0.
+// Returns the key of a place's cell, `cell` metres a side; it is never 0.
 inline uint64_t place_key(vec3 position, vec3 normal, float cell) {
   vec3 a = glm::abs(normal);
   int axis = a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
@@ -73,14 +73,16 @@ inline uint64_t place_key(vec3 position, vec3 normal, float cell) {
          1;
 }
 
-// The cell lies between `cell` times this and `cell` times one more.
+// Returns the place of a key's cell, which lies between `cell` times this and `cell` times one
+// more.
 inline glm::ivec3 place_of_key(uint64_t key) {
   auto part = [&](int shift) { return int(key >> (shift + 1) & 0xfffff) - (1 << 19); };
   return {part(40), part(20), part(0)};
 }
 
-// The slot of `key` in an open-addressed table with linear probing: the one that holds it, or the
-// free one (0) where it would be put. As many `keys` as a power of two, at least one of them free.
+// Returns the slot of `key` in an open-addressed table with linear probing: the one that holds it,
+// or the free one (0) where it would be put. The number of `keys` is a power of two, and at least
+// one is free.
 inline uint32_t find_place_slot(std::span<const uint64_t> keys, uint64_t key) {
   const uint32_t mask = uint32_t(keys.size()) - 1;
   uint32_t slot = uint32_t(mix64(key)) & mask;
@@ -94,8 +96,8 @@ inline uint32_t find_place_slot(std::span<const uint64_t> keys, uint64_t key) {
 struct AliasTable {
   struct Cell {
     float keep = 1;         // chance that this cell stands for itself
-    uint32_t other = 0;     // otherwise
-    float probability = 0;  // of this index, over the whole table
+    uint32_t other = 0;     // index that it stands for otherwise
+    float probability = 0;  // probability of this index, over the whole table
   };
   std::vector<Cell> cells;  // empty: all weights are 0
   double total = 0;         // sum of the weights
@@ -105,7 +107,7 @@ AliasTable make_alias_table(std::span<const float> weights);
 
 struct AliasPick {
   uint32_t index;
-  float u;  // what is left of the number: uniform again
+  float u;  // rest of the number, uniform again
 };
 // The table must not be empty. u in [0, 1).
 inline AliasPick sample_alias(const AliasTable& table, float u) {

@@ -9,10 +9,10 @@
 namespace wellspring::light {
 namespace {
 
-constexpr int most_parts = 16;         // of one instance
+constexpr int most_parts = 16;         // per instance
 constexpr size_t least_triangles = 8;  // in a part
 
-// Triangles [begin, end) of an instance in a sphere, or in parts of it where those are much
+// Adds triangles [begin, end) of an instance in one sphere, or in parts of it if those are much
 // smaller.
 void add_spheres(std::vector<Bounds>& boxes, size_t begin, size_t end, int parts, float weight,
                  std::vector<CasterSphere>& spheres) {
@@ -51,7 +51,7 @@ float weight_of(const Material& m) {
                    m.ior == 0 ? 1.0f : faint});
 }
 
-// Solid angle of a sphere; all around from inside.
+// Returns the solid angle of a sphere; from inside it is all around.
 float solid_angle(const CasterSphere& c, vec3 from) {
   vec3 line = c.center - from;
   float d2 = dot(line, line), r2 = c.radius * c.radius;

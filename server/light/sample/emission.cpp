@@ -17,7 +17,7 @@ vec3 from_frame(vec3 axis, vec3 local) {
   return tangent * local.x + bitangent * local.y + axis * local.z;
 }
 
-// A ray that enters the scene along `direction`, anywhere on a disc that hides the scene.
+// Returns a ray that enters the scene along `direction`, anywhere on a disc that hides the scene.
 Ray ray_from_outside(const EmissionChoice& choice, vec3 direction, vec2 u) {
   float radius = choice.radius * std::sqrt(u.x), phi = 2 * pi * u.y;
   Ray ray;
@@ -157,7 +157,7 @@ EnvironmentSample sample_whole_sky(const EnvironmentLight& environment, vec2 u) 
   constexpr float all = 1 / (4 * pi);
   if (!environment.is_sampled()) return {sample_sphere(u), all};
   if (!(luminance(environment.radiance) > 0)) return sample_environment(environment, u);
-  // A sun in a plain sky: either, half of the time.
+  // A sun in a plain sky: each is drawn half of the time.
   bool sun = u.x < 0.5f;
   u.x = sun ? 2 * u.x : 2 * u.x - 1;
   vec3 direction = sun ? sample_environment(environment, u).direction : sample_sphere(u);

@@ -23,7 +23,7 @@ vec3 look_up(const EnvironmentLight& light, vec2 uv) {
   return glm::max(vec3(eval_texture(*light.image, texture, uv)), vec3(0));
 }
 
-// cos of the polar angle at a row's upper edge.
+// Returns the cosine of the polar angle at a row's upper edge.
 float edge(const EnvironmentLight& light, int row) {
   return std::cos(pi * float(row) / float(light.rows));
 }
@@ -44,7 +44,7 @@ void add_sun(const SunDisc& sun, bool importance, EnvironmentLight& light) {
   light.sun_direction = sun.direction / std::sqrt(length2);
   light.sun_radiance = glm::max(sun.radiance, vec3(0));
   light.sun_chord2 = 4 * half * half;
-  // Where the sun emits light it is most of the light; in its shadow the sky is all of it.
+  // On lit surfaces the sun is most of the light; in its shadow the sky is all of it.
   if (importance) light.sun_share = light.cells.cells.empty() ? 1.0f : 0.5f;
 }
 
@@ -56,8 +56,8 @@ void add_picture(const Scene& scene, bool importance, EnvironmentLight& light) {
   if (!importance) return;
   light.columns = std::min(light.image->width, most_columns);
   light.rows = std::min(light.image->height, most_rows);
-  // Several look-ups a cell, so that a picture finer than the grid and the filter's reach both
-  // count.
+  // Several look-ups a cell take account of a picture finer than the grid and of the filter's
+  // reach.
   int across = std::clamp(2 * light.image->width / light.columns, 2, 16);
   int down = std::clamp(2 * light.image->height / light.rows, 2, 16);
   std::vector<float> weights;
@@ -138,7 +138,7 @@ float sample_environment_pdf(const EnvironmentLight& light, vec3 direction) {
 namespace {
 
 constexpr float least_variation = 0.3f;  // standard deviation over mean below which it does not pay
-constexpr float floor_share = 0.05f;     // of the mean, that even a dark cell keeps
+constexpr float floor_share = 0.05f;     // share of the mean that even a dark cell keeps
 
 // Row j has n - j upright cells with n - j - 1 upside-down ones between them.
 struct Cell {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from infinity: its radiance by direction, and for pictures a choice of direction by
+// Holds light from infinity: its radiance by direction, and for pictures a choice of direction by
 // brightness (a grid over the latitude-longitude picture, uniform in solid angle within a cell).
 // The sun's disc is chosen apart, uniform in solid angle.
 #pragma once
@@ -12,38 +12,38 @@
 
 namespace wellspring::light {
 
-// Borrows the scene's image.
+// An environment light borrows the scene's image.
 struct EnvironmentLight {
   vec3 radiance{0};
-  const Image* image = nullptr;  // none: `radiance` from everywhere
-  int columns = 0, rows = 0;     // of the grid; none for a constant environment
+  const Image* image = nullptr;  // null: `radiance` from everywhere
+  int columns = 0, rows = 0;     // cells of the grid; 0 for a constant environment
   AliasTable cells;
-  float mean_luminance = 0;  // over the sphere, without the sun
+  float mean_luminance = 0;  // mean over the sphere, without the sun
   vec3 sun_direction{0, 1, 0}, sun_radiance{0};
   float sun_chord2 = 0;  // squared chord from the disc's centre to its rim
-  float sun_share = 0;   // of samples; 0: there is no sun to sample
+  float sun_share = 0;   // share of samples; 0: there is no sun to sample
   bool is_sampled() const { return sun_share > 0 || !cells.cells.empty(); }
 };
 
-// `importance`: with a choice of direction; else it is found by scattering alone.
+// Makes it. `importance`: with a choice of direction; else the light is found by scattering alone.
 EnvironmentLight make_environment_light(const Scene& scene, bool importance = true);
 
-// `direction` unit.
+// Returns the radiance from a `direction`, which is unit.
 vec3 eval_environment(const EnvironmentLight& light, vec3 direction);
 
 struct EnvironmentSample {
   vec3 direction{0};
   float pdf = 0;  // over solid angle
 };
-// Only where is_sampled(); constant light is found by scattering, which no choice of ours can
-// better.
+// Draw a direction, only if is_sampled(); constant light is found by scattering, which no choice of
+// ours can better.
 EnvironmentSample sample_environment(const EnvironmentLight& light, vec2 u);
 EnvironmentSample sample_environment(const EnvironmentLight& light, Sampler& sampler);
 float sample_environment_pdf(const EnvironmentLight& light, vec3 direction);
 
-// Where on a triangle its picture emits light: the triangle cut into n * n equal ones by its
-// barycentric weights, each with its chance by mean brightness. Made only where the picture varies
-// enough over the triangle to pay for the look-up.
+// Tells how an emission picture's brightness is spread over a triangle: the triangle is cut into n
+// * n equal ones by its barycentric weights, each with its chance by mean brightness. It is made
+// only where the picture varies enough over the triangle to pay for the look-up.
 
 struct EmissionPicture {
   int n = 0;
@@ -52,9 +52,9 @@ struct EmissionPicture {
 
 inline constexpr int most_emission_rows = 64;
 
-// `eval(barycentric)`: luminance there, weights of the second and third corner. `texels`: of the
-// picture on the triangle, as many as matter. Every cell keeps a chance, since a few look-ups may
-// miss a bright texel.
+// Makes it. `eval(barycentric)` returns the luminance there, by weights of the second and third
+// corner. `texels`: number of the picture's texels on the triangle that matter. Every cell keeps a
+// chance, since a few look-ups may miss a bright texel.
 EmissionPicture make_emission_picture(float texels, const std::function<float(vec2)>& eval);
 
 struct PicturePlace {

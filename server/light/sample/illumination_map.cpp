@@ -36,7 +36,7 @@ static float usual_light(const IlluminationMap& map) {
   return float(std::exp(logs / count));
 }
 
-// `levels`: empty where all lamps are full.
+// Sums the layers. `levels`: empty if all lamps are full.
 static void sum_layers(std::span<const LampLevel> levels, IlluminationMap& map) {
   const std::vector<IlluminationNodes>& layers = *map.layers;
   const bool sloped = !layers.front().slope.empty();

@@ -13,10 +13,10 @@ namespace {
 
 constexpr int steps = 6;  // surfaces that a walk visits
 constexpr uint32_t table_size = 1 << 17;
-constexpr int batch = 1 << 13;         // walks between two looks at what is known
-constexpr uint16_t enough_tests = 64;  // of a lamp from a cell
+constexpr int batch = 1 << 13;         // walks between two looks at the tallies
+constexpr uint16_t enough_tests = 64;  // tests of a lamp from a cell
 
-// What a walk found out at one of its places.
+// Holds what a walk found at one of its places.
 struct Visit {
   uint64_t key = 0;     // 0: nothing
   uint32_t tested = 0;  // bits of lamps
@@ -36,7 +36,7 @@ SurfacePlace place_of(const World& world, const Ray& ray, const Hit& hit) {
   return place;
 }
 
-// Asks the lamps that might emit light there and of which the cell does not know enough yet.
+// Asks the lamps that might emit light there and for which the cell has not enough tests yet.
 void visit(const Transport& transport, const LampsSeen& seen, const std::vector<Tally>& tallies,
            const SurfacePlace& place, Visit& to) {
   const LightTables& tables = transport.tables;
@@ -55,7 +55,7 @@ void visit(const Transport& transport, const LampsSeen& seen, const std::vector<
   }
 }
 
-// A walk over the scene's surfaces, which scatter it as Lambertian ones do, whatever they are;
+// Walks over the scene's surfaces, which scatter the walk as Lambertian ones do, whatever they are;
 // glass lets it pass.
 void walk_once(const Transport& transport, const LampsSeen& seen, const std::vector<Tally>& tallies,
                vec3 origin, Sampler& sampler, Visit* visits) {
@@ -136,7 +136,7 @@ std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
   seen->shares.resize(table_size);
   for (size_t slot = 0; slot < table_size; slot++)
     for (size_t lamp = 0; lamp < FewLights::most; lamp++) {
-      // Laplace's rule of succession: what was never seen may be.
+      // Laplace's rule of succession: a lamp that was never seen may still be seen.
       float share = (tallies[slot].arrived[lamp] + 1) / (float(tallies[slot].tests[lamp]) + 2);
       if (tallies[slot].tests[lamp] == 0) share = 1;
       seen->shares[slot][lamp] = uint8_t(std::clamp(share * 255 + 0.5f, 1.0f, 255.0f));
@@ -149,7 +149,7 @@ const LampsSeen::Shares* find_lamps_seen(const LampsSeen& seen, vec3 position, v
   return seen.keys[slot] != 0 ? &seen.shares[slot] : nullptr;
 }
 
-// The punctual half of sample_light.h.
+// Implements the punctual half of sample_light.h.
 
 LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
                           const SurfacePlace& from) {
@@ -183,23 +183,24 @@ LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
 
 namespace {
 
-// The distant one's chance. Two draws, near lights and distant ones, and then one of the two: the
-// sun outshines every lamp wherever it would emit light, and indoors it rarely does, so it may not
-// crowd the lamps out.
+// Returns the distant light's chance. There are two draws, from near lights and from distant ones,
+// and then one of the two: the sun outshines every lamp wherever it would emit light, and indoors
+// it rarely does, so it may not crowd the lamps out.
 float distant_chance(float near_sum, float distant_sum) {
   if (near_sum == 0) return 1;
   if (distant_sum == 0) return 0;
   return 0.15f + 0.7f * distant_sum / (near_sum + distant_sum);
 }
 
-// Nothing was drawn, but others might have been.
+// Returns a sample for: nothing was drawn, but others might have been.
 LightSample unlucky() {
   LightSample light;
   light.share = 0;
   return light;
 }
 
-// Weighs the lamps' effects by what of them arrives there. False: nobody knows.
+// Weighs the lamps' effects by the share of each that arrives there. Returns false if no share was
+// learned.
 bool weigh_by_seen(const LightTables& tables, const LampsSeen& seen, const SurfacePlace& from,
                    LightEffects& effects) {
   const FewLights& few = tables.few_punctual;
@@ -240,7 +241,7 @@ LightSample draw_of_few(const Transport& transport, const SurfacePlace& from, ve
   return light;
 }
 
-// What a light does to a surface, as eval_effects has it.
+// Returns the effect of a light on a surface, as eval_effects has it.
 float effect_of(const LightSample& light, vec3 normal, bool through) {
   if (!(light.pdf > 0)) return 0;
   float cosine = dot(light.direction, normal);

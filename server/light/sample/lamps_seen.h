@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of few lamps the places of a scene see: in rooms most shadow rays towards the sun end at a
-// wall, and what is drawn for its unshadowed effect alone is drawn in vain. Shares of each lamp's
-// light that arrive, learned by shadow rays from random places before the first sample, weigh the
-// choice among the lamps (Vevoda, Kondapaneni, Krivanek 2018, "Bayesian online regression for
-// adaptive direct illumination sampling", learned beforehand, so that a sample remains a function
-// of its ray and seed). Every lamp keeps a chance wherever it might emit light, so nothing is
-// biased, whatever moves into the light later.
+// Learns which of few lamps the places of a scene see: in rooms most shadow rays towards the sun
+// end at a wall, and a lamp that is drawn for its unshadowed effect alone is drawn in vain. Shares
+// of each lamp's light that arrive, learned by shadow rays from random places before the first
+// sample, weigh the choice among the lamps (Vevoda, Kondapaneni, Krivanek 2018, "Bayesian online
+// regression for adaptive direct illumination sampling", learned beforehand, so that a sample
+// remains a function of its ray and seed). Every lamp keeps a chance wherever it might emit light,
+// so nothing is biased, whatever moves into the light later.
 #pragma once
 #include <array>
 #include <memory>
@@ -20,9 +20,11 @@ struct Transport;
 
 struct LampsSeen {
   using Shares =
-      std::array<uint8_t, FewLights::most>;  // of 255, at least 1; by LightTables::punctual_index
-  float cell = 0.5f;                         // metres
-  std::vector<uint64_t> keys;                // place_key, where find_place_slot() says; 0: free
+      // Shares in 255ths, at least 1; by LightTables::punctual_index
+      std::array<uint8_t, FewLights::most>;
+  float cell = 0.5f;  // side of a cell, metres
+  // place_key, at the slot that find_place_slot() returns; 0: free
+  std::vector<uint64_t> keys;
   std::vector<Shares> shares;
 };
 
@@ -32,13 +34,15 @@ struct LampsSeenSettings {
   uint64_t seed = 1;
 };
 
-// For eyes near `places` (scene coordinates). Null where the scene's lamps are one, none or too
-// many. All cores, less than a second; the same whatever the thread count.
+// Learns for eyes near `places` (scene coordinates). Returns null if the scene's lamps are one,
+// none or too many. Takes less than a second on all cores; the result is the same whatever the
+// thread count.
 std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
                                                   std::span<const vec3> places,
                                                   const LampsSeenSettings& settings = {});
 
-// Null: nobody has been there. `normal`: the geometric one, on the side that is looked at.
+// Returns the lamps' shares at a place, or null if no walk came there. `normal`: the geometric one,
+// on the side that is looked at.
 const LampsSeen::Shares* find_lamps_seen(const LampsSeen& seen, vec3 position, vec3 normal);
 
 }  // namespace wellspring::light

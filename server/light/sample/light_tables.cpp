@@ -37,7 +37,7 @@ FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const
 
 void eval_effects(const FewLights& f, vec3 place, vec3 normal, bool through, const LobeHint& lobe,
                   LightEffects& effects) {
-  // A share whatever the lobe says keeps a chance for what it does not know of.
+  // A share that does not depend on the lobe keeps a chance for what the lobe leaves out.
   constexpr float unknown = 0.05f;
   const float diffuse = lobe.diffuse + unknown * (lobe.diffuse + lobe.specular);
   const float alpha2 = lobe.alpha * lobe.alpha, upright = dot(normal, lobe.view);

@@ -13,7 +13,7 @@ using Node = LightTree::Node;
 
 constexpr float below_one = 0x1.fffffep-1f;
 
-// Upper bounds of what a node's children send to a surface there, but for a constant (section 5.2).
+// Holds upper bounds of what a node's children send to a surface, but for a constant (section 5.2).
 struct Importances {
   alignas(Lanes) float of[lane_count];
   float sum;
@@ -25,7 +25,7 @@ Importances importances(const Node& node, vec3 place, vec3 normal) {
   Lanes distance2 = x * x + y * y + z * z;
   LaneMask inside = distance2 <= node.radius * node.radius;
   Lanes distance = lanes_sqrt(lanes_max(distance2, all_lanes(1e-20f))), inverse = 1 / distance;
-  // Half the angle under which the sphere is seen.
+  // The sphere is seen under twice this angle.
   Lanes sin_seen = lanes_min(node.radius * inverse, one);
   Lanes cos_seen = lanes_sqrt(1 - sin_seen * sin_seen);
   LaneMask reaches = distance - node.radius <= node.range;
@@ -39,7 +39,7 @@ Importances importances(const Node& node, vec3 place, vec3 normal) {
   Lanes cosine = -(x * node.axis_x + y * node.axis_y + z * node.axis_z) * inverse;
   cosine = node.two_sided > zero ? lanes_abs(cosine) : cosine;
   Lanes sine = lanes_sqrt(lanes_max(1 - cosine * cosine, zero));
-  // The angle beyond the spread, less the angle of the sphere.
+  // `emits` is the cosine of the angle beyond the spread, less the angle of the sphere.
   Lanes c = cosine * node.cos_spread + sine * node.sin_spread;
   Lanes s = sine * node.cos_spread - cosine * node.sin_spread;
   Lanes emits = c * cos_seen + s * sin_seen;
@@ -103,18 +103,20 @@ float pick_light_probability(const LightTree& tree, vec3 place, vec3 normal, uin
   return probability;
 }
 
-// Building a LightTree from the top: each set of lights is split where the halves together cover
-// the least area and angle, weighted by strength (Conty Estevez and Kulla 2018, section 4), and the
+// Builds a LightTree from the top: each set of lights is split where the halves together cover the
+// least area and angle, weighted by strength (Conty Estevez and Kulla 2018, section 4), and the
 // costliest part again until a node has all its children.
 
 namespace {
 
 constexpr int buckets = 12;
-constexpr int deepest_fitted = 48;  // below it halves are equal, so no input makes a long tree
+// Below this depth halves are equal, so no input makes a long tree
+constexpr int deepest_fitted = 48;
 
 float angle_of(float cosine) { return std::acos(glm::clamp(cosine, -1.0f, 1.0f)); }
 
-// The smallest cone around two cones, each an axis and an angle (algorithm 1 of the paper).
+// Makes `a` the smallest cone around two cones, each an axis and an angle (algorithm 1 of the
+// paper).
 void join_cones(LightBounds& a, const LightBounds& b) {
   float spread_a = angle_of(a.cos_spread), spread_b = angle_of(b.cos_spread);
   vec3 axis_a = a.axis, axis_b = b.axis;
@@ -128,7 +130,7 @@ void join_cones(LightBounds& a, const LightBounds& b) {
     a.cos_spread = std::cos(spread_a);
     return;
   }
-  // A little wider, for what rounding cuts off.
+  // The cone is a little wider, for what rounding cuts off.
   float spread = 0.5f * (spread_a + between + spread_b) + 1e-3f;
   vec3 side = axis_b - axis_a * dot(axis_a, axis_b);
   float length2 = dot(side, side);
@@ -155,7 +157,7 @@ LightBounds join(const LightBounds& a, const LightBounds& b) {
   return all;
 }
 
-// Strength times solid angle times area: what a set costs (section 4.2).
+// Returns what a set costs: strength times solid angle times area (section 4.2).
 float cost_of(const LightBounds& b) {
   float spread = angle_of(b.cos_spread);
   float most = std::min(spread + angle_of(b.cos_reach), pi);
@@ -175,8 +177,8 @@ struct Builder {
   std::vector<uint32_t> order;
   LightTree& tree;
 
-  // Where to part order[begin, end): along the axis and plane that cost least, or in the middle of
-  // the longest axis.
+  // Parts order[begin, end) along the axis and plane that cost least, or in the middle of the
+  // longest axis; returns where.
   uint32_t split(uint32_t begin, uint32_t end, int depth) {
     Bounds box;
     for (uint32_t i = begin; i < end; i++) {
@@ -223,12 +225,12 @@ struct Builder {
     return uint32_t(half - order.begin());
   }
 
-  // Lights order[begin, end) as a child of some node.
+  // Holds lights order[begin, end) as a child of some node.
   struct Part {
     uint32_t begin, end;
     int depth;  // splits from the root
     LightBounds bounds;
-    float cost = 0;  // of leaving it whole
+    float cost = 0;  // cost of leaving it whole
   };
 
   Part part_of(uint32_t begin, uint32_t end, int depth) const {
@@ -265,7 +267,8 @@ struct Builder {
       if (!(costliest->cost > 0)) break;
       Part part = *costliest;
       uint32_t middle = split(part.begin, part.end, part.depth);
-      // Neighbours stay so: a number that is well spread is so over places too.
+      // Neighbours remain neighbours: a number that is well spread is then well spread over places,
+      // too.
       *costliest = part_of(part.begin, middle, part.depth + 1);
       parts.insert(costliest + 1, part_of(middle, part.end, part.depth + 1));
     }

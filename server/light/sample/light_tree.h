@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A choice among many lights by how much each may send to a place: a tree over their places,
+// Chooses among many lights by how much each may send to a place: a tree over their places,
 // directions and strengths, walked from the root by the children's importance (Conty Estevez and
 // Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting", sections 4 and 5,
-// without the splitting). Eight children a node: their importances are computed side by side, and
-// few lights, one node, are all asked one by one. Probabilities are exact. A light that may send
-// anything is picked with a chance above 0; one that provably sends nothing (behind the surface,
-// beyond its cone or reach) is not picked.
+// without the splitting). A node has eight children: their importances are computed side by side,
+// and few lights, one node, are all asked one by one. Probabilities are exact. A light that may
+// send anything is picked with a chance above 0; one that provably sends nothing (behind the
+// surface, beyond its cone or reach) is not picked.
 //
 // Without a tree the choice is by strength alone.
 #pragma once
@@ -18,14 +18,14 @@
 
 namespace wellspring::light {
 
-// What is known of a light from far away.
+// Bounds a light as seen from far away.
 struct LightBounds {
   vec3 low{0}, high{0};
   vec3 axis{0, 1, 0};    // main direction of its light, unit
   float cos_spread = 1;  // directions of full strength lie within this of the axis; -1: all
-  float cos_reach = 0;   // beyond the spread it fades, and ends at this angle
+  float cos_reach = 0;   // beyond the spread light fades, and ends at this angle
   float strength = 0;    // radiant intensity along the axis, W/sr; not above 0 or not finite: dark
-  float range = std::numeric_limits<float>::infinity();  // it ends at this distance
+  float range = std::numeric_limits<float>::infinity();  // light ends at this distance
   bool two_sided = false;                                // emits light along -axis too
 };
 
@@ -33,8 +33,8 @@ enum class LightChoice : uint8_t { by_strength, by_place };
 
 struct LightTree {
   static constexpr uint32_t no_leaf = 0xffffffffu;
-  // Its children: spheres around lights, and cones of their directions. Strength 0 where there is
-  // none.
+  // Holds its children: spheres around lights, and cones of their directions. An empty lane has
+  // strength 0.
   struct Node {
     Lanes x{}, y{}, z{}, radius{};
     Lanes axis_x{}, axis_y{}, axis_z{};
@@ -47,10 +47,10 @@ struct LightTree {
   };
   std::vector<Node> nodes;        // the root first
   std::vector<uint32_t> leaf_of;  // each light's node * lane_count + lane; no_leaf: dark
-  // Where the choice is by strength alone: lights that are not dark, each `leaf_of` its place here.
+  // If the choice is by strength alone: lights that are not dark, each `leaf_of` its place here.
   AliasTable strengths;
   std::vector<uint32_t> emitting;
-  double total = 0;  // strength of all
+  double total = 0;  // sum of all strengths
   bool empty() const { return !(total > 0); }
 };
 
@@ -59,12 +59,12 @@ LightTree make_light_tree(std::span<const LightBounds> lights, LightChoice choic
 struct LightPick {
   uint32_t index = 0;
   float probability = 0;  // 0: no light reaches the place
-  float u = 0;            // what is left of the number: uniform again in [0, 1)
+  float u = 0;            // the rest of the number: uniform again in [0, 1)
 };
-// For a place on a surface that is lit from the side of `normal`; normal 0: from all sides. The
-// tree must not be empty. u in [0, 1).
+// Picks a light for a place on a surface that is lit from the side of `normal`; normal 0: from all
+// sides. The tree must not be empty. u in [0, 1).
 LightPick pick_light(const LightTree& tree, vec3 place, vec3 normal, float u);
-// The probability with which that place picks light `index`.
+// Returns the probability with which that place picks light `index`.
 float pick_light_probability(const LightTree& tree, vec3 place, vec3 normal, uint32_t index);
 
 }  // namespace wellspring::light

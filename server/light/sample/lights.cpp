@@ -16,7 +16,8 @@
 namespace wellspring::light {
 namespace {
 
-// Mean emission over a triangle by a fixed pattern of look-ups, more where its texture is finer.
+// Returns the mean emission over a triangle by a fixed pattern of look-ups, more for a finer
+// texture.
 vec3 mean_emission(const World& world, const EmitterTriangle& e, int look_ups) {
   vec3 sum{0};
   Ray ray;
@@ -38,7 +39,7 @@ vec3 mean_emission(const World& world, const EmitterTriangle& e, int look_ups) {
   return sum / float(look_ups);
 }
 
-// Texels of the emission's picture that a triangle covers.
+// Returns the number of texels of the emission's picture that a triangle covers.
 float texels_covered(const Scene& scene, const Mesh& mesh, const TextureRef& reference,
                      uvec3 corner) {
   if (reference.texture < 0 || mesh.uv[reference.uv_set].empty()) return 1;
@@ -54,7 +55,7 @@ float texels_covered(const Scene& scene, const Mesh& mesh, const TextureRef& ref
   return 0.5f * std::abs(a.x * b.y - a.y * b.x);
 }
 
-// The emission at one place of a uniform emitter, or an estimate of its mean.
+// Adds an instance's triangles with the emission of a uniform emitter, or an estimate of its mean.
 void gather_instance(const World& world, uint32_t instance, LightTables& tables,
                      std::vector<float>& power) {
   const Mesh& mesh = world.mesh_of(instance);
@@ -64,7 +65,7 @@ void gather_instance(const World& world, uint32_t instance, LightTables& tables,
                  !tables.plan.materials[size_t(mesh.material)].emission_varies;
   const TextureRef& picture =
       material.unlit ? material.base_color_texture : material.emission_texture;
-  // Big pictures on big meshes: a bounded amount of work in all.
+  // The budget bounds the work for big pictures on big meshes.
   float budget = 4e6f / float(std::max<size_t>(mesh.triangles.size(), 1));
   for (uint32_t t = 0; t < mesh.triangles.size(); t++) {
     EmitterTriangle e;
@@ -107,8 +108,8 @@ float power_of(const PunctualLight& light, float scene_radius) {
   return 0;
 }
 
-// The share of the first of two kinds of light; neither is starved, since power says little of one
-// place.
+// Returns the share of the first of two kinds of light; neither is starved, since power says little
+// about one place.
 float share_of(double first, double second) {
   if (!(first > 0)) return 0;
   if (!(second > 0)) return 1;
@@ -130,7 +131,7 @@ TransportPlan make_plan(const World& world) {
 
 namespace {
 
-// What is chosen among, and how likely each is: all that emit light of the sources.
+// Makes the choices among all sources that emit light, each with its probability.
 void choose_sources(const Scene& scene, const EmittingSources& emitting,
                     std::span<const PunctualLight> more, LightTables& tables) {
   using enum TransportPart;
@@ -256,7 +257,7 @@ std::vector<uint8_t> find_lamp_parts(const Scene& scene) {
 
 namespace {
 
-constexpr size_t most_picture_cells = size_t(1) << 20;  // of all emitters together
+constexpr size_t most_picture_cells = size_t(1) << 20;  // cells of all emitters together
 
 LightBounds bounds_of(const PunctualLight& light) {
   LightBounds b;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All light sources of a world, ready to be sampled: emissive triangles, punctual lights,
-// environment. Built once per scene (moving meshes do not emit).
+// Holds all light sources of a world, ready to be sampled: emissive triangles, punctual lights,
+// environment. They are built once per scene (moving meshes do not emit).
 #pragma once
 #include <atomic>
 #include <memory>
@@ -22,61 +22,64 @@ struct TransportPlan;    // light/transport_plan.h
 
 struct Lights {
   std::shared_ptr<const LightTables> tables;
-  // NaN, infinite or negative samples that were dropped instead of reaching a Frame.
+  // Number of NaN, infinite or negative samples that were dropped instead of reaching a Frame.
   std::shared_ptr<std::atomic<uint64_t>> bad_samples;
   // Diffuse light of what stands still. Walks of techniques that keep light end on `known`, which
-  // they prepare where there is none; samples of techniques with `uses_maps` tell the diffuse light
-  // of a first surface in multiples of `maps`. Null: none is known.
+  // they prepare if it is null; samples of techniques with `uses_maps` give the diffuse light of a
+  // first surface in multiples of `maps`. Null: there is no such map.
   std::shared_ptr<const IlluminationMap> known = nullptr, maps = nullptr;
-  // Which of few lamps places see; null where nobody has learned it.
+  // Shares of few lamps' light that places see; null if they were not learned.
   std::shared_ptr<const LampsSeen> lamps_seen = nullptr;
-  // Of techniques that draw light anew for each pass; null until one begins.
+  // Passes of techniques that draw light anew for each pass; null until one begins.
   std::shared_ptr<const InstantPass> pass = nullptr;
   std::shared_ptr<const SplatPass> splat_pass = nullptr;
 };
 
-// `more`: lights beside the scene's, as they are at a moment.
+// Makes the lights. `more`: lights beside the scene's, as they are at a moment.
 Lights make_lights(const World& world, std::span<const PunctualLight> more = {});
-// By another plan than the scene's own: tests force parts on to prove that leaving them out changes
-// nothing. Leaving out what matters is what one would expect it to be.
+// Makes them by another plan than the scene's own: tests force parts on to prove that leaving them
+// out changes nothing. If a plan leaves out what matters, its light is missing.
 Lights make_lights(const World& world, const TransportPlan& plan,
                    std::span<const PunctualLight> more = {});
-TransportPlan make_plan(const World& world);  // of its scene and what moves in it
+TransportPlan make_plan(const World& world);  // makes the plan of its scene and of what moves in it
 
-// The tables of fewer or darker sources than those of `all`, which was made while all lamps were
-// full.
+// Returns the tables of fewer or darker sources than those of `all`, which was made while all lamps
+// were full.
 std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
                                          const EmittingSources& emitting);
 
-// Those of what belongs to no lamp, then of each lamp alone.
+// Returns the tables of the light that belongs to no lamp, then of each lamp alone.
 std::vector<std::shared_ptr<const LightTables>> make_lamp_tables(const LightTables& all,
                                                                  const Scene& scene);
-// Of each of the scene's materials, which of those its own light belongs to.
+// Returns for each of the scene's materials the layer that its own light belongs to: 0 for no lamp,
+// else lamp + 1.
 std::vector<uint8_t> find_lamp_parts(const Scene& scene);
 
-// What a choice among lights needs to know of emitting triangles and punctual lights.
+// Makes the choices among emitting triangles and punctual lights from their bounds and powers.
 
-// `power[i]` of emitters[i], both sides counted; those without are never picked.
+// Makes the tree. `power[i]` belongs to emitters[i], both sides counted; emitters without power are
+// never picked.
 LightTree make_emitter_tree(std::span<const EmitterTriangle> emitters, std::span<const float> power,
                             LightChoice choice);
 
-// Few punctual lights are asked one by one for what they send to a place, which knows each better
-// than a tree does; more are chosen from near_choice and distant_choice.
+// Few punctual lights are asked one by one for what they send to a place, which is more exact than
+// a tree; of more, one is chosen from near_choice and distant_choice.
 void add_punctual_choice(LightTables& tables);
 
-// Makes `emitter.picture` where its emission varies much; `texels`: of the picture on the triangle.
+// Makes `emitter.picture` if its emission varies much; `texels`: number of the picture's texels on
+// the triangle.
 void add_emission_picture(const World& world, float texels, EmitterTriangle& emitter,
                           LightTables& tables);
 
-// How brightly the sources of a scene emit light while its lamps are switched or dimmed.
+// Finds how brightly the sources of a scene emit light while its lamps are switched or dimmed.
 
-// How brightly it does, times the scene's own light: 0 to 1.
+// Holds brightness as a factor of the scene's own light: 0 to 1.
 struct EmittingSources {
-  std::vector<float> materials, lights;  // of each of the scene's
+  std::vector<float> materials, lights;  // one for each of the scene's materials and lights
   bool sky = true;
 };
-EmittingSources find_emitting(const World& world);  // as its lamps are
-// That lamp alone; -1: all that belongs to no lamp.
+EmittingSources find_emitting(const World& world);  // with its lamps as they are
+// Returns that lamp's sources alone; -1: all that belongs to no lamp.
 EmittingSources find_emitting_of(const Scene& scene, int lamp);
 
 }  // namespace wellspring::light

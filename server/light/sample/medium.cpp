@@ -34,11 +34,11 @@ float size_of(const World& world, uint32_t instance) {
   return length(box.high - box.low);
 }
 
-// Faces of one boundary, by material.
+// Holds faces of one boundary, by material.
 struct Crossing {
   int material;
   bool enters = false, leaves = false;
-  uint32_t instance;  // that is entered, or else left
+  uint32_t instance;  // instance that is entered, or else left
 };
 struct Crossings {
   static constexpr int most = 8;
@@ -46,7 +46,7 @@ struct Crossings {
   int count = 0;
 };
 
-// One more face of a boundary; a ray between two triangles of one face crosses it once.
+// Adds one more face of a boundary; a ray between two triangles of one face crosses it once.
 void add_crossing(Crossings& all, const Surface& surface, uint32_t instance) {
   int i = 0;
   while (i < all.count && all.list[i].material != surface.material) i++;
@@ -56,8 +56,8 @@ void add_crossing(Crossings& all, const Surface& surface, uint32_t instance) {
   if (surface.front) all.list[i].instance = instance;
 }
 
-// What coincides with a solid's surface as far as a ray's next origin would pass over it. True: an
-// opaque face is there, and `hit` is now on it.
+// Adds the faces that coincide with a solid's surface, as far as a ray's next origin would pass
+// over them. Returns true if an opaque face is there; `hit` is then on it.
 bool find_coincident(const World& world, const Surface& surface, bool pass_opaque, Hit& hit,
                      Crossings& all) {
   vec3 way = -surface.geometric_normal;
@@ -65,7 +65,7 @@ bool find_coincident(const World& world, const Surface& surface, bool pass_opaqu
   float before = std::min(step, position_error(surface));
   std::array<Hit, 2 * Crossings::most> near;
   int count = world.find_near(surface.position, way, before, step, near.data(), int(near.size()));
-  // Their order is the tree's: results may not hang on it.
+  // They come in the order of the tree, on which results may not depend.
   std::sort(near.begin(), near.begin() + count, [](const Hit& a, const Hit& b) {
     return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
   });
@@ -88,8 +88,9 @@ bool find_coincident(const World& world, const Surface& surface, bool pass_opaqu
   return false;
 }
 
-// A body that ends where another of its material begins is no boundary, nor is one met on its edge.
-// Of several solids entered at once the smaller is taken as the inner one.
+// Crosses a boundary. A body that ends where another of its material begins is no boundary, nor is
+// one met on its edge. If several solids are entered at once, the smaller is taken as the inner
+// one.
 void cross(const World& world, Crossings& all, Media& media) {
   Crossing* end = std::remove_if(all.list, all.list + all.count,
                                  [](const Crossing& c) { return c.enters && c.leaves; });
@@ -119,7 +120,8 @@ Surface meet(const Transport& transport, const Ray& ray, bool pass_opaque, Hit& 
   return surface;
 }
 
-// What a ray from `place` leaves without having entered it, the innermost first.
+// Returns the solids that a ray from `place` leaves without having entered them, the innermost
+// first.
 MediumStack find_left(const Transport& transport, vec3 place, vec3 direction) {
   constexpr int most_surfaces = 256;
   MediumStack left;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where light may pass straight through thin glass: shadow rays elsewhere only ask whether anything
-// is in between.
+// Finds where light may pass straight through thin glass: shadow rays elsewhere only ask whether
+// anything is in between.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -13,7 +13,7 @@
 
 namespace wellspring::light {
 
-// What the shading loop wants to know of a material before it looks at any place of it.
+// Holds what the shading loop asks about a material before it looks at any place of it.
 
 struct MaterialTraits {
   const DielectricAlbedo* albedo = nullptr;  // null: nothing in use is made of it
@@ -22,7 +22,7 @@ struct MaterialTraits {
   MetalDemodulation metal = MetalDemodulation::none;
 };
 
-// Eight a group, the last filled up with its last one.
+// Holds boxes in groups of eight; the last group is filled up with its last box.
 struct PaneBoxes {
   struct Group {
     Lanes low[3], high[3];
@@ -30,20 +30,20 @@ struct PaneBoxes {
   std::vector<Group> groups;
 };
 
-// Boxes around the instances whose material may be a pane, a few in one where there are many; one
-// without end where such things move.
+// Returns boxes around the instances whose material may be a pane, a few in one box if there are
+// many; a single box without end if such instances move.
 PaneBoxes make_pane_boxes(const World& world, const std::vector<MaterialTraits>& materials);
 
-// Does the ray meet one of the boxes before its t_max?
+// Returns whether the ray meets one of the boxes before its t_max.
 bool may_cross_pane(const PaneBoxes& boxes, const Ray& ray);
 
-// Where the solids of a scene are (light/sample/medium.h).
+// Finds the bounds of a scene's solids (light/sample/medium.h).
 
-// Boxes of the solids that stand still, for places that ask whether they are in one.
+// Holds boxes of the solids that stand still, for places that ask whether they are in one.
 struct SolidBounds {
   Bounds all;
   std::vector<Bounds> each;
-  uint64_t key = 0;  // no other has it
+  uint64_t key = 0;  // unique
 };
 Bounds bounds_of(const PlacedMesh& placed);  // scene coordinates
 SolidBounds find_solid_bounds(const World& world, const TransportPlan& plan);

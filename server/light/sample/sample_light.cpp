@@ -16,7 +16,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 constexpr float below_one = 0x1.fffffep-1f;
 
-// Radiance of an emitter that is not the same all over, at one place of it.
+// Returns the radiance of an emitter that is not the same all over, at one place of it.
 vec3 emission_at(const World& world, const EmitterTriangle& e, const Ray& ray, float distance,
                  vec2 barycentric) {
   Hit hit;
@@ -37,7 +37,7 @@ LightSample sample_emitter(const Transport& transport, const SurfacePlace& from,
   const LightTables& tables = transport.tables;
   LightPick pick = pick_light(tables.emitter_choice, from.position, normal, u.x);
   if (!(pick.probability > 0)) return {};
-  // A choice among many uses the number up.
+  // A choice among many leaves too few digits of the number.
   if (pick.probability < 0x1p-10f) pick.u = sampler.next();
   const EmitterTriangle& e = tables.emitters[pick.index];
   PicturePlace at{sample_triangle({pick.u, u.y}), 1};
@@ -121,10 +121,10 @@ float sample_sky_pdf(const LightTables& tables, vec3 direction) {
 
 namespace {
 
-// What panes that a ray passed let through together.
+// Returns what the panes that a ray passed let through together.
 vec3 pass_panes(const Transport& transport, const Ray& ray, PanesPassed& panes) {
   const World& world = transport.world;
-  // Told in the order of the tree: results may not hang on it.
+  // They come in the order of the tree, on which results may not depend.
   std::sort(panes.hits, panes.hits + panes.count, [](const Hit& a, const Hit& b) {
     return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
   });
@@ -140,7 +140,7 @@ vec3 pass_panes(const Transport& transport, const Ray& ray, PanesPassed& panes) 
   return arrives;
 }
 
-// The same for any number of panes, one after the other.
+// Returns the same for any number of panes, one after the other.
 vec3 step_through_panes(const World& world, Ray ray) {
   const bool ends = std::isfinite(ray.t_max);
   const vec3 way = ray.direction, end = ray.origin + way * (ends ? ray.t_max : 0.0f);
@@ -171,7 +171,7 @@ vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
   ray.origin = offset_origin(from, light.direction);
   ray.direction = light.direction;
   if (std::isfinite(light.distance)) {
-    // As long as it is: no ray needs a unit direction to ask what is in between.
+    // The direction is as long as the way: no ray needs a unit direction to ask what is in between.
     ray.direction = light.target - ray.origin;
     ray.t_max = 1;
     if (!(dot(ray.direction, light.direction) > 0)) return vec3(1);
@@ -194,14 +194,15 @@ vec3 eval_visibility(const Transport& transport, Ray ray) {
 
 namespace {
 
-// Light of a sample is finite and not negative. Bit by bit: one branch for all.
+// Returns whether light of a sample is finite and not negative. Works bit by bit: one branch for
+// all.
 bool is_light(const Sample& sample) {
   constexpr float most = std::numeric_limits<float>::max();
   static_assert(offsetof(Sample, rest) == offsetof(Sample, albedo) + 6 * sizeof(float));
   const vec3 sum = sample.radiance();
   const Lanes first = load_lanes(&sample.albedo.x);  // all but the last number of `rest`
   const Lanes others = {sample.rest.z, sum.x, sum.y, sum.z, 0, 0, 0, 0}, zero{};
-  // NaN is neither.
+  // NaN is neither above nor below.
   LaneMask fine = (first >= zero) & (first <= most) & (others >= zero) & (others <= most);
   return negative_lanes(fine) == 0xff;
 }
@@ -217,9 +218,9 @@ void finish_samples(const Lights& lights, const TransportSettings& settings,
       sample.flags &= uint8_t(~sample_sure);
     }
     if (!(settings.clamp > 0)) continue;
-    // What owes nothing to chance, such as a lamp that is looked at, is as bright as it is.
+    // Light that owes nothing to chance, such as a lamp that is looked at, keeps its brightness.
     vec3 sure = sample.flags & sample_sure ? sample.rest : sample.glow;
-    // Nor does what a map knows.
+    // Nor is a map's light clamped.
     vec3 mapped = sample.flags & sample_mapped ? min(sample.smooth, vec3(1)) : vec3(0);
     vec3 chance = sample.radiance() - sure - sample.albedo * sample.known * mapped;
     float largest = max_component(chance), share = settings.clamp / largest;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What light is carried through: a world, its lights and what is known of both.
+// Holds what light is carried through: a world, its lights and the light that is kept of both.
 #pragma once
 #include "base/layers.h"
 
@@ -13,13 +13,15 @@ struct IlluminationMap;  // light/sample/illumination_map.h
 struct LampsSeen;        // light/sample/lamps_seen.h
 struct LightTables;      // light/sample/light_tables.h
 
-// Everything a sample needs to know of what stays the same during a call.
+// Holds everything a sample needs that stays the same during a call.
 struct Transport {
   const World& world;
   const LightTables& tables;
-  const IlluminationMap* known = nullptr;  // on which walks end, where a technique may use it
-  const LampsSeen* lamps = nullptr;        // what weighs the choice among few lamps, where known
-  const IlluminationMap* maps = nullptr;   // by which samples tell the diffuse light they find
+  const IlluminationMap* known = nullptr;  // light on which walks end, if a technique may use it
+  // Shares that weigh the choice among few lamps, if learned
+  const LampsSeen* lamps = nullptr;
+  // Light in whose multiples samples give the diffuse light that they find
+  const IlluminationMap* maps = nullptr;
 };
 
 }  // namespace wellspring::light

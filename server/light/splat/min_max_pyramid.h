@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Min-max mipmaps of a picture (Nichols and Wyman 2009, section 3.2): of its depth, of the three
-// components of its unit normals, and, which the paper lacks, of the distance of each pixel's
+// Makes min-max mipmaps of a picture (Nichols and Wyman 2009, section 3.2): of its depth, of the
+// three components of its unit normals, and, which the paper lacks, of the distance of each pixel's
 // tangent plane from the eye. A plane has one such distance however steeply it is looked at, so
 // that its range of depth alone is no discontinuity.
 #pragma once
@@ -14,16 +14,15 @@
 
 namespace wellspring::light {
 
-// What light falls on: the pixels of a view, row by row, as a visibility pass or rays found them.
-// Borrowed arrays, each of width * height numbers.
+// Describes the pixels of a view that light falls on, row by row, as a visibility pass or rays
+// found them. The arrays are borrowed, each of width * height numbers.
 
 struct SplatPixels {
   View view;
-  vec2 offset{0.5f};  // of the sampling place in its pixel
-  const float* depth =
-      nullptr;  // along the viewing axis; infinite, NaN, <= 0: nothing is lit there
+  vec2 offset{0.5f};             // sampling place in its pixel
+  const float* depth = nullptr;  // along the viewing axis; infinite, NaN, <= 0: nothing is lit
   const float *nx = nullptr, *ny = nullptr, *nz = nullptr;  // unit normal, towards the eye
-  const vec3* position = nullptr;  // scene coordinates, where known better than by depth; or null
+  const vec3* position = nullptr;  // scene coordinates, if more exact than by depth; or null
 };
 
 inline bool is_lit(const SplatPixels& pixels, size_t i) {
@@ -38,14 +37,14 @@ inline vec3 place_from_eye(const SplatPixels& pixels, const PixelGrid& grid, int
   return (grid.corner + grid.right * float(x) + grid.down * float(y)) * pixels.depth[i];
 }
 
-// Least depth, nx, ny, nz of a square of pixels, then greatest, negated; so of its planes. Pixels
-// where nothing is lit have infinite depth and nothing else: `low_high[0]` is infinite where there
-// are no others, `low_high[4]` is -infinity where there is one of them.
+// Holds the least depth, nx, ny, nz of a square of pixels, then the greatest, negated; and the same
+// of its planes. Pixels where nothing is lit have infinite depth and nothing else: `low_high[0]` is
+// infinite if there are no others, `low_high[4]` is -infinity if there is one of them.
 struct MinMaxCell {
   float low_high[lane_count];
   float plane_low, plane_high;
 };
-// Of both.
+// Returns the cell of both squares together.
 inline MinMaxCell join_cells(const MinMaxCell& a, const MinMaxCell& b) {
   MinMaxCell both;
   store_lanes(both.low_high, lanes_min(load_lanes(a.low_high), load_lanes(b.low_high)));
@@ -56,10 +55,10 @@ inline MinMaxCell join_cells(const MinMaxCell& a, const MinMaxCell& b) {
 
 struct MinMaxLevel {
   int columns = 0, rows = 0;
-  size_t first = 0;  // in `cells`
+  size_t first = 0;  // index of its first cell in `cells`
 };
-// Level k has squares of 2^k pixels; level 0, the picture, is not kept. The last column and row may
-// stick out of the picture.
+// Holds levels of squares: level k has squares of 2^k pixels; level 0, the picture, is not kept.
+// The last column and row may stick out of the picture.
 struct MinMaxPyramid {
   std::vector<MinMaxLevel> levels;
   RawVector<MinMaxCell> cells;
@@ -69,18 +68,19 @@ struct MinMaxPyramid {
   }
 };
 
-// A pixel alone.
+// Returns the cell of one pixel alone.
 MinMaxCell look_at_pixel(const SplatPixels& pixels, const PixelGrid& grid, int x, int y);
 
-// The coarsest level of a picture by the settings, 0: pixels alone, and the finest.
+// Returns the coarsest level of a picture by the settings, 0: pixels alone; then the finest.
 int coarsest_level(const SplatSettings& settings, int width, int height);
 inline int finest_level(const SplatSettings& settings, int coarsest) {
   return settings.levels < 0 || settings.levels > coarsest ? 0 : coarsest - settings.levels;
 }
-// Of level `coarsest` and those below. All cores.
+// Makes level `coarsest` and those below. Runs on all cores.
 void make_min_max_pyramid(const SplatPixels& pixels, int coarsest, MinMaxPyramid& pyramid);
 
-// Depth and normals vary more than one subsplat may hide. Of a cell with something lit.
+// Returns whether depth and normals vary more than one subsplat may hide, for a cell with something
+// lit.
 inline bool is_discontinuous(const MinMaxCell& cell, const SplatSettings& settings) {
   const float* v = cell.low_high;
   const float most = settings.normal_threshold;

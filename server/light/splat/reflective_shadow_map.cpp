@@ -22,7 +22,7 @@ float punctual_power(const PunctualLight& light, float radius) {
   float strength = luminance(light.intensity);
   switch (light.type) {
     case PunctualType::point: return 4 * pi * strength;
-    // The mean of the fall-off between both cones, about.
+    // This is about the mean of the fall-off between both cones.
     case PunctualType::spot:
       return 2 * pi * strength *
              (1 - 0.5f * (std::cos(light.inner_cone) + std::cos(light.outer_cone)));
@@ -48,7 +48,7 @@ std::vector<SplatSource> make_all_splat_sources(const Transport& transport) {
     if (eval_source_power(transport, source) > 0) sources.push_back(source);
   };
   for (size_t i = 0; i < tables.punctual.size(); i++) {
-    // Of the scene's list, whichever lamps are on.
+    // The number is the light's in the scene's list, whichever lamps are on.
     uint64_t number = i < tables.punctual_index.size() ? tables.punctual_index[i] : i;
     add(make_splat_source(tables.punctual[i], punctual_ids + number));
   }
@@ -93,8 +93,8 @@ float eval_source_power(const Transport& transport, const SplatSource& source) {
 
 namespace {
 
-// Changes smoothly with the direction but near straight up and down, so that rays of a source that
-// turns do not jump.
+// Makes axes that change smoothly with the direction but near straight up and down, so that rays of
+// a source that turns do not jump.
 void make_steady_axes(vec3 axis, vec3& along, vec3& across) {
   vec3 side = cross(vec3(0, 1, 0), axis);
   float length2 = dot(side, side);
@@ -108,7 +108,7 @@ bool is_parallel(const SplatSource& source) {
                                                  source.light.type == PunctualType::directional);
 }
 
-// As seen along the light: across it, and along.
+// Returns the bounds as seen along the light: x and y across it, z along.
 Bounds see_from_light(const SourceAim& aim, Bounds bounds, const Bounds& moving) {
   bounds.low = min(bounds.low, moving.low), bounds.high = max(bounds.high, moving.high);
   Bounds seen;
@@ -121,7 +121,8 @@ Bounds see_from_light(const SourceAim& aim, Bounds bounds, const Bounds& moving)
   return seen;
 }
 
-// A rectangle before the scene, across the light, as large as what reflects light needs.
+// Fits a rectangle before the scene, across the light, as large as the surfaces that reflect light
+// need.
 void fit_window(const Transport& transport, SourceAim& aim) {
   const Bounds moving = transport.world.moving_bounds();
   const Bounds lit = see_from_light(aim, transport.tables.lit_bounds, moving);
@@ -135,7 +136,8 @@ void fit_window(const Transport& transport, SourceAim& aim) {
   aim.height = aim.across * size.y;
 }
 
-// Shirley and Chiu 1997: square to disc, area kept, neighbours stay neighbours. u: -1 to 1.
+// Maps a square to a disc (Shirley and Chiu 1997): area is kept, neighbours stay neighbours. u: -1
+// to 1.
 vec2 to_disc(vec2 u) {
   if (u.x == 0 && u.y == 0) return vec2(0);
   bool wide = std::abs(u.x) > std::abs(u.y);
@@ -280,11 +282,11 @@ void aim_at_cell(const SourceAim& aim, const MapCell& cell, Sampler& sampler, So
 namespace {
 
 constexpr int most_texels = 1 << 20;
-constexpr float least_cosine = 0.1f;  // of a texel's area
+constexpr float least_cosine = 0.1f;  // limit for a texel's area
 // Metal rougher than that reflects about as a matte surface does.
 constexpr float matte_alpha = 0.09f;
 
-// Sources' shares of all texels; the sum is 1, or 0 where nothing emits light.
+// Computes the sources' shares of all texels; the sum is 1, or 0 if nothing emits light.
 void share_texels(const Transport& transport, std::span<const SplatSource> sources,
                   std::vector<double>& shares) {
   shares.clear();
@@ -294,7 +296,7 @@ void share_texels(const Transport& transport, std::span<const SplatSource> sourc
     sum += shares.back();
     roots += std::sqrt(shares.back());
   }
-  // Half by power. A sun outshines every lamp, but not where its light does not reach.
+  // Half is shared by power. A sun outshines every lamp, but not where its light does not reach.
   for (double& share : shares)
     share = sum > 0 ? 0.5 * share / sum + 0.5 * std::sqrt(share) / roots : 0;
 }
@@ -340,7 +342,7 @@ void add_map(const Transport& transport, const SplatSource& source, uint32_t ind
   MapShape shape = shape_map(transport, source, texels);
   ReflectiveMap added{index, uint32_t(map.aims.size()), 0, shape.faces, shape.rows, shape.columns};
   added.count = uint32_t(shape.faces * shape.rows * shape.columns);
-  // One that was chosen by chance stands for those that were not.
+  // A texel that was chosen by chance stands for those that were not.
   float worth = wanted < 1 ? float(1 / wanted) : 1 / float(added.count);
   map.cells.resize(size_t(added.first) + added.count);
   SourceAim aim = aim_source(transport, source);
@@ -366,7 +368,7 @@ vec3 matte_reflectance(const Bsdf& bsdf) {
   return min(diffuse * bsdf.beneath, vec3(1));
 }
 
-// What is there, behind panes that are looked through.
+// Fills a texel with the surface there, behind panes that are looked through.
 void light_texel(const Transport& transport, const SourceRay& aim, Hit hit,
                  ReflectiveTexel& texel) {
   texel = {};
@@ -408,7 +410,7 @@ void make_reflective_shadow_map(const Transport& transport, std::span<const Spla
   share_texels(transport, sources, map.shares);
   const double texels = std::clamp(settings.texels, 1, most_texels);
   Sampler sampler(mix64(seed.seed ^ 0x736861726564ull), seed.pass);
-  double passed = double(sampler.next());  // systematic sampling of what is left of whole numbers
+  double passed = double(sampler.next());  // systematic sampling of the fractions
   for (size_t i = 0; i < sources.size(); i++) {
     double wanted = texels * map.shares[i];
     if (!(wanted > 0)) continue;

@@ -9,7 +9,7 @@
 namespace wellspring::light {
 namespace {
 
-// Calls visit(subsplat) for those within a square.
+// Calls visit(subsplat) for each subsplat within a square.
 template <class Visit>
 void refine(const SplatPixels& pixels, const MinMaxPyramid& pyramid, const SplatSettings& settings,
             int finest, int level, int x, int y, const Visit& visit) {
@@ -95,8 +95,8 @@ bool find_lit_pixel(const SplatPixels& pixels, const Subsplat& subsplat, int& x,
 
 namespace {
 
-// Squared distances that are computed with: below, a light lies on the place, and lights none of
-// it; above, it lights nothing that a float could hold.
+// Squared distances within which light is computed: below, a light lies on the place and does not
+// light it; above, its light is too weak for a float.
 constexpr float least_distance2 = 1e-20f, most_distance2 = 1e18f;
 
 template <bool wants_each>
@@ -170,8 +170,8 @@ void splat_lights(const SplatPixels& pixels, const VirtualLights& lights,
 
 namespace {
 
-// What linear interpolation between a texel and its neighbours on one axis may miss, as a share of
-// the texel's light; where there is no neighbour nothing is known.
+// Returns what linear interpolation between a texel and its neighbours on one axis may miss, as a
+// share of the texel's light; 0 if there is no neighbour.
 float missed_share(const IlluminationTexel& own, const IlluminationTexel* before,
                    const IlluminationTexel* behind) {
   auto light = [](const IlluminationTexel& texel) { return texel.red + texel.green + texel.blue; };

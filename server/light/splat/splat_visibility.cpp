@@ -14,7 +14,7 @@
 namespace wellspring::light {
 
 namespace {
-constexpr float lift = 3e-4f;                 // off the surface, as a share of its depth
+constexpr float lift = 3e-4f;                 // distance off the surface, as a share of its depth
 constexpr float apart_share = -4 * 0x1p-23f;  // so many steps of a coordinate, in metres
 }  // namespace
 
@@ -41,7 +41,7 @@ uint32_t ShadowPacket::find_blocked() const {
   return transport_.world.occluded_each(rays_, uint32_t((1u << count_) - 1));
 }
 
-// What of the light arrives where something is in between.
+// Returns the part of the light that arrives through panes if something is in between.
 vec3 ShadowPacket::through_panes(int i) const {
   if (!transport_.tables.any_pane) return vec3(0);
   vec3 way = target_[i] - from_[i].position;
@@ -66,7 +66,7 @@ constexpr uint32_t none = 0xffffffffu;
 constexpr int most_probe_rays = 32, most_shadow_rays = 256;
 constexpr int finest_probed = 2;  // level below which nothing is refined for its shadows
 
-// A subsplat's lit pixel.
+// Holds a subsplat's lit pixel.
 struct LitPixel {
   vec3 place{0}, normal{0, 1, 0};
   float depth = 0;
@@ -81,7 +81,7 @@ bool look_at(const SplatPixels& pixels, const PixelGrid& grid, const Subsplat& o
   return true;
 }
 
-// Who owns each square of each level.
+// Leaves each square of each level without an owner.
 void start_owners(const MinMaxPyramid& pyramid, SplatShadowRoom& room) {
   size_t total = 0;
   room.first_owner.clear();
@@ -102,7 +102,7 @@ bool inside(const MinMaxLevel& level, int x, int y) {
   return x >= 0 && y >= 0 && x < level.columns && y < level.rows;
 }
 
-// No discontinuity parts two squares of a level.
+// Tells whether a discontinuity parts two squares of a level.
 class Continuity {
  public:
   Continuity(const SplatPixels& pixels, const MinMaxPyramid& pyramid, const SplatSettings& settings)
@@ -121,7 +121,8 @@ class Continuity {
   PixelGrid grid_;
 };
 
-// Shadow rays of the subsplats `room.current` to probe lights, every so many-th of all.
+// Casts shadow rays of the subsplats `room.current` to probe lights, which are evenly spread over
+// all.
 void cast_probes(const Transport& transport, const SplatPixels& pixels, const VirtualLights& lights,
                  const Subsplats& subsplats, int probes, int count, SplatShadowRoom& room) {
   const PixelGrid grid = make_pixel_grid(pixels);
@@ -150,7 +151,7 @@ void cast_probes(const Transport& transport, const SplatPixels& pixels, const Vi
   });
 }
 
-// Of the light of the probes, the share that arrives at one of both alone.
+// Returns the share of the probe lights' light that arrives at only one of both.
 float differing_share(const SplatShadowRoom& room, uint32_t a, uint32_t b, int probes) {
   float all = 0, differs = 0;
   for (int p = 0; p < probes; p++) {
@@ -162,8 +163,8 @@ float differing_share(const SplatShadowRoom& room, uint32_t a, uint32_t b, int p
   return all > 0 ? differs / all : 0;
 }
 
-// Where in a picture's pattern of random numbers: neighbours differ much (interleaved gradient
-// noise: Jimenez 2014), passes complement each other (golden ratio).
+// Returns the start in a picture's pattern of random numbers: neighbours differ much (interleaved
+// gradient noise: Jimenez 2014), passes complement each other (golden ratio).
 float start_of(const Subsplat& one, SplatSeed seed) {
   auto fraction = [](double v) { return v - std::floor(v); };
   double place = fraction(0.06711056 * one.x + 0.00583715 * one.y);
@@ -176,8 +177,9 @@ int rays_of(const Subsplat& one, const SplatSettings& settings) {
   return std::max(1, one.level >= 2 ? rays : one.level == 1 ? rays / 2 : rays / 4);
 }
 
-// One subsplat's rays to lights chosen by what they would add: every so many-th of the running sum.
-// Neighbours in the list of lights are near each other, so those chosen are from everywhere.
+// Chooses the lights that one subsplat's rays go to by what they would add: at even steps of the
+// running sum. Neighbours in the list of lights are near each other, so the chosen lights are
+// spread everywhere.
 template <class Ask>
 void choose_asked(const VirtualLights& lights, const float* each, double step, int rays,
                   float start, const Ask& ask) {
@@ -196,12 +198,12 @@ void choose_asked(const VirtualLights& lights, const float* each, double step, i
   }
 }
 
-// The light of one of the subsplats on its way through shadow rays.
+// Sends the light of subsplats through shadow rays.
 class ShadowedSplats {
  public:
   ShadowedSplats(const Transport& transport, const VirtualLights& lights, SplatShadowRoom& room)
       : lights_(lights), room_(room), packet_(transport) {}
-  // `step`: luminance that each ray stands for.
+  // Adds a ray. `step`: luminance that each ray stands for.
   void ask(const ShadowOrigin& from, size_t light, uint32_t subsplat, double step) {
     if (packet_.full()) cast();
     packet_.add(from, lights_.target[light], waiting_);
@@ -232,18 +234,18 @@ class ShadowedSplats {
   uint64_t rays_ = 0;
 };
 
-// Of all light, what has arrived; unknown where there is none.
+// Returns the share of all light that has arrived; -1 if there is none.
 SplatShadowRoom::Share share_of(SplatShadowRoom::Share arrived, const IlluminationTexel& all) {
   if (!(all.red + all.green + all.blue > 0)) return {-1, -1, -1};
   auto share = [](float part, float whole) {
     float s = part / whole;
-    return s >= 0 && s < 1e6f ? s : 1;  // numbers too large or too small to tell
+    return s >= 0 && s < 1e6f ? s : 1;  // numbers are too large or too small for a share
   };
   return {share(arrived.red, all.red), share(arrived.green, all.green),
           share(arrived.blue, all.blue)};
 }
 
-// The mean share of a subsplat and those around it that it may be mixed with.
+// Returns the mean share of a subsplat and those around it that it may be mixed with.
 vec3 smooth_share(const MinMaxPyramid& pyramid, const Continuity& continuity, const Subsplat& one,
                   int reach, SplatShadowRoom& room) {
   const MinMaxCell own = continuity.cell(one.level, one.x, one.y);
@@ -362,7 +364,7 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
 
 namespace {
 
-// Of light `i`; 1 where no probe would have any.
+// Returns the share of light `i` that arrives; 1 if it would light no probe.
 vec3 find_share(const Transport& transport, std::span<const LitProbe> probes,
                 std::span<const ShadowOrigin> origins, int rays, const VirtualLights& lights,
                 size_t i, std::vector<float>& effect) {
@@ -371,7 +373,7 @@ vec3 find_share(const Transport& transport, std::span<const LitProbe> probes,
     sum += effect[k] = luminance(
         bounded_light(eval_virtual_light(lights, i, probes[k].position, probes[k].normal)));
   if (!(sum > 0) || !std::isfinite(sum)) return vec3(1);
-  // Evenly spaced numbers along the running sum, of each light others.
+  // The numbers are evenly spaced along the running sum, and differ from light to light.
   constexpr double golden = 0.6180339887498949;
   double next = std::fmod(double(i) * golden, 1.0), passed = 0;
   const double step = double(sum) / rays;

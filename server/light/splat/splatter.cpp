@@ -55,7 +55,7 @@ void splat_picture(const Transport& transport, const SplatLights& drawn, const S
   make_subsplats(pixels, picture.pyramid, settings, picture.subsplats);
   clear_illumination(picture.pyramid, picture.illumination);
   SplatCounters& counters = picture.counters;
-  uint64_t lit = 0;  // places
+  uint64_t lit = 0;  // number of lit places
   auto splat_without_shadows = [&] {
     splat_lights(pixels, drawn.lights, picture.subsplats.all(), picture.illumination);
     lit += picture.subsplats.count;
@@ -101,9 +101,9 @@ void find_splat_probes(const SplatPixels& pixels, int count, std::vector<LitProb
 namespace {
 
 constexpr int probe_count = 64;
-constexpr int least_depth = 3;  // of edges: eye, surface, surface, light
+constexpr int least_depth = 3;  // edges: eye, surface, surface, light
 
-// Places that the view shows, at random.
+// Returns places that the view shows, at random.
 std::vector<LitProbe> probe_view(const World& world, const Lights& lights, const View& view,
                                  uint64_t seed, uint32_t pass) {
   std::vector<Ray> rays;
@@ -129,7 +129,7 @@ void begin_splat(const World& world, const TransportSettings& settings, const Vi
   auto pass = std::make_shared<SplatPass>();
   pass->settings = settings.splat;
   pass->seed = {seed, index};
-  // Ever smaller, but more slowly than the passes' noise: the mean loses its bias.
+  // The bound shrinks, but more slowly than the passes' noise: the mean loses its bias.
   pass->settings.bound *= std::pow(float(index) + 1, -0.25f);
   if (settings.max_depth >= least_depth) {
     Transport transport{world, *lights.tables};

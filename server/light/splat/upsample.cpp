@@ -17,7 +17,7 @@ int number_of(int dx, int dy) {
   return 0;
 }
 
-// Bit k of each texel: it may be mixed with its neighbour k.
+// Sets bit k of each texel that may be mixed with its neighbour k.
 void join_texels(const MinMaxPyramid& pyramid, const SplatSettings& settings, int level,
                  const IlluminationLevel& light, RawVector<uint8_t>& joined) {
   const size_t count = size_t(light.columns) * size_t(light.rows);
@@ -43,7 +43,7 @@ void join_texels(const MinMaxPyramid& pyramid, const SplatSettings& settings, in
 
 HalfLanes load_texel(const IlluminationTexel& texel) { return load_lanes<HalfLanes>(&texel.red); }
 
-// Of the finer texel in a quarter of (x, y): sx, sy are -1 or 1.
+// Returns the light of the finer texel in a quarter of (x, y): sx, sy are -1 or 1.
 HalfLanes mix(const IlluminationLevel& coarse, uint8_t joined, int x, int y, int sx, int sy) {
   HalfLanes sum = load_texel(coarse.at(x, y)) * 9.0f;
   float weight = 9;
@@ -56,7 +56,7 @@ HalfLanes mix(const IlluminationLevel& coarse, uint8_t joined, int x, int y, int
   return sum * (1 / weight);
 }
 
-// The paper's factor on what was computed coarsely.
+// Returns the paper's factor on light that was computed coarsely.
 float detail_of(const SplatPixels& pixels, const PixelGrid& grid, float detail, int x, int y) {
   const size_t i = size_t(y) * size_t(pixels.view.width) + size_t(x);
   vec3 way = -place_from_eye(pixels, grid, x, y);

@@ -12,10 +12,10 @@
 namespace wellspring::light {
 namespace {
 
-// Share of the choice that does not ask for the effect: what the probes happen not to see.
+// Share of the choice that leaves out the effect, for what the probes happen not to see.
 constexpr double blind = 0.1;
 
-// Room for twice as many as are wanted in the mean.
+// Empties the lights and makes room for twice as many as are wanted in the mean.
 void clear_lights(VirtualLights& lights, size_t wanted) {
   const size_t most = (2 * wanted + 64 + lane_count - 1) / lane_count * lane_count;
   for (RawVector<float>* column :
@@ -26,7 +26,7 @@ void clear_lights(VirtualLights& lights, size_t wanted) {
   lights.count = lights.padded = 0;
 }
 
-// `worth`: of how many such texels it is.
+// Adds a light. `worth`: number of such texels that it stands for.
 void add_light(const ReflectiveTexel& texel, double worth, float least2, float bound2,
                VirtualLights& lights) {
   const size_t i = size_t(lights.count);
@@ -50,7 +50,7 @@ double luminous(const ReflectiveTexel& texel) {
   return flux > 0 && std::isfinite(flux) ? flux : 0;
 }
 
-// What a texel does to the probes, shadows left out, as a share of its flux: about.
+// Returns the effect of a texel on the probes, shadows left out, as a share of its flux, about.
 double effect_on(std::span<const LitProbe> probes, const ReflectiveTexel& texel, float least2) {
   double sum = 0;
   for (const LitProbe& probe : probes) {
@@ -83,9 +83,9 @@ void weigh_texels(const ReflectiveShadowMap& map, VirtualLightChoice choice,
   }
 }
 
-// Each texel by its own weight and by a number of its own, which is the golden ratio's sequence
-// along the list: neighbours in the list are neighbours in a map, so that those chosen are from
-// everywhere, and a weight that changes changes no other choice.
+// Chooses each texel by its own weight and by a number of its own, which is the golden ratio's
+// sequence along the list: neighbours in the list are neighbours in a map, so that the chosen ones
+// are spread everywhere, and a weight that changes changes no other choice.
 void choose_by_weight(const ReflectiveShadowMap& map, int wanted, double start, float least2,
                       float bound2, VirtualLights& lights) {
   constexpr double golden = 0.6180339887498949;
@@ -102,7 +102,7 @@ void choose_by_weight(const ReflectiveShadowMap& map, int wanted, double start, 
   }
 }
 
-// Each map has its share of points; Sobol' points of its square are texels.
+// Gives each map its share of points; Sobol' points of its square are texels.
 void choose_by_sequence(const ReflectiveShadowMap& map, int wanted, SplatSeed seed, float start,
                         float least2, float bound2, VirtualLights& lights) {
   const double all = double(map.texels.size());

@@ -24,7 +24,7 @@
 namespace wellspring::light {
 namespace {
 
-// view_ray's directions, a place inside each pixel.
+// Returns view_ray's directions, to a place inside each pixel.
 Lanes3 view_directions(const View& view, Lanes x, Lanes y) {
   const float scale = 2 * view.tan_half_fov / float(view.height);
   const vec2 axis = axis_place(view);
@@ -56,7 +56,7 @@ void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelS
       request.index = uint32_t(asked.index);
       request.ray.origin = view.position;
       request.ray.from_eye = true;
-      // A sequence apart from the sample's own.
+      // The place comes from a sequence apart from the sample's own.
       jitter.set(i, Sampler(mix64(of_pixel ^ 0x6a09e667f3bcc909ull), request.index));
       x[i] = float(asked.x), y[i] = float(asked.y);
     }
@@ -88,9 +88,10 @@ constexpr Technique list[] = {
      trace_direct, nullptr, begin_splat, finish_splat, trace_many_direct},
 };
 
-// Pixels a side of what trace_many gets at once: neighbours, in the same cache.
+// Side in pixels of a tile that trace_many gets at once: neighbours, in the same cache.
 constexpr int pass_tile = 24;
-// Samples of a tile that it gets at once elsewhere: few enough to stay in a core's cache.
+// Samples of a tile that trace_many gets at once without passes: few enough to stay in a core's
+// cache.
 constexpr size_t most_at_once = 256;
 
 }  // namespace
@@ -128,7 +129,7 @@ uint64_t pass_seed(uint64_t seed) { return mix64(seed ^ 0x70617373ull); }
 
 namespace {
 
-// What a picture says of a pixel beside its colour: what its first sample hit.
+// Writes what a picture has of a pixel beside its colour: what its first sample hit.
 void describe_pixel(const View& view, const Request& request, const Sample& sample, Frame& frame) {
   bool hit = sample.flags & sample_hit;
   frame.object[request.pixel] = hit ? sample.object : 0;
@@ -136,7 +137,7 @@ void describe_pixel(const View& view, const Request& request, const Sample& samp
                                    : std::numeric_limits<float>::infinity();
 }
 
-// Calls `shade(left, top, right, bottom)` for every tile, all cores.
+// Calls `shade(left, top, right, bottom)` for every tile, on all cores.
 template <class Shade>
 void for_each_tile(const View& view, int tile, const Shade& shade) {
   int across = (view.width + tile - 1) / tile, down = (view.height + tile - 1) / tile;
@@ -154,8 +155,8 @@ void trace_tile(const Technique& technique, const World& world, const Lights& li
     samples[i] = technique.trace(world, lights, settings, requests[i]);
 }
 
-// The samples of a tile follow each other pixel by pixel, so that a pixel's sum never leaves the
-// core.
+// Renders a tile. Its samples follow each other pixel by pixel, so that a pixel's sum never leaves
+// the core.
 void render_tile(const Technique& technique, const World& world, const Lights& lights,
                  const View& view, const StillSettings& settings, ivec2 begin, ivec2 end,
                  Frame& frame) {
@@ -256,8 +257,8 @@ Frame render_still(const Technique& technique, const World& world, const Lights&
   return frame;
 }
 
-// Technique `direct`: emission and the light that reaches a surface straight, seen also in chains
-// of perfect mirrors and glass. No light between rough surfaces.
+// Technique `direct` traces emission and the light that reaches a surface straight, seen also in
+// chains of perfect mirrors and glass. It has no light between rough surfaces.
 
 void trace_many_direct(const World& world, const Lights& lights, const TransportSettings& settings,
                        std::span<const Request> requests, std::span<Sample> samples) {
@@ -275,7 +276,7 @@ Sample trace_direct(const World& world, const Lights& lights, const TransportSet
   return sample;
 }
 
-// Technique `path`: unbiased path tracing, the reference.
+// Technique `path` is unbiased path tracing, the reference.
 
 void trace_many_path(const World& world, const Lights& lights, const TransportSettings& settings,
                      std::span<const Request> requests, std::span<Sample> samples) {
@@ -294,12 +295,13 @@ Sample trace_path(const World& world, const Lights& lights, const TransportSetti
   return sample;
 }
 
-// Technique `gather`: path tracing whose walks end where light is known (IlluminationMap). One
-// gathering bounce hides the map's nodes. Where nothing is known it is `path`.
+// Technique `gather` is path tracing whose walks end on the light of an IlluminationMap. One
+// gathering bounce hides the map's nodes. If the map has no light there, it is `path`.
 
 namespace {
 
-// So that what a Lambertian surface's rays meet has an alpha of 1/4, a roughness of 1/2.
+// With it a surface that a Lambertian surface's rays meet has at least an alpha of 1/4, a roughness
+// of 1/2.
 constexpr float blunt = 0.14f;
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The techniques, one explicit list. A technique turns requests into samples; it has no state of
-// its own beyond Lights, so samples can be computed on any thread, in any order, and replayed one
-// by one.
+// Lists the techniques explicitly. A technique turns requests into samples; it has no state of its
+// own beyond Lights, so samples can be computed on any thread, in any order, and replayed one by
+// one.
 #pragma once
 #include <functional>
 #include <span>
@@ -15,18 +15,19 @@
 
 namespace wellspring::light {
 
-// What a still picture asks of its pixels, eight requests side by side.
+// Makes the requests for a still picture's pixels, eight side by side.
 
-// Sample `index` of the picture's pixel (x, y).
+// Names sample `index` of the picture's pixel (x, y).
 struct PixelSample {
   int x = 0, y = 0, index = 0;
 };
-// requests[i] asks for which[i]; its seed is the pixel's. What is asked beside it does not matter.
+// Makes requests[i] ask for which[i], with the pixel's seed. The other requests of a call do not
+// change it.
 void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelSample> which,
                          std::span<Request> requests);
 
-// The trace functions that technique.cpp lists, one file each; those of instant_radiosity are in
-// light/instant/instant_radiosity.h.
+// Declares the trace functions that technique.cpp lists, one file each; those of instant_radiosity
+// are in light/instant/instant_radiosity.h.
 
 Sample trace_path(const World& world, const Lights& lights, const TransportSettings& settings,
                   const Request& request);
@@ -45,51 +46,53 @@ void prepare_gather(const World& world, std::span<const vec3> places, Lights& li
 struct Technique {
   const char* name;
   const char* summary;
-  // Never throws; results are finite and not negative (dropped samples count in
+  // Answers a request. Never throws; results are finite and not negative (dropped samples count in
   // Lights::bad_samples).
   Sample (*trace)(const World& world, const Lights& lights, const TransportSettings& settings,
                   const Request& request);
-  // What must be known before the first sample, for eyes near `places` (scene coordinates); may
-  // take seconds. nullptr: nothing.
+  // Prepares `lights` before the first sample, for eyes near `places` (scene coordinates); may take
+  // seconds. nullptr: nothing to prepare.
   void (*prepare)(const World& world, std::span<const vec3> places, Lights& lights) = nullptr;
-  // What is drawn anew for each pass over a picture (point lights, photons), from seed and index
-  // alone: passes of one seed complement each other, those of different seeds are independent. The
-  // samples traced until the next call use it; without it they lack what it would have drawn.
-  // Milliseconds. nullptr: nothing.
+  // Draws the point lights or photons of a pass over a picture, from seed and index alone: passes
+  // of one seed complement each other, those of different seeds are independent. The samples traced
+  // until the next call use them; without the call they lack that light. Takes milliseconds.
+  // nullptr: nothing to draw.
   void (*begin_pass)(const World& world, const TransportSettings& settings, const View& view,
                      uint64_t seed, uint32_t index, Lights& lights) = nullptr;
-  // Filters a whole pass, samples[y * width + x], in place. nullptr: nothing.
+  // Filters a whole pass, samples[y * width + x], in place. nullptr: no filter.
   void (*finish_pass)(const World& world, const Lights& lights, const View& view,
                       std::span<Sample> samples) = nullptr;
-  // trace() for neighbouring requests at once, the same bits, where that is quicker. nullptr: one
-  // by one.
+  // Does trace() for neighbouring requests at once, with the same bits, if that is quicker.
+  // nullptr: one by one.
   void (*trace_many)(const World& world, const Lights& lights, const TransportSettings& settings,
                      std::span<const Request> requests, std::span<Sample> samples) = nullptr;
-  // Its samples tell diffuse light in multiples of Lights::maps where these know it.
+  // Its samples give diffuse light in multiples of Lights::maps where the maps have it.
   bool uses_maps = false;
 };
 
 std::span<const Technique> techniques();
 const Technique* find_technique(std::string_view name);  // nullptr: no such name
 
-// samples[i] answers requests[i]; all cores.
+// Traces the answers: samples[i] answers requests[i]. Runs on all cores.
 void trace(const Technique& technique, const World& world, const Lights& lights,
            const TransportSettings& settings, std::span<const Request> requests,
            std::span<Sample> samples);
 
-// A whole picture, `spp` samples a pixel, box filter over the pixel, all cores; the same bits
-// whatever the thread count. A technique of passes draws `spp` of them, one sample a pixel each;
-// `lights` is changed by nothing else.
+// A whole picture has `spp` samples a pixel and a box filter over the pixel, is made on all cores,
+// and has the same bits whatever the thread count. A technique of passes draws `spp` of them, one
+// sample a pixel each; `lights` is changed by nothing else.
 struct StillSettings {
   int spp = 16;
   uint64_t seed = 1;
   TransportSettings transport;
-  std::function<void(double)> progress;  // told how much is done, 0 to 1, by any thread; or empty
+  // Called with the share that is done, 0 to 1, by any thread; or empty
+  std::function<void(double)> progress;
 };
-// Sample `index` of pixel (x, y) as render_still asks for it: tracing it alone gives the same bits.
+// Returns the request for sample `index` of pixel (x, y) as render_still makes it: tracing it alone
+// gives the same bits.
 Request pixel_request(const View& view, uint64_t seed, int x, int y, int index);
-uint64_t pass_seed(uint64_t seed);  // of its passes; sample `index` is traced in pass `index`
-// That sample alone, as it was before any finish_pass.
+uint64_t pass_seed(uint64_t seed);  // seed of its passes; sample `index` is traced in pass `index`
+// Traces that sample alone, as it was before any finish_pass.
 Sample replay_sample(const Technique& technique, const World& world, Lights lights,
                      const View& view, const StillSettings& settings, int x, int y, int index);
 Frame render_still(const Technique& technique, const World& world, const Lights& lights,

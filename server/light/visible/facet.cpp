@@ -94,7 +94,7 @@ vec3 read_picture(const Pictures& pictures, const FacetPicture& place, const Tex
                       pixel * place.texels);
 }
 
-// Base colour, linear.
+// Returns the base colour, linear.
 vec3 see_base(const Pictures& pictures, const Facet& f, vec2 at, float pixel) {
   const Mesh& mesh = *f.placed->mesh;
   const Material& m = *f.material;
@@ -142,7 +142,7 @@ PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& 
     metallic *= read_picture(pictures, f.shine, m.metallic_roughness_texture, at, pixel).z;
   if (seen.scatters) seen.albedo = demodulated_albedo(base, metallic, metal);
   if (m.unlit || emits(f)) {
-    Surface surface;  // what surface_emission() reads
+    Surface surface;  // input of surface_emission()
     surface.front = f.front;
     surface.base_color = glm::max(base, vec3(0));
     surface.emission = emits(f) ? m.emission : vec3(0);

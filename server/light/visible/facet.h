@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle as a picture of it needs it: what every pixel of it has in common, looked up once.
+// Holds a triangle as a picture of it needs it: what all its pixels have in common, looked up once.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,9 +16,10 @@
 
 namespace wellspring::light {
 
-// How a place reflects small lights as highlights: by GGX (glTF 2.0, appendix B), no clearcoat.
+// Describes how a place reflects small lights as highlights: by GGX (glTF 2.0, appendix B), no
+// clearcoat.
 
-// Highlights of rougher surfaces, of no metal, are not told from their diffuse light.
+// Highlights of rougher surfaces without metal look like their diffuse light.
 inline constexpr float least_rough = 0.6f, least_metal = 0.05f;
 
 struct Gloss {
@@ -26,8 +27,8 @@ struct Gloss {
   float roughness = 1, metallic = 0;
 };
 
-// The same in two planes of a picture. `code`: roots of f0 in the low bytes, red first, then
-// roughness, each times 255; 0: no highlights.
+// Holds the same packed for two planes of a picture. `code`: roots of f0 in the low bytes, red
+// first, then roughness, each times 255; 0: no highlights.
 struct GlossCode {
   uint32_t code = 0;
   uint8_t metallic = 0;  // times 255
@@ -40,7 +41,7 @@ inline GlossCode pack_gloss(const Gloss& gloss) {
   return packed;
 }
 
-// Eight of them.
+// Holds the gloss of eight pixels.
 struct GlossLanes {
   Lanes f0[3], roughness, metallic;
 };
@@ -57,16 +58,16 @@ inline GlossLanes unpack_gloss(const uint32_t* codes, const uint8_t* metallic) {
   return gloss;
 }
 
-// What the visibility pass (light/visible/visibility.h) has to know of materials before it begins.
+// Finds what the visibility pass (light/visible/visibility.h) needs of materials before it begins.
 
-// How the reflectance of a material is found.
+// Says how the reflectance of a material is found.
 enum class Reflectance : uint8_t {
   scaled,  // a factor times base colour, and no less than a floor
-  base,    // base colour and metallic of each place say all
+  base,    // base colour and metallic of each place determine it
   traced,  // ask a ray
 };
 
-// What demodulated_albedo() makes of base colour.
+// Describes how demodulated_albedo() changes base colour.
 struct DemodulationScale {
   float factor = 1, floor = 0;
 };
@@ -80,7 +81,7 @@ inline Reflectance find_reflectance(const Material& m, MetalDemodulation metal,
   return Reflectance::scaled;
 }
 
-// RasterSettings::see_through of what is a clear pane everywhere.
+// Returns RasterSettings::see_through of a material: not 0 if it is a clear pane everywhere.
 inline uint8_t pane_kind(const Material& m) {
   bool clear = m.transmission == 1 && m.transmission_texture.texture < 0 && m.thickness == 0 &&
                m.metallic == 0 && m.roughness == 0 && m.alpha_mode == AlphaMode::opaque && !m.unlit;
@@ -91,7 +92,8 @@ inline uint8_t pane_kind(const Material& m) {
   return alike ? 1 : 2;
 }
 
-// Some place of it may be: what it shows is that of others (light/visible/guides.h).
+// Returns whether some place of it may be polished: it shows a picture of others
+// (light/visible/guides.h).
 inline bool may_be_polished(const Material& m, TextureRanges& ranges) {
   if (m.unlit) return false;
   if (m.transmission > 0) return true;
@@ -99,14 +101,16 @@ inline bool may_be_polished(const Material& m, TextureRanges& ranges) {
   return roughness * roughness < polished_alpha;
 }
 
-// Some place of it has highlights (light/visible/facet.h), which are seen without rays.
+// Returns whether some place of it has highlights (light/visible/facet.h), which are seen without
+// rays.
 inline bool may_gloss(const Material& m, TextureRanges& ranges) {
   if (m.unlit || m.transmission > 0) return false;
   const TexelRange& range = ranges.of(m.metallic_roughness_texture);
   return m.roughness * range.low.y < least_rough || m.metallic * range.high.z >= least_metal;
 }
 
-// Some place of it reflects light that depends on the view beyond what rough paint does.
+// may_shine() returns whether some place of it reflects light that depends on the view more than
+// rough paint's.
 inline constexpr float least_matte = 0.5f;  // roughness, from which nothing shines
 inline bool may_shine(const Material& m, TextureRanges& ranges) {
   if (m.unlit) return false;
@@ -115,8 +119,8 @@ inline bool may_shine(const Material& m, TextureRanges& ranges) {
          m.transmission > 0 || m.clearcoat > 0;
 }
 
-// All of it is diffuse but for a gloss so rough that it shows the light around as the diffuse layer
-// does: an illumination map says all of its light.
+// is_plain() returns whether all of it is diffuse but for a gloss so rough that it shows the light
+// around as the diffuse layer does: an illumination map then gives all of its light.
 inline constexpr float least_plain_roughness = 0.45f, most_plain_metal = 0.02f;
 inline bool is_plain(const Material& m, TextureRanges& ranges) {
   if (m.unlit || m.transmission > 0 || m.alpha_mode == AlphaMode::blend || m.emission != vec3(0))
@@ -127,10 +131,10 @@ inline bool is_plain(const Material& m, TextureRanges& ranges) {
          m.metallic * range.high.z <= most_plain_metal;
 }
 
-// Where one of the material's pictures lies on a triangle.
+// Holds where one of the material's pictures lies on a triangle.
 struct FacetPicture {
   vec2 corner{0}, edge1{0}, edge2{0};  // texture coordinates: corner + edge1 * u + edge2 * v
-  float texels = 0;                    // across a metre of the surface
+  float texels = 0;                    // texels across a metre of the surface
   bool known = false;                  // the mesh has these coordinates
 };
 
@@ -139,19 +143,20 @@ struct Facet {
   const PlacedMesh* placed = nullptr;
   const Material* material = nullptr;
   uvec3 corner{0};
-  vec3 normal[3];            // of the mesh at the corners, world, not unit, on the winding's side
+  vec3 normal[3];            // the mesh's at the corners, world, not unit, on the winding's side
   vec3 face{0};              // geometric, unit, on the winding's side
-  float root_area = 0;       // of the face, metres
+  float root_area = 0;       // root of the face's area, metres
   float plane_distance = 0;  // from the eye to the plane it lies in, metres
   bool one_normal = false;
   bool front = false;  // the eye is on the winding's side
-  // Base colour; metallic and roughness, of what may be metal, or once place_shine() was called.
+  // Base colour; metallic and roughness, of a material that may be metal, or once place_shine() was
+  // called.
   FacetPicture base, shine;
-  // The map of normals, and along its u and v on the winding's side, unit; alike all over. Known
-  // once place_relief() was called, where there is one.
+  // Map of normals, and unit vectors along its u and v on the winding's side; the same all over.
+  // They are set once place_relief() was called, if there is a map.
   FacetPicture relief;
   vec3 tangent{0}, bitangent{0};
-  // Its light lies here, once somebody has asked: as IlluminationChart has it, counted in tiles.
+  // Place of its light, set by the first look-up: as IlluminationChart has it, counted in tiles.
   const struct IlluminationCharts* charts = nullptr;
   uint32_t chart = 0xffffffffu;
   vec2 light_corner{0}, light_edge1{0}, light_edge2{0};
@@ -161,7 +166,7 @@ FacetPicture place_picture(const World& world, const Facet& facet, const Texture
 void place_shine(const World& world, Facet& facet);
 void place_relief(const World& world, Facet& facet);
 
-// Facets of late: rows of a picture meet the same triangles one after the other.
+// Keeps recent facets: rows of a picture meet the same triangles one after the other.
 class FacetCache {
  public:
   // Forgets everything when `picture` is another number than before.
@@ -183,19 +188,19 @@ class FacetCache {
   Facet facets_[1 << bits];
 };
 
-// What one pixel sees of the triangle it shows (light/visible/facet.h), pictures averaged over the
-// pixel.
+// Shades what one pixel sees of the triangle it shows (light/visible/facet.h), pictures averaged
+// over the pixel.
 
-// Pictures with their smaller selves, of all that a scene's reflectance is made of.
+// Holds pictures with their smaller versions, all that a scene's reflectance is made of.
 struct Pictures {
   const Scene* scene = nullptr;
-  std::vector<TexturePyramid> pyramids;  // of each image; empty where none is needed
+  std::vector<TexturePyramid> pyramids;  // one for each image; empty if none is needed
 };
 
-// All cores.
+// Makes them on all cores.
 Pictures make_pictures(const Scene& scene);
 
-// A pixel's width in metres on the surface it sees: the root of its area there.
+// Returns a pixel's width in metres on the surface it sees: the root of its area there.
 inline float pixel_width(const Facet& f, float distance, float pixel_angle) {
   const float cosine = f.plane_distance / distance;
   return distance * pixel_angle / std::sqrt(std::max(cosine, 0.02f));
@@ -205,7 +210,7 @@ inline bool emits(const Facet& f) {
   return (f.front || f.material->double_sided) && f.material->emission != vec3(0);
 }
 
-// `metal`: its material's; `pixel`: its width on the surface, metres.
+// Returns what a pixel sees. `metal`: its material's; `pixel`: its width on the surface, metres.
 PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
                      MetalDemodulation metal, const Hit& hit, float pixel);
 

@@ -16,12 +16,12 @@ namespace wellspring::light {
 namespace {
 
 constexpr int most_specular = 8;     // mirrors on the way: they may face each other
-constexpr float least_tint = 0.02f;  // of what is followed further
+constexpr float least_tint = 0.02f;  // least share that is followed further
 constexpr int grain = 256;           // rays
 
 bool is_polished(const Bsdf& bsdf) { return bsdf.alpha < polished_alpha; }
 
-// Of a polished surface that lets nothing through: the share of light that it mirrors.
+// Returns the share of light that a polished surface mirrors if it lets nothing through.
 vec3 mirrored_share(const Bsdf& bsdf, vec3 direction) {
   float r = (bsdf.eta - 1) / (bsdf.eta + 1), cosine = std::abs(dot(bsdf.normal, direction));
   float fresnel = r * r + (1 - r * r) * std::pow(1 - std::min(cosine, 1.0f), 5.0f);  // Schlick 1994
@@ -29,7 +29,8 @@ vec3 mirrored_share(const Bsdf& bsdf, vec3 direction) {
   return glm::mix(dielectric, bsdf.metal, bsdf.metallic);
 }
 
-// What a polished surface that light goes through does with most of it: mirrors or refracts it.
+// Returns what a polished surface that light goes through does with most of it: mirrors or refracts
+// it.
 BsdfSample turn(const Surface& surface, const Bsdf& bsdf, const Material& material,
                 vec3 direction) {
   vec3 n = dot(bsdf.normal, direction) > 0 ? -bsdf.normal : bsdf.normal;
@@ -58,7 +59,7 @@ BsdfSample turn(const Surface& surface, const Bsdf& bsdf, const Material& materi
 
 vec3 share(vec3 v) { return is_finite(v) ? clamp(v, vec3(0), vec3(1)) : vec3(0); }
 
-// Diffuse and glossy reflectance together, of what shows no picture of its own.
+// Returns diffuse and glossy reflectance together, of a surface that shows no picture of others.
 vec3 reflectance(const Bsdf& bsdf) {
   vec3 glossy = bsdf.metallic * bsdf.metal + (1 - bsdf.metallic) * bsdf.facet_base;
   return bsdf.diffuse + bsdf.transmit + glossy;
@@ -151,7 +152,7 @@ PrimaryHit see_nothing(const LightTables& tables, vec3 direction) {
   return seen;
 }
 
-// The whole way, as samples go it: through panes and whatever the eye is in.
+// Follows the whole way, as samples go: through panes and whatever the eye is in.
 PrimaryHit see_slowly(const Transport& transport, const Ray& ray) {
   Request request;
   request.ray = ray;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Guides of a picture's reconstruction (denoise/denoise.h): what is known of each pixel without
-// noise. Albedo is the share of light that leaves where the eye looks, diffuse and glossy
+// Makes the guides of a picture's reconstruction (denoise/denoise.h): noiseless values of each
+// pixel. Albedo is the share of light that leaves where the eye looks, diffuse and glossy
 // reflection together; light sources and the sky count with their own colour, at most white. The
-// normal is the shading normal, in world space, 0 in the sky. Of what is polished the ray is
-// followed to what that mirrors or lets through, by the share of light this is; mirrors, glass and
+// normal is the shading normal, in world space, 0 in the sky. From polished surfaces the ray is
+// followed to what they mirror or let through, by the share of light this is; mirrors, glass and
 // polished metal have no normal of their own but that of what they show.
 #pragma once
 #include <span>
@@ -22,30 +22,32 @@ struct Guide {
   vec3 normal{0};  // unit towards the viewer, or 0
 };
 
-// Of what rays from the eye show; no chance is involved. guides[i] answers rays[i]. All cores.
+// Computes the guides of what rays from the eye show; no chance is involved. guides[i] answers
+// rays[i]. Runs on all cores.
 void eval_guides(const World& world, const Lights& lights, std::span<const Ray> rays,
                  std::span<Guide> guides);
 
 struct GuidePlanes {
-  std::vector<vec3> albedo, normal;  // of each pixel, row after row; normals are shorter at edges
+  // One for each pixel, row after row; normals are shorter at edges
+  std::vector<vec3> albedo, normal;
 };
-// Means over `rays` rays a pixel, spread evenly over it. All cores.
+// Returns means over `rays` rays a pixel, spread evenly over it. Runs on all cores.
 GuidePlanes make_guides(const World& world, const Lights& lights, const View& view, int rays = 16);
 
-// What rays from the eye meet, without the light that falls there: for pictures whose light is
-// known from elsewhere. A twentieth of a sample's cost.
+// Finds what rays from the eye meet, without the light that falls there, for pictures whose light
+// comes from elsewhere. It costs a twentieth of a sample.
 
-// As in the Sample a technique would give for the same ray, panes looked through.
+// Holds the same values as the Sample a technique would give for the ray, panes looked through.
 struct PrimaryHit {
   vec3 normal{0};      // unit; towards the eye where nothing was hit
   float distance = 0;  // along the ray; infinity: nothing was hit
   vec3 albedo{0};
-  vec3 glow{0};  // emission and sky: what is there of Sample::rest without any light falling
+  vec3 glow{0};  // emission and sky: Sample::rest without any light falling there
   uint32_t object = 0;
-  bool scatters = false;  // else `glow` is all there is
+  bool scatters = false;  // false: there is only `glow`
 };
 
-// seen[i] answers rays[i]; neighbours side by side are quickest. All cores.
+// Casts the rays: seen[i] answers rays[i]; neighbours side by side are quickest. Runs on all cores.
 void see(const World& world, const Lights& lights, std::span<const Ray> rays,
          std::span<PrimaryHit> seen);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light of illumination maps on a run's pixels: VisibleRun::known(). Pieces of one triangle each
-// say where their light lies; then nodes, pictures and gloss are read eight pixels at a time, as
-// pieces are mostly shorter than that.
+// Computes light of illumination maps on a run's pixels: VisibleRun::known(). For pieces of one
+// triangle each the place of their light is found; then nodes, pictures and gloss are read eight
+// pixels at a time, as pieces are mostly shorter than that.
 #include <algorithm>
 #include <bit>
 
@@ -12,19 +12,19 @@
 namespace wellspring::light {
 namespace {
 
-// The nodes around a place differ by at most that share of its light, or their light has an edge
+// If the nodes around a place differ by more than that share of its light, their light has an edge
 // between them.
 constexpr float most_even_spread = 0.4f;
 constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
 
-// The four nodes around each of a run's pixels: `node`, the next, and those `stride` on; u and v
-// lie between them. A stride of 0: there are none.
+// Holds the four nodes around each of a run's pixels: `node`, the next, and those `stride` on; u
+// and v lie between them. A stride of 0: there are none.
 struct NodePlaces {
   uint32_t node[RunSurface::most], stride[RunSurface::most];
   float u[RunSurface::most], v[RunSurface::most];
 };
 
-// Finds where the light of a triangle lies; false: the charts do not have it.
+// Finds where the light of a triangle lies; returns false if the charts do not have it.
 bool place_light(const World& world, const IlluminationMap& map, Facet& f) {
   const IlluminationCharts& charts = *map.places;
   if (f.charts == &charts) return f.chart != no_chart;
@@ -40,7 +40,7 @@ bool place_light(const World& world, const IlluminationMap& map, Facet& f) {
   return true;
 }
 
-// Finds the nodes of eight pixels from `i` on, of those `asked`, at places of a chart counted in
+// Finds the nodes of eight pixels from `i` on, for those `asked`, at places of a chart counted in
 // tiles.
 void place_nodes(const IlluminationMap& map, const IlluminationChart& chart, Lanes u, Lanes v,
                  const LaneMask& asked, int i, NodePlaces& to) {
@@ -73,7 +73,7 @@ void place_nodes(const IlluminationMap& map, const IlluminationChart& chart, Lan
   store_lanes(to.u + i, across), store_lanes(to.v + i, down);
 }
 
-// from[at[i]] in lane i.
+// Returns from[at[i]] in lane i.
 LaneBits gather_words(const uint32_t* from, const LaneBits& at) {
 #ifdef __AVX2__
   return LaneBits(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), __m256i(at), 4));
@@ -84,7 +84,7 @@ LaneBits gather_words(const uint32_t* from, const LaneBits& at) {
 #endif
 }
 
-// The nodes around eight places, and how much each counts.
+// Holds the nodes around eight places, and their weights.
 struct NodeTaps {
   LaneBits node[4];
   Lanes weight[4];
@@ -103,7 +103,7 @@ struct NodeTaps {
 
 struct Light {
   Lanes red{}, green{}, blue{};
-  Lanes spread{};  // of the sum of the three, among the nodes around
+  Lanes spread{};  // spread of the sum of the three, among the nodes around
 };
 Light read_light(const IlluminationNodes& nodes, const NodeTaps& taps) {
   Light light;
@@ -121,7 +121,7 @@ Light read_light(const IlluminationNodes& nodes, const NodeTaps& taps) {
   return light;
 }
 
-// Vectors that nodes keep, packed.
+// Reads vectors that nodes keep, packed.
 template <void (*unpack)(const LaneBits&, Lanes&, Lanes&, Lanes&)>
 Lanes3 read_vectors(const std::vector<uint32_t>& of, const NodeTaps& taps) {
   Lanes3 sum;
@@ -134,7 +134,7 @@ Lanes3 read_vectors(const std::vector<uint32_t>& of, const NodeTaps& taps) {
           keep_lanes(taps.there, sum.z)};
 }
 
-// Vectors of a run's pixels.
+// Holds vectors of a run's pixels.
 struct Vectors {
   float x[RunSurface::most], y[RunSurface::most], z[RunSurface::most];
   void put(int i, const Lanes3& v) {
@@ -143,14 +143,14 @@ struct Vectors {
   Lanes3 at(int i) const { return {load_lanes(x + i), load_lanes(y + i), load_lanes(z + i)}; }
 };
 
-// A run's pixels are described by this before light is read.
+// Describes a run's pixels before light is read.
 struct Mapped {
   // A bit each: plain by their material; with a map of normals; of a bent chart.
   uint64_t pixels = 0, plain = 0, relief = 0, bent = 0;
   NodePlaces nodes;
   float f0[RunSurface::most], roughness[RunSurface::most],
-      share[RunSurface::most];  // of plain ones
-  // Maps of normals: where they are read, and what they say.
+      share[RunSurface::most];  // for plain ones
+  // Maps of normals: the places where they are read, and the texels there.
   Stretches pictures;
   Vectors normal;
 };
@@ -207,7 +207,7 @@ uint64_t VisibleRun::known(const IlluminationMap& map, const RunSurface& surface
     }
   }
   if (!mapped.pixels) return 0;
-  skip(count);  // what lies beyond the last piece is read, too
+  skip(count);  // pixels beyond the last piece are read, too
   for (int k = 0; k < mapped.pictures.count; k++) {
     const Stretch& s = mapped.pictures.of[k];
     for (int i = s.begin; i < s.end; i += lane_count)
@@ -216,7 +216,7 @@ uint64_t VisibleRun::known(const IlluminationMap& map, const RunSurface& surface
   }
   const uint64_t turned = mapped.relief | mapped.bent;
   Vectors slope;
-  float own[RunSurface::most];  // as eval_turn() has it, where charts are bent
+  float own[RunSurface::most];  // as eval_turn() has it, for bent charts
   for (int i = 0; i < count; i += lane_count) {
     if (!(mapped.pixels >> i & 0xff)) continue;
     const NodeTaps taps(mapped.nodes, i);

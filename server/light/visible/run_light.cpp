@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that is kept on what moves, on a run's pixels: VisibleRun::light().
+// Computes the light that is kept on what moves, on a run's pixels: VisibleRun::light().
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,8 @@ namespace wellspring::light {
 // (Ramamoorthi and Hanrahan 2001).
 static constexpr float sheen_slope = 1.5f;
 
-// What part of light from all around eight pixels' gloss reflects, of a surface as described.
+// Returns the share of light from all around that eight pixels' gloss reflects, of a surface as
+// described.
 Lanes VisibleRun::Impl::read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness,
                                    Lanes share) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
@@ -31,8 +32,9 @@ Lanes VisibleRun::Impl::read_gloss(const RunSurface& surface, int i, Lanes f0, L
                       lanes_min(lanes_max(cosine, all_lanes(0)), all_lanes(1)));
 }
 
-// Times as much light as the diffuse layer is lit by comes from about where eight pixels mirror, by
-// the light's slope: of spherical harmonics of two bands, of which a rough lobe leaves a part.
+// Returns the light from about where eight pixels mirror, as a multiple of the light on the diffuse
+// layer, by the light's slope: of spherical harmonics of two bands, of which a rough lobe leaves a
+// part.
 Lanes VisibleRun::Impl::read_sheen(const RunSurface& surface, const Lanes3& slope, int i,
                                    float roughness) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
@@ -58,14 +60,15 @@ Lanes eval_turn(const Facet& f, Lanes a, Lanes b, const Lanes3& slope, const Lan
     nx += p.x * a + q.x * b, ny += p.y * a + q.y * b, nz += p.z * a + q.z * b;
   }
   const Lanes unit = 1.0f / lanes_sqrt(lanes_max(nx * nx + ny * ny + nz * nz, all_lanes(1e-30f)));
-  // How far the slope goes along the mesh's normal, and along that which light is relative to.
+  // `up` and `from` are how far the slope goes along the mesh's normal, and along the normal that
+  // light is relative to.
   const float side = f.front ? 1.0f : -1.0f;
   const Lanes up = (slope.x * nx + slope.y * ny + slope.z * nz) * unit;
   const Lanes from = own ? *own : side * up;
   if (!relief) return positive_lanes(1.0f + side * up - from);
   const Lanes x = relief->x * 2.0f - 1.0f, y = relief->y * 2.0f - 1.0f, z = relief->z * 2.0f - 1.0f;
   const float scale = f.material->normal_scale;
-  // As steep as the scale says, and as short as the mean over the pixel is.
+  // The normal is as steep as the scale says, and as short as the mean over the pixel is.
   const Lanes flat = x * x + y * y,
               shrink = lanes_sqrt((flat + z * z) /
                                   lanes_max(scale * scale * flat + z * z, all_lanes(1e-12f)));
@@ -137,19 +140,19 @@ uint64_t VisibleRun::light(const SkinLight& skin, const Lights& lights, const Ru
   return moving;
 }
 
-// Smooth gloss of what moves shows what is around, as the catch lights of eyes:
+// Computes smooth gloss of what moves, which shows what is around, as the catch lights of eyes:
 // VisibleRun::light().
 
 namespace {
 
-constexpr int most_rays = 8;                // of a pixel
+constexpr int most_rays = 8;                // rays of a pixel
 constexpr size_t most_together = 256;       // rays
 constexpr float turn_a_ray = 0.015f;        // radians that normals turn within a pixel, for a ray
-constexpr float least_alpha_shown = 0.03f;  // of highlights of lamps that have no size
-constexpr float darkest = 1e-3f;            // radiance: of less nobody sees a shadow
-constexpr float beyond = 0.5f;              // triangles' sides that normals are followed beyond it
+constexpr float least_alpha_shown = 0.03f;  // for highlights of lamps that have no size
+constexpr float darkest = 1e-3f;            // radiance: no visitor sees a shadow of less
+constexpr float beyond = 0.5f;              // triangle's sides that normals are followed beyond it
 
-// A triangle, and the normals on it towards the eye.
+// Holds a triangle, and the normals on it towards the eye.
 struct ShineFacet {
   vec3 corner{0}, edge1{0}, edge2{0}, face{0};
   vec3 normal[3];
@@ -168,7 +171,7 @@ struct ShineFacet {
     for (int k = 0; k < 3; k++)
       extent = std::max(extent, max_component(glm::abs(mesh.positions[f.corner[k]])));
   }
-  // A place of the plane that is seen along `way`, and the unit normal there.
+  // Holds a place of the plane that is seen along `way`, and the unit normal there.
   struct Seen {
     vec3 place{0}, normal{0};
   };
@@ -186,7 +189,7 @@ struct ShineFacet {
   }
 };
 
-// A facet of GGX's distribution around the normal (Walter et al. 2007, equation 35).
+// Draws a facet of GGX's distribution around the normal (Walter et al. 2007, equation 35).
 vec3 sample_facet(vec3 normal, float alpha, vec2 u) {
   const float tangent2 = alpha * alpha * u.x / std::max(1 - u.x, 1e-3f);
   const float cosine = 1 / std::sqrt(1 + tangent2), sine = std::sqrt(tangent2) * cosine;
@@ -196,7 +199,7 @@ vec3 sample_facet(vec3 normal, float alpha, vec2 u) {
   return normal * cosine + (s * std::cos(turn) + t * std::sin(turn)) * sine;
 }
 
-// GGX's distribution times its shadowing, by Smith, over four cosines; `v`, `l`: unit.
+// Returns GGX's distribution times its shadowing, by Smith, over four cosines; `v`, `l`: unit.
 float eval_lobe(vec3 n, vec3 v, vec3 l, float alpha) {
   const vec3 h = normalize(v + l);
   const float nh = std::clamp(dot(n, h), 0.0f, 1.0f), nl = dot(n, l),
@@ -261,7 +264,7 @@ void VisibleRun::Impl::shine(const Lights& lights, RunSkin& to) const {
       to.shine_red[i] = lamps.x, to.shine_green[i] = lamps.y, to.shine_blue[i] = lamps.z;
       const int count = std::clamp(1 + int((std::sqrt(turn2) + alpha) / turn_a_ray), 1, most_rays);
       for (int k = 0; k < count; k++) {
-        // Places of the R2 sequence in the pixel and on the lobe (Roberts 2018).
+        // The places are the R2 sequence in the pixel and on the lobe (Roberts 2018).
         const float a = float(k) + 0.5f;
         auto part = [&](float step) { return step * a - std::floor(step * a); };
         const vec2 at(part(0.7548777f) - 0.5f, part(0.5698403f) - 0.5f);
@@ -271,7 +274,7 @@ void VisibleRun::Impl::shine(const Lights& lights, RunSkin& to) const {
         Ray ray;
         place.position = s.place;
         ray.direction = there - 2 * dot(there, n) * n;
-        // It would show something behind the surface: it is as light as what is around.
+        // Such a ray would show something behind the surface: its light is taken as that around.
         if (!(dot(ray.direction, shape.face) > 1e-3f)) {
           to.shine_red[i] += to.red[i] / float(count);
           to.shine_green[i] += to.green[i] / float(count);
@@ -284,7 +287,8 @@ void VisibleRun::Impl::shine(const Lights& lights, RunSkin& to) const {
     }
   }
   std::vector<PrimaryHit> seen(rays.size());
-  // In parts that are not shared out to threads: a thread that waited could begin another run.
+  // They are cast in parts that are not shared out to threads: a thread that waited could begin
+  // another run.
   for (size_t first = 0; first < rays.size(); first += most_together) {
     const size_t count = std::min(most_together, rays.size() - first);
     wellspring::light::see(visibility.world, lights, std::span(rays).subspan(first, count),

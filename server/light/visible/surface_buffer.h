@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every pixel of a view sees, as planes: places and normals that light falls on (a G-buffer:
-// Saito and Takahashi 1990).
+// Keeps what every pixel of a view sees, as planes: places and normals that light falls on (a
+// G-buffer: Saito and Takahashi 1990).
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace wellspring::light {
 
-// Where a view's pixels lie, at a depth of 1.
+// Computes where a view's pixels lie, at a depth of 1.
 
-// From the eye: the sampling place of pixel (x, y), `offset` into it, lies at
+// Holds vectors from the eye: the sampling place of pixel (x, y), `offset` into it, lies at
 // view.position + depth * at(x, y).
 struct PixelGrid {
   vec3 corner, right, down;
@@ -28,20 +28,20 @@ struct PixelGrid {
   vec3 at(float x, float y) const { return corner + right * x + down * y; }
 };
 
-// What is drawn of a run of pixels before light is put on it.
+// Describes what is drawn of a run of pixels before light is put on it.
 
 struct RunPixels {
   RunSurface surface;
   float glow_red[RasterRun::most], glow_green[RasterRun::most], glow_blue[RasterRun::most];
 };
 
-// A run's pixels, a bit each: those that emit light by themselves, and of these the ones that do
-// nothing else.
+// Holds bits of a run's pixels: those that emit light, and among these the ones that do nothing
+// else.
 struct RunGlow {
   uint64_t some = 0, only = 0;
 };
 
-// Everything that is drawn of a run.
+// Describes everything that is drawn of a run.
 inline RunGlow describe_run(const VisibleRun& run, RunPixels& p) {
   uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
   uint64_t alone = run.describe(all, p.surface);
@@ -61,7 +61,7 @@ inline RunGlow describe_run(const VisibleRun& run, RunPixels& p) {
   return emitting;
 }
 
-// Row after row; arrays end with `surface_buffer_pad` more items that may be read.
+// Planes go row after row; arrays end with `surface_buffer_pad` more items that may be read.
 inline constexpr int surface_buffer_pad = 16;
 struct SurfaceBuffer {
   View view;
@@ -76,7 +76,7 @@ struct SurfaceBuffer {
 size_t memory_bytes(const SurfaceBuffer& surfaces);
 
 // Overwrites `surfaces` by what `view` shows at the middle of its pixels, reusing memory. Normals
-// are those of the mesh. Call as VisibilityPass::see().
+// are those of the mesh. Call it as VisibilityPass::see().
 void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuffer& surfaces,
                   RasterShows shows = RasterShows::all);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What light/visible/visibility.h keeps, for its own units.
+// Holds the private state of light/visible/visibility.h, for its own units.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -17,13 +17,13 @@ struct VisibilityPass::Impl {
   Lights lights;
   Raster raster;
   Pictures pictures;
-  std::vector<Reflectance> reflectance;  // of each material
-  std::vector<DemodulationScale> scale;  // of those scaled
-  std::vector<uint8_t> panes;            // of each material: is one everywhere
-  std::vector<uint8_t> polished;         // of each material: some place of it may be
-  std::vector<uint8_t> glossy;           // of each material: some place of it has highlights
-  std::vector<uint8_t> plain;            // of each material: is_plain()
-  bool any_gloss = false;                // of a mesh of the scene
+  std::vector<Reflectance> reflectance;  // one for each material
+  std::vector<DemodulationScale> scale;  // one for each material, set for scaled ones
+  std::vector<uint8_t> panes;            // one for each material: it is a pane everywhere
+  std::vector<uint8_t> polished;         // one for each material: some place of it may be
+  std::vector<uint8_t> glossy;           // one for each material: some place of it has highlights
+  std::vector<uint8_t> plain;            // one for each material: is_plain()
+  bool any_gloss = false;                // some mesh of the scene has highlights
   std::vector<uint8_t> moving_object;    // by object
   MetalDemodulation metal_of(int material) const {
     return lights.tables->materials[size_t(material)].metal;
@@ -32,12 +32,12 @@ struct VisibilityPass::Impl {
       : world(w), lights(l), raster(w), pictures(make_pictures(w.scene())) {}
 };
 
-// Pixels side by side of one material, whose pictures are read at one level, maybe of several
-// triangles: of many small ones each for itself would leave most lanes unused.
+// Holds pixels side by side of one material, whose pictures are read at one level, maybe of several
+// triangles: many small ones each for itself would leave most lanes unused.
 struct Stretch {
   int begin, end;
   const Material* material;
-  int index;                           // of the material in the scene
+  int index;                           // the material's in the scene
   float base_texels, emission_texels;  // a pixel's width
   bool alone;                          // each pixel has to be looked up by itself
   bool goes_on_with(const Stretch& s) const {
@@ -63,9 +63,10 @@ struct Stretches {
   }
 };
 
-// Times as much light as is kept falls on eight places of a facet, (a, b) on its triangle, as light
-// has `slope`. `relief`: what a map of normals says there, 0 to 1; null: they face as the mesh
-// does. `own`: how far the slope goes along the normal that light is kept for; null: the mesh's.
+// Returns the factor from the light that is kept to the light on eight places of a facet, (a, b) on
+// its triangle, as light has `slope`. `relief`: texels of a map of normals there, 0 to 1; null:
+// they face as the mesh does. `own`: how far the slope goes along the normal that light is kept
+// for; null: the mesh's.
 Lanes eval_turn(const Facet& f, Lanes a, Lanes b, const Lanes3& slope, const Lanes3* relief,
                 const Lanes* own);
 
@@ -78,13 +79,13 @@ struct VisibleRun::Impl {
   float pixel_angle, blurred_angle;
   FacetCache& facets;
   const RasterRun* run = nullptr;
-  // Towards pixel i, at depth 1.
+  // Returns the direction towards pixel i, at depth 1.
   vec3 direction(int i) const {
     vec2 axis = axis_place(view);
     float x = float(run->x + i) + offset.x - axis.x, y = axis.y - float(run->y) - offset.y;
     return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
   }
-  // How far what pixel i shows is from the eye.
+  // Returns the distance from the eye of the surface that pixel i shows.
   float distance(int i) const {
     const vec2 axis = axis_place(view);
     const vec2 aside = pixel_angle * (vec2(float(run->x + i), float(run->y)) + offset - axis);
@@ -95,22 +96,23 @@ struct VisibleRun::Impl {
   }
   PrimaryHit see(int i) const;
   Lanes read_gloss(const RunSurface& surface, int i, Lanes f0, Lanes roughness, Lanes share) const;
-  // Across pixels from `i` on, those before `end`, of the facet's map of normals.
+  // Returns the texels of the facet's map of normals across a pixel, for pixels from `i` on and
+  // before `end`.
   float relief_texels(const Facet& f, int i, int end) const {
     const int middle = std::min(i + lane_count / 2, end - 1);
     return pixel_width(f, distance(middle), blurred_angle) * f.relief.texels;
   }
-  // Reads a map of normals at eight pixels; as if there were none where it is of floats, or read by
-  // the nearest texel.
+  // Reads a map of normals at eight pixels; reads it as if there were none if it is of floats, or
+  // read by the nearest texel.
   Lanes3 read_relief(const PicturePlaces& places, const Material& m, float texels, int i,
                      int end) const;
   Lanes read_sheen(const RunSurface& surface, const Lanes3& slope, int i, float roughness) const;
-  // Its gloss is smooth enough to show what is around.
+  // Returns whether its gloss is smooth enough to show what is around.
   bool shines(const Facet& f) const {
     const GlossFactors gloss = gloss_factors(*f.material);
     return f.placed->moving && gloss.f0 > 0 && gloss.share > 0 && gloss.roughness < most_shining;
   }
-  // The light of such gloss; RunSkin's other light is known.
+  // Computes the light of such gloss; RunSkin's other light is set.
   void shine(const Lights& lights, RunSkin& to) const;
   void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
   vec3 scale_of(const Material& m, int index) const {

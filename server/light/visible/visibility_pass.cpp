@@ -49,7 +49,7 @@ bool VisibilityPass::rasterises(const View& view) const {
   return !impl_->lights.tables->any_solid || find_media(transport, view.position).innermost() < 0;
 }
 
-// As demodulated_albedo(), eight base colours at a time.
+// Does demodulated_albedo() for eight base colours at a time.
 static void keep_lanes(MetalDemodulation metal, Lanes metallic, Lanes (&rgb)[3]) {
   if (metal == MetalDemodulation::none) {
     LaneMask diffuse = lanes_max(lanes_max(rgb[0], rgb[1]), rgb[2]) * (1 - metallic) > least_albedo;
@@ -59,13 +59,14 @@ static void keep_lanes(MetalDemodulation metal, Lanes metallic, Lanes (&rgb)[3])
   }
 }
 
-// Eight pixels from `i` on, those before `end`; false: they have to be looked up one by one.
+// Reads eight pixels from `i` on, those before `end`; returns false if they have to be looked up
+// one by one.
 bool VisibleRun::Impl::read_lanes(const PicturePlaces& places, const TextureRef& reference,
                                   float texels, int i, int end, Lanes (&rgb)[3]) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   const Texture& texture = visibility.pictures.scene->textures[size_t(reference.texture)];
   Lanes u = load_lanes(places.u + i), v = load_lanes(places.v + i);
-  // What lies beyond is read where the last one is, which costs nothing.
+  // Lanes beyond the last pixel read its place, which costs nothing.
   LaneMask here = lane < float(end - i);
   u = here ? u : all_lanes(places.u[end - 1]), v = here ? v : all_lanes(places.v[end - 1]);
   size_t image = size_t(texture.image);
@@ -95,8 +96,8 @@ void VisibleRun::Impl::describe_normals(const Facet& f, int begin, int end, RunS
   }
 }
 
-// Pixels [begin, end) of a run, all of one triangle, become stretches or parts of such. False: each
-// has to be seen by itself.
+// Makes pixels [begin, end) of a run, all of one triangle, stretches or parts of stretches. Returns
+// false if each has to be seen by itself.
 bool VisibleRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) const {
   const Material& m = *f.material;
   int index = f.placed->mesh->material;
@@ -266,7 +267,7 @@ std::span<const std::vector<EdgeShare>> VisibilityPass::see_edges(
   return impl_->raster.edges();
 }
 
-// Row by row, 64 pixels at a time.
+// Casts rays row by row, 64 pixels at a time.
 void VisibilityPass::cast(const View& view, vec2 offset, uint64_t picture,
                           const std::function<void(const VisibleRun&)>& take) const {
   constexpr int most = RasterRun::most;
@@ -293,7 +294,7 @@ void VisibilityPass::cast(const View& view, vec2 offset, uint64_t picture,
   });
 }
 
-// Whether edges may be asked for: it was rasterised.
+// Draws the view. Returns whether it was rasterised, so that edges may be asked for.
 bool VisibilityPass::draw(const View& view, RasterSettings settings, float blur,
                           const std::function<void(const VisibleRun&)>& take) const {
   static std::atomic<uint64_t> pictures = 0;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float soft_alpha = least_soft_roughness * least_soft_roughness;
 
-// One mirror image of those of all panes: `reflections` is the sum of what they reflect.
+// Keeps one mirror image of those of all panes: `reflections` is the sum of what they reflect.
 void add_reflection(FirstSurface& first, float& reflections, const Surface& surface,
                     const BsdfSample& mirrored, Sampler& sampler) {
   vec3 weight = first.tint * mirrored.weight;
@@ -27,7 +27,7 @@ void add_reflection(FirstSurface& first, float& reflections, const Surface& surf
   advance(first.reflection, surface, unit);
 }
 
-// What a surface emits is light of the sample like any other, and told by itself.
+// Adds what a surface emits to the sample's light, and to its glow.
 void add_emission(vec3 tint, vec3 emission, Sample& sample) {
   vec3 light = tint * emission;
   sample.rest += light;
@@ -145,10 +145,11 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
 
 namespace {
 
-// Mirrors, glass and polished metal: what is seen there moves with the view.
+// Returns whether a surface is a mirror, glass or polished metal: what is seen there moves with the
+// view.
 bool looks_specular(const Bsdf& bsdf) { return bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f; }
 
-// The first surface's light, its diffuse lobe (of reflectance 1) and its specular lobes sampled
+// Shades the first surface, its diffuse lobe (of reflectance 1) and its specular lobes sampled
 // apart.
 void shade_first(const Transport& transport, const WalkRules& rules, FirstSurface& first,
                  Sampler& sampler, Sample& sample) {
@@ -217,7 +218,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
   if (known.known) tell_in_units(known, sample.smooth, sample);
 }
 
-// The same where that surface is Lambertian: one lobe and no gloss.
+// Does the same if that surface is Lambertian: one lobe and no gloss.
 void shade_first_lambert(const Transport& transport, const WalkRules& rules, Walk& walk,
                          const Hit& hit, Sampler& sampler, Sample& sample) {
   LambertSurface surface = eval_lambert_surface(transport.world, walk.ray, hit);

@@ -10,10 +10,11 @@
 namespace wellspring::light {
 namespace {
 
-constexpr float near_radii = 2.5f;  // of the sphere around what moves: it takes a tenth of the sky
+// Radii of the sphere around what moves; so far away it takes a tenth of the sky.
+constexpr float near_radii = 2.5f;
 constexpr float sharp_alpha = 0.09f;  // a roughness of 0.3
 
-// Whether the line from `a` to `b`, or on and on towards `b`, passes the sphere.
+// Returns whether the line from `a` to `b`, or on and on towards `b`, passes the sphere.
 bool passes(vec3 a, vec3 b, bool endless, vec3 centre, float radius) {
   vec3 line = b - a, to = centre - a;
   float length2 = dot(line, line);
@@ -41,7 +42,7 @@ bool has_known_light(const Transport& transport, const Ray& ray, const Hit& hit)
   return find_chart(transport, ray, hit) != no_chart;
 }
 
-// `seen`: the normal that the surface faces along; null: its mesh's.
+// Finds the light as it falls on `seen`, the normal that the surface faces along; null: its mesh's.
 static KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
                                    vec3 position, const vec3* seen) {
   KnownLight known;

@@ -10,8 +10,8 @@
 namespace wellspring::light {
 namespace {
 
-// Veach 1997, equation 5.19: flux is conserved per geometric area, lobes are written for the
-// shading normal.
+// Returns the factor of Veach 1997, equation 5.19: flux is conserved per geometric area, lobes are
+// written for the shading normal.
 float adjoint_factor(const Bsdf& bsdf, vec3 came_from, vec3 direction) {
   float in = std::abs(dot(came_from, bsdf.geometric_normal));
   float out = std::abs(dot(direction, bsdf.normal));
@@ -95,13 +95,13 @@ void part_arrival(const Transport& transport, const LightWalk& walk, Sampler& sa
   float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
   part_colors(transport, walk.media, walk.ray.direction, arrival.surface, walk.wavelengths, u,
               arrival.bsdf, spread);
-  arrival.bsdf.spread = nullptr;  // which does not live as long
+  arrival.bsdf.spread = nullptr;  // `spread` does not live as long
 }
 
 bool scatter(LightWalk& walk, const Arrival& arrival, const std::optional<WavelengthSpread>& spread,
              Lobes lobes, Sampler& sampler) {
   BsdfSample scattered = sample_bsdf(arrival.bsdf, lobes, sampler);
-  // What is refracted is squeezed by each wavelength's own index: the hero goes on alone.
+  // Refracted light is squeezed by each wavelength's own index: the hero goes on alone.
   if (spread && scattered.bounce == Bounce::refract)
     carry_hero(*spread, scattered, walk.wavelengths);
   else if (spread) carry_wavelengths(*spread, arrival.bsdf, lobes, scattered, walk.wavelengths);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight samples side by side, each at its own depth, for as long as all that they meet is
-// Lambertian: what shade_first_lambert and scatter_lambert do one by one. Rays are traced one by
-// one all the same, because they have nothing in common. A sample that meets anything else goes on
-// alone, and the next one takes its lane. Nothing in a lane depends on the others.
+// Traces eight samples side by side, each at its own depth, for as long as all that they meet is
+// Lambertian: does what shade_first_lambert and scatter_lambert do one by one. Rays are traced one
+// by one all the same, because they have nothing in common. A sample that meets anything else goes
+// on alone, and the next one takes its lane. Nothing in a lane depends on the others.
 #include "light/walk/trace_lambert.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace wellspring::light {
 namespace {
 
-// Eight of them, `first` on.
+// Describes the samples of up to eight requests from number `first` on, those of `lanes`.
 void describe_lanes(const Transport& transport, const RayPacket& rays, const Hit* hits,
                     uint32_t lanes, size_t first, std::span<Sample> samples,
                     std::vector<LambertHit>& eyes) {
@@ -82,16 +82,15 @@ LambertHits see_lambert(const Transport& transport, std::span<const Request> req
 namespace {
 
 struct LambertWalks {
-  uint32_t held =
-      0;  // lanes that hold a sample, which has arrived at hits[lane], a Lambertian surface
+  uint32_t held = 0;  // lanes with a sample at hits[lane], a Lambertian surface
   Hit hits[lane_count];
   size_t sample[lane_count];
   SamplerLanes samplers;
   LaneMask depth{};    // 1: seen by the eye
-  uint32_t known = 0;  // lanes whose first surface's light a map tells
+  uint32_t known = 0;  // lanes whose first surface has light in a map
   KnownLight map[lane_count];
   Lanes3 direction, throughput, smooth, rest;
-  // Where the ray left.
+  // The place that the ray left.
   Lanes3 from, from_normal;
   Lanes pdf{};
 };
@@ -104,7 +103,7 @@ struct Batch {
   size_t next = 0;
 };
 
-// As walk.h has it, of the surface at that depth.
+// Returns the dimensions of the surface at that depth, as walk.h numbers them.
 LaneBits dimensions_of(LaneMask depth) {
   LaneBits later = Dimensions::walk + LaneBits(depth - 2) * Dimensions::surface;
   return depth == 1 ? all_lane_bits(uint32_t(Dimensions::first_surface)) : later;
@@ -115,8 +114,8 @@ void for_each_lane(uint32_t lanes, const Body& body) {
   for (; lanes; lanes &= lanes - 1) body(std::countr_zero(lanes));
 }
 
-// Whether the sample that the eye's ray belongs to begins on something Lambertian; else it is
-// answered.
+// Returns whether the sample that the eye's ray belongs to begins on something Lambertian; else it
+// is answered.
 bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
   const Transport& transport = batch.transport;
   const Request& request = batch.requests[walks.sample[lane]];
@@ -146,8 +145,8 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
   return true;
 }
 
-// Gives each of those lanes the next sample that the eye sees on something Lambertian; what lies
-// before it is answered on the way.
+// Gives each of those lanes the next sample that begins on something Lambertian; samples before it
+// are answered on the way.
 void fill_lanes(Batch& batch, uint32_t lanes, RayPacket& rays, LambertWalks& walks) {
   while (lanes && batch.next < batch.requests.size()) {
     uint32_t asking = 0;
@@ -178,7 +177,7 @@ struct DirectLanes {
   Lanes3 area, punctual;
 };
 
-// sample_direct_light where there is one punctual light and no other.
+// Does what sample_direct_light does if there is one punctual light and no other.
 DirectLanes light_by_lamp(const Transport& transport, const LambertSurfaceLanes& surface,
                           const LambertLobeLanes& lobes, uint32_t lanes, RayPacket& rays) {
   const PunctualLight& lamp = transport.tables.punctual[0];
@@ -253,7 +252,8 @@ DirectLanes light_by_choice(const Batch& batch, const LambertSurfaceLanes& surfa
   return direct;
 }
 
-// Shades what the lanes have arrived at and sends them on; returns those that go.
+// Shades the surfaces that the lanes have arrived at, and sends the lanes on; returns those that
+// go.
 uint32_t scatter_lanes(Batch& batch, LambertWalks& walks, RayPacket& rays) {
   const Transport& transport = batch.transport;
   const LightTables& tables = transport.tables;
@@ -295,7 +295,7 @@ uint32_t scatter_lanes(Batch& batch, LambertWalks& walks, RayPacket& rays) {
   walks.depth += 1;
   set_rays(offset_origins(surface, walks.direction), walks.direction,
            all_lanes(std::numeric_limits<float>::infinity()), 0, rays);
-  // As survives() has it.
+  // Plays Russian roulette as survives() does.
   Lanes largest = max_component(walks.throughput);
   lanes &= negative_lanes((walks.pdf > zero) & (largest > zero));
   LaneMask doubtful = walks.depth > roulette_depth;
@@ -323,7 +323,8 @@ Walk lone_walk(const LightTables& tables, const LambertWalks& walks, const RayPa
   return walk;
 }
 
-// Whether the lane's sample has arrived at the next Lambertian surface; else it is answered.
+// Returns whether the lane's sample has arrived at the next Lambertian surface; else it is
+// answered.
 bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, LambertWalks& walks) {
   const Transport& transport = batch.transport;
   const Hit& hit = walks.hits[i];

@@ -30,14 +30,15 @@ void part_colors(const Transport& transport, const Media& media, vec3 direction,
 
 namespace {
 
-constexpr float wide = 1;           // density of rays among which shadows of what moves are lost
-constexpr int mirrored_depth = 12;  // chains of perfect mirrors and glass that are never cut short
+constexpr float wide = 1;  // density of a ray; shadows of what moves are lost among rays of less
+constexpr int mirrored_depth = 12;  // edges of perfect mirrors and glass that are never cut short
 
-// Russian roulette: survivors carry the share of those that stop. False: this one stops.
+// Plays Russian roulette: survivors carry the share of those that stop. Returns false if this one
+// stops.
 bool survives(Walk& walk, Sampler& sampler) {
   if (!(max_component(walk.throughput) > 0)) return false;
   if (walk.edges() <= (walk.pdf > 0 ? roulette_depth : mirrored_depth)) return true;
-  // Light in clear glass is taken as far as it is bright.
+  // In clear glass a walk that is bright enough always survives.
   const bool clear = walk.pdf <= 0 && walk.glass > 0 && walk.glass <= sure_glass;
   float chance =
       std::min(clear ? 1.0f : glass_survival, max_component(walk.throughput) * walk.density);
@@ -103,8 +104,8 @@ bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered)
 
 namespace {
 
-// How a surface scatters, as light sampling asks: the value towards a direction, and the density
-// with which sampling all of its lobes draws that.
+// Say how a surface scatters, for light sampling: the value towards a direction, and the density
+// with which sampling all of its lobes draws that direction.
 constexpr float blunt_alpha = 0.6f;  // rougher gloss is spread as Lambertian light is
 struct ByBsdf {
   const Bsdf& bsdf;
@@ -134,7 +135,7 @@ struct ByLambert {
   LobeHint hint() const { return {}; }
 };
 
-// `side`: lit_side.
+// `side`: the result of lit_side.
 template <class Scattering>
 DirectLight direct_light(const Transport& transport, const Walk& walk, const SurfacePlace& place,
                          vec3 side, vec3 normal, const Scattering& scattering, bool apart,
@@ -223,7 +224,7 @@ bool may_end(const Transport& transport, const Walk& walk, const Hit& hit, vec3&
   return walk.media.here.count == 0 && find_kept_light(transport, walk.ray, hit, sharp, light);
 }
 
-// One step of the walk at a Lambertian surface. False: it ends here.
+// Does one step of the walk at a Lambertian surface. Returns false if the walk ends there.
 bool scatter_lambert(const Transport& transport, const WalkRules& rules, Walk& walk, const Hit& hit,
                      uint32_t base, Sampler& sampler, vec3& radiance) {
   bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
@@ -271,7 +272,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
 
     const bool ends = walk.scattered >= rules.scatterings, last = walk.depth >= rules.max_depth;
     const bool solid = material.thickness > 0 && surface.transmission > 0;
-    if (ends || (last && !solid)) {  // only straight on, where a shadow ray would have gone too
+    if (ends || (last && !solid)) {  // the walk goes only straight on, as a shadow ray would
       if (!is_pane(surface, material)) return radiance;
       BsdfSample straight;
       straight.direction = walk.ray.direction;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The random walk that `path` and `direct` share: next-event estimation and scattering combined by
-// multiple importance sampling (Veach 1997, chapter 9), with thin smooth panes passed straight by
-// light and eye alike. The first surface is treated with more care, because its parts are told
-// apart in the Sample.
+// Follows the random walk that `path` and `direct` share: next-event estimation and scattering
+// combined by multiple importance sampling (Veach 1997, chapter 9), with thin smooth panes passed
+// straight by light and eye alike. The first surface is treated with more care, because its parts
+// are kept apart in the Sample.
 #pragma once
 #include <optional>
 
@@ -14,108 +14,111 @@
 
 namespace wellspring::light {
 
-// Where walks meet what parts their colours (dispersion.h): a solid's own boundary, between the
-// indices on both its sides. Walks of the eye and of light ask the same.
+// Parts the colours of walks at dispersive surfaces (dispersion.h): at a solid's own boundary,
+// between the indices on both its sides. Walks of the eye and of light call the same functions.
 
-// Never true where the plan has no dispersion.
+// Returns whether a surface parts colours; never true if the plan has no dispersion.
 bool parts_colors(const Transport& transport, const Media& media, const Surface& surface);
 
-// Of a ray of that direction, where parts_colors(): spread_wavelengths with what lies on both
-// sides.
+// Parts the colours of a ray of that direction, if parts_colors(): calls spread_wavelengths with
+// the media on both sides.
 void part_colors(const Transport& transport, const Media& media, vec3 direction,
                  const Surface& surface, const Wavelengths& carried, float u, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread);
 
 struct WalkRules {
-  int max_depth = 8;          // edges, panes passed straight and what glass does not counted
+  int max_depth = 8;          // edges, without panes passed straight and what glass does
   int scatterings = 1 << 30;  // surfaces that may scatter other than perfectly; then one edge more
-  // >0: what a ray met by chance reflects no sharper than the ray stands for, alpha at least
-  // `blunt` over the root of its density. A highlight of a small lamp that a wide ray comes upon is
-  // a spark (Kaplanyan and Dachsbacher 2013, "Path Space Regularization"). Biased.
+  // >0: a surface that a ray met by chance reflects no sharper than the ray is wide: its alpha is
+  // at least `blunt` over the root of the ray's density. A small lamp's highlight that a wide ray
+  // comes upon is a spark (Kaplanyan and Dachsbacher 2013, "Path Space Regularization"). Biased.
   float blunt = 0;
-  // The first surface's diffuse light is read from Transport::maps, where nothing that moves is
-  // likely to change it; else it is found, and told as a multiple of what the map says.
+  // The first surface's diffuse light is read from Transport::maps, if nothing that moves is likely
+  // to change it; else it is sampled, and counted in multiples of the map's.
   bool reads_maps = false;
 };
 
-// One walk in flight: the ray that comes next, and what must be known of where it left.
+// Holds one walk in flight: the ray that comes next, and the place that it left.
 struct Walk {
   Ray ray;
   vec3 throughput{1};
   int depth = 1;  // this ray's number, counted from the eye, without what solid glass did
-  int glass = 0;  // what that did (sample_light.h)
+  int glass = 0;  // edges that solid glass did (sample_light.h)
   float pdf = 0;  // density of its direction where it last scattered; 0: perfect, or the eye
-  vec3 from_normal{0, 1, 0};  // the side from which light was sampled there
-  vec3 from{0};               // there
-  float area_share = 0;       // chance that area light was sampled there; 0: it was not
-  Media media;                // that it runs in, and beyond the surface it met last
-  float density = 1;  // in there radiance is denser by this (squared index), says the roulette
+  vec3 from_normal{0, 1, 0};  // side from which light was sampled at `from`
+  vec3 from{0};               // place that the ray left
+  float area_share = 0;       // chance that area light was sampled at `from`; 0: it was not
+  Media media;                // media that the ray runs in, and beyond the surface it met last
+  // Factor by which radiance is denser in `media` (squared index), for the roulette.
+  float density = 1;
   int scattered = 0;
-  int panes = 0;            // passed in a row
-  Wavelengths wavelengths;  // once it has met something dispersive
+  int panes = 0;            // panes passed in a row
+  Wavelengths wavelengths;  // set once the walk has met something dispersive
   int edges() const { return depth + glass; }
 };
 
 inline constexpr int roulette_depth = 2;  // edges that Russian roulette never cuts short
 
-// Radiance that comes back along the walk, times its throughput.
+// Returns the radiance that comes back along the walk, times its throughput.
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler);
-// The same where what the walk's ray meets first is known.
+// Does the same if the first hit of the walk's ray is known.
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit hit,
             Sampler& sampler);
 
-// Emission met by the walk's ray, weighted against the chance that light sampling had found it
-// where the ray left.
+// Returns emission met by the walk's ray, weighted against the chance that light sampling had found
+// it from the place that the ray left.
 vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
                        const Material& material);
 vec3 walk_met_sky(const Transport& transport, const Walk& walk);
 
-// A sample's dimensions: the eye's way to the first surface, then each walk a block of its own, and
-// each of its surfaces a place in it, so that a number means the same in all samples of a pixel.
+// Numbers a sample's dimensions: the eye's way to the first surface comes first, then each walk has
+// a block of its own, and each of its surfaces a place in it, so that a number means the same in
+// all samples of a pixel.
 struct Dimensions {
   static constexpr uint32_t first_surface = 96;  // panes come before
   static constexpr uint32_t walk = 1u << 16;     // the k-th walk begins at k times this
   static constexpr uint32_t surface = 32;        // from one surface of a walk to the next
-  // Within a surface.
+  // Offsets within a surface's dimensions.
   static constexpr uint32_t punctual = 4, scatter = 8, specular = 16, survival = 24,
                             wavelength = 28;
 };
 
-// Parts the colours where `surface` does so: `bsdf` becomes the hero wavelength's. After sampling,
-// `spread` if set goes to carry_wavelengths.
+// Parts the colours if `surface` does so: `bsdf` becomes the hero wavelength's. After sampling,
+// `spread`, if set, goes to carry_wavelengths.
 void part_colors(const Transport& transport, const Walk& walk, const Surface& surface,
                  uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread);
 
-// The walk's next ray after `place` scattered it; false: it ends here.
+// Makes the walk's next ray after `place` scattered it; returns false if the walk ends here.
 bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered);
 
-// Light arriving at a surface from one area light and one punctual light, scattered towards the
-// viewer.
+// Holds light that arrives at a surface from one area light and one punctual light, scattered
+// towards the viewer.
 struct DirectLight {
   vec3 area_diffuse{0}, punctual_diffuse{0}, specular{0};
-  vec3 area_direction{0}, punctual_direction{0};  // where either comes from; 0: there is none
+  vec3 area_direction{0}, punctual_direction{0};  // directions to these lights; 0: there is none
   float punctual_share = 1;                       // LightSample::share
   bool sure_of_punctual() const { return punctual_share > 0.99f; }
   vec3 sum() const { return area_diffuse + punctual_diffuse + specular; }
 };
-// `apart`: the caller samples the diffuse and specular lobes one by one (else as a mixture), and
-// both kinds of light are sampled (else one of them, by area_share).
+// Samples the light that arrives at a surface. `apart`: the caller samples the diffuse and specular
+// lobes one by one (else as a mixture), and both kinds of light are sampled (else one of them, by
+// area_share).
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const Surface& surface, const Bsdf& bsdf, bool apart,
                                 Sampler& sampler);
-// The same where the surface is Lambertian, its lobe's reflectance left out.
+// Does the same for a Lambertian surface, its lobe's reflectance left out.
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const SurfacePlace& place, const LambertLobe& lobe, bool apart,
                                 Sampler& sampler);
 
-// Share of light left after a length of the solid it runs in (Beer's law); -1: in none.
+// Returns the share of light left after a length of the solid it runs in (Beer's law); -1: in none.
 vec3 eval_tint(const Transport& transport, int medium, float length);
 inline vec3 eval_absorption(const Transport& transport, int medium, float length) {
   return medium < 0 || !transport.tables.any_tint ? vec3(1) : eval_tint(transport, medium, length);
 }
 
-// Whether the shortest way through the shading will do.
+// met_lambertian() returns whether the shortest way through the shading suffices.
 inline const MaterialTraits& traits_of(const Transport& transport, const Hit& hit) {
   return transport.tables.materials[size_t(transport.world.mesh_of(hit.instance).material)];
 }
@@ -123,11 +126,11 @@ inline bool met_lambertian(const Transport& transport, const Hit& hit) {
   return traits_of(transport, hit).lambertian;
 }
 
-// The whole of each sample: what trace functions of techniques call. A sample is the same alone and
-// among others.
+// Traces whole samples for the trace functions of techniques. A sample is the same alone and among
+// others.
 void trace_samples(const Transport& transport, const WalkRules& rules,
                    std::span<const Request> requests, std::span<Sample> samples);
-// One sample by the way that knows all materials, where trace_samples has none quicker.
+// Traces one sample in the way that handles all materials, if trace_samples has none quicker.
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request);
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request,
                     const Hit& first_hit);

@@ -82,7 +82,7 @@ void CorrectedVisit::show(const View& view, int budget, int frame, Frame& shown)
   compositor_.draw_still(cache_, view, *stage_.visibility, shown);
 }
 
-// As Compositor::draw(), with the samples of what shines.
+// Draws as Compositor::draw(), with the samples of shining objects.
 void CorrectedVisit::draw(const View& view, Frame& shown) {
   fit_frame(view.width, view.height, shown);
   fit_frame(view.width, view.height, light_);

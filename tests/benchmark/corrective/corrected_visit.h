@@ -10,14 +10,14 @@
 
 namespace wellspring::test {
 
-// How a visitor's samples are spent. `share` of them is asked for by the order, at most; the render
-// cache plans the others, with `weight` as the factor of what shines.
+// Says how a visitor's samples are spent. `share` of them is asked for by the order, at most; the
+// render cache plans the others, with `weight` as the factor of shining objects.
 struct CorrectedWay {
   enum class Order : uint8_t { none, uniform, corrective };
   const char* name = "";
   Order order = Order::none;
   float share = 0;
-  bool groups = false;   // of neighbours of one material; else objects
+  bool groups = false;   // correct groups of neighbours of one material; else single objects
   bool at_rest = false;  // not in motion alone
   float weight = 1;
 };

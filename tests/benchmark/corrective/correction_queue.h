@@ -17,23 +17,23 @@ namespace wellspring::test {
 
 struct CorrectionRegion {
   uint32_t object = 0;
-  PixelBox box;  // what lies outside of the picture is left out
+  PixelBox box;  // pixels; the part outside of the picture is left out
   float priority = 0;
   bool operator==(const CorrectionRegion&) const = default;
 };
 
-// What an analysis of a picture found.
+// Holds the results of a picture's analysis.
 struct CorrectionPlan {
   View view;
   uint32_t age = 0;              // the camera's
-  std::vector<uint32_t> object;  // of each pixel, as Frame::object: view.width * view.height
+  std::vector<uint32_t> object;  // each pixel's object, as Frame::object: view.width * view.height
   std::vector<CorrectionRegion> regions;
 };
 
 struct CorrectionSettings {
   int levels = 4;
   int job = 64;        // most places of a job: the paper's N_job
-  float decay = 0.9f;  // of priority from level to level; the paper takes 0.8 to 0.9
+  float decay = 0.9f;  // factor of the priority from level to level; the paper takes 0.8 to 0.9
 };
 
 // Places of one object and level, for one tracer.
@@ -44,13 +44,13 @@ struct CorrectionJob {
   uint32_t object = 0;
   int level = 1;
   float priority = 0;
-  int64_t position = 0;       // of the level's places in the region, where the job begins
+  int64_t position = 0;  // index of the job's first place among the level's places in the region
   std::vector<ivec2> places;  // pixels that show the object
 };
 
 struct CorrectionStats {
-  uint64_t places = 0;   // that went out
-  uint64_t skipped = 0;  // that do not show their region's object: nobody traces them
+  uint64_t places = 0;   // places that tracers got
+  uint64_t skipped = 0;  // places outside of their region's object: nobody traces them
 };
 
 // All functions may be called by any thread. The lock is held while a job is taken or a plan comes
@@ -70,7 +70,7 @@ class CorrectionQueue {
   // The next job of the region of the highest priority, of equal ones that which waits longest.
   // False: nothing is left. At once the rest of the region waits for the next tracer.
   bool take(CorrectionJob& job);
-  // How many plans came in. What was taken of an older one belongs to an older view.
+  // Counts the plans that came in. Jobs taken from an older plan belong to an older view.
   uint64_t plan() const;
   bool empty() const;
   CorrectionStats stats() const;
@@ -93,7 +93,7 @@ class CorrectionQueue {
   CorrectionPlan plan_;
   uint64_t plans_ = 0, turns_ = 0;
   std::vector<Entry> waiting_;  // a heap, the next first
-  std::vector<Entry> done_;     // of this plan
+  std::vector<Entry> done_;     // this plan's regions that are done
   CorrectionStats stats_;
 };
 

@@ -24,7 +24,7 @@ SampleWords make_words(const Sample& sample) {
           pack_rgb9e5(sample.smooth), pack_normal(sample.normal) | 1u << 16 | noise << 24};
 }
 
-// Of a pixel's own point.
+// Returns the number of samples in a pixel's own point.
 uint32_t own_samples(float more) { return std::bit_cast<uint32_t>(more) >> 16 & 255; }
 
 }  // namespace

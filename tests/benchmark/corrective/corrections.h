@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that depends on the view, of what shines (Haber, Myszkowski, Yamauchi, Seidel 2001, section
-// 4): each such object's samples are kept by themselves, dropped when it is
-// seen from too different an angle, warped and splatted over its own pixels, and asked for from
-// coarse to fine in the order in which objects are attended to. What they leave out points tell.
-// One visitor's. What moves has none.
+// Corrects the light of shining objects, which depends on the view (Haber, Myszkowski, Yamauchi,
+// Seidel 2001, section 4): each such object's samples are kept by themselves, dropped when the
+// object is seen from too different an angle, warped and splatted over its own pixels, and asked
+// for from coarse to fine in the order in which objects are attended to. Pixels that these samples
+// leave out show the cache's points. Each visitor has corrections of their own. Moving things have
+// none.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -17,8 +18,8 @@
 
 namespace wellspring::test {
 
-// Of each object by its number, how far the cosine to the eye may change until its samples are
-// invalid (delta_of()); 0: it is matte, and nothing of it is corrected.
+// Returns for each object, by its number, how far the cosine to the eye may change until its
+// samples are invalid (delta_of()); 0: the object is matte and is not corrected.
 std::vector<float> find_shining(const Scene& scene);
 
 // Finds the first object of each object's group: those of one material that stand close together
@@ -59,7 +60,7 @@ class Corrections {
   void splat();
   Request request_at(ivec2 place, uint64_t seed);
 
-  std::vector<uint32_t> groups_;  // of each object
+  std::vector<uint32_t> groups_;  // each object's group
   SampleStore store_;
   CorrectionQueue queue_;
   SplatScratch scratch_;
@@ -67,7 +68,7 @@ class Corrections {
   std::vector<float> shining_;
   View view_;
   uint32_t age_ = 0;
-  // Of the view's pixels.
+  // These describe the view's pixels.
   int pixels_ = 0;
   std::vector<uint32_t> object_, group_;
   uint32_t group_of(uint32_t object) const {

@@ -11,7 +11,7 @@
 
 namespace wellspring::test {
 
-// Of a vector of any length but 0.
+// Packs a vector of any length but 0.
 inline uint32_t pack_fine_normal(vec3 n) {
   float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   float x = n.x / sum, y = n.y / sum;

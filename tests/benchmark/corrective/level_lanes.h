@@ -13,7 +13,7 @@ inline V load_some(const T* from, int count) {
   std::memcpy(&v, from, size_t(count) * sizeof(T));
   return v;
 }
-// Of what has arrays x, y and z.
+// Loads places from a list that has arrays x, y and z.
 template <class Samples>
 inline Lanes3 load_places(const Samples& list, int begin, int count) {
   size_t i = size_t(begin);

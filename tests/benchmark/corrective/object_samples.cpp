@@ -13,7 +13,7 @@
 namespace wellspring::test {
 namespace {
 
-// What is done to every array of a list.
+// Calls the function with every array of a list.
 template <class Samples, class Function>
 void each_array(Samples& list, const Function& function) {
   function(list.x);

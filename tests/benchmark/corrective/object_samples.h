@@ -13,15 +13,16 @@
 
 namespace wellspring::test {
 
-// What a sample shows, towards the view that asked: words of the caller's, kept as they are.
+// Holds what a sample shows towards the view that asked, in the caller's words, which are kept as
+// they are.
 using SampleWords = std::array<uint32_t, 4>;
 
 // A traced place.
 struct CorrectiveSample {
   uint32_t object = 0;  // as Frame::object; 0, where nothing is, has no samples
-  int level = 1;        // of the place, see level_of_pixel()
+  int level = 1;        // level of the place, see level_of_pixel()
   vec3 position{0};     // relative to Scene::origin, as View::position
-  vec3 normal{0};       // of any length but 0
+  vec3 normal{0};       // any length but 0
   SampleWords words{};
 };
 
@@ -43,8 +44,8 @@ struct ObjectSamples {
   int count() const;
 };
 
-// What is over a bound goes oldest first, a sixteenth of the bound more than it must; of one age
-// the finest levels go first.
+// If there are more samples than a bound allows, the oldest are dropped first, until a sixteenth of
+// the bound is free; among samples of one age the finest levels go first.
 struct SampleLimits {
   int most_of_object = 1 << 16;
   int most = 1 << 18;
@@ -63,23 +64,24 @@ struct SampleStore {
 int add_samples(SampleStore& store, const View& view, uint32_t age,
                 std::span<const CorrectiveSample> samples);
 
-// How far the cosine may change until a sample is invalid: 0.05 of a mirror up to 0.2 of what is
-// wholly rough, in proportion to the perceptual roughness (glTF 2.0). The range is the paper's.
+// Returns how far the cosine may change until a sample is invalid: 0.05 for a mirror up to 0.2 for
+// a wholly rough surface, in proportion to the perceptual roughness (glTF 2.0). The range is the
+// paper's.
 float delta_of(float roughness);
-// Also of an object that has no samples yet.
+// Sets the delta of an object, also of one that has no samples yet.
 void set_delta(SampleStore& store, uint32_t object, float delta);
 
 struct AgeingSettings {
   uint32_t max_age = 300;  // changes of the camera; at most 65535
-  int least_samples = 10;  // that say whether an age is valid: the paper's N_min
+  int least_samples = 10;  // samples needed to say whether an age is valid: the paper's N_min
 };
 struct AgeingStats {
-  int checked = 0, invalid = 0;  // of the levels that were looked at
+  int checked = 0, invalid = 0;  // samples of the levels that were looked at
   int dropped = 0;
 };
-// Ageing (section 4.5), once for each change of the camera. Of each object the first level with at
-// least `least_samples` is looked at; where no level has as many, all are. Where more than half of
-// the samples of an age are invalid there, all samples of that age and object are dropped. `eye`:
+// Ageing (section 4.5), once for each change of the camera. For each object the first level with at
+// least `least_samples` is looked at; if no level has as many, all are. If more than half of the
+// samples of an age are invalid there, all samples of that age and object are dropped. `eye`:
 // View::position now; `age`: the camera's now. Many threads; the result does not depend on them.
 AgeingStats age_samples(SampleStore& store, vec3 eye, uint32_t age,
                         const AgeingSettings& settings = {});

@@ -31,14 +31,15 @@ struct Sqrt5Grid {
   int levels = 1;
   std::array<ivec2, most_sqrt5_levels> step{};
 };
-// With 4 or 8 levels the first grid is nearly upright, and its footprints leave few pixels out: 3
-// and 1 of a hundred. `levels` is cut off to 1 up to most_sqrt5_levels.
+// Makes the grids. With 4 or 8 levels the first grid is nearly upright, and its footprints leave
+// few pixels out: 3 and 1 of a hundred. `levels` is cut off to 1 up to most_sqrt5_levels.
 Sqrt5Grid make_sqrt5_grid(int levels);
 
-// Side of a level's square footprint in pixels: the paper's s_l, here max(|u.x|, |u.y|), exactly.
-// Footprints of one level do not overlap, and none covers the place of a coarser level; so pixels
-// that are splatted level by level, coarse to fine, end with their own samples. What a level's
-// footprints leave out are squares of side min(|u.x|, |u.y|), which show coarser levels.
+// Returns the side of a level's square footprint in pixels: the paper's s_l, here max(|u.x|,
+// |u.y|), exactly. Footprints of one level do not overlap, and none covers the place of a coarser
+// level; so pixels that are splatted level by level, coarse to fine, end with their own samples.
+// Between a level's footprints there are squares of side min(|u.x|, |u.y|), which show coarser
+// levels.
 inline int footprint_side(const Sqrt5Grid& grid, int level) {
   ivec2 u = glm::abs(grid.step[size_t(level - 1)]);
   return glm::max(u.x, u.y);
@@ -56,7 +57,7 @@ class Sqrt5Places {
   Sqrt5Places(const Sqrt5Grid& grid, int level, const PixelBox& box, int64_t position = 0);
   bool next(ivec2& place);  // false: there are no more
   int64_t position() const { return position_; }
-  int64_t count() const;  // of all places of the level in the box; O(rows)
+  int64_t count() const;  // number of the level's places in the box; O(rows)
 
  private:
   struct Row {

@@ -16,7 +16,8 @@ namespace {
 constexpr int tile_width = 64, tile_height = 32;
 constexpr int tile_stride = tile_width + lane_count;  // eight lanes may begin at the last pixel
 constexpr int chunk_samples = 4096;
-constexpr float most_growth = 4;     // of footprints: few old samples cover no whole picture
+// factor of the footprints' size: few old samples cover no whole picture
+constexpr float most_growth = 4;
 constexpr float other_side = 0.05f;  // cosine by which a (shading) normal may point away
 
 // 4 bits of level, 28 of nearness: the bits of a positive float have its order, their last 3 are

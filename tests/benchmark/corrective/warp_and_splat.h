@@ -14,9 +14,9 @@
 namespace wellspring::test {
 
 struct SplatStats {
-  int samples = 0;  // that were warped
-  int splats = 0;   // that fall into the picture
-  int pixels = 0;   // that show a sample
+  int samples = 0;  // warped samples
+  int splats = 0;   // splats that fall into the picture
+  int pixels = 0;   // pixels that show a sample
 };
 
 // A sample where the view sees it: pixels [x0, x1) x [y0, y1) of the picture.

@@ -12,7 +12,8 @@ struct CompareOptions {
   bool quick = false;
 };
 
-// A JSON object on a line: {"name","value","unit",...}. What is no number is left out.
+// Prints a JSON object on a line: {"name","value","unit",...}. Values that are no numbers are left
+// out.
 void tell(const std::string& name, double value, const std::string& unit,
           nlohmann::json fields = {});
 double mean(const std::vector<double>& values);  // NAN of none
@@ -21,9 +22,10 @@ double mean(const std::vector<double>& values);  // NAN of none
 void compare_filters(const CompareOptions& options);
 // The landmarks of dlib's regression trees and of the kiosk's network in the same recordings.
 void compare_landmarks(const CompareOptions& options);
-// From a picture given to the eye's process to its observation at the other end of the socket.
+// Measures the way from a picture given to the eye's process to its observation at the other end of
+// the socket.
 void measure_way(const CompareOptions& options);
-// Of the eye's process, over simulated minutes.
+// Measures the memory of the eye's process over simulated minutes.
 void measure_memory(const CompareOptions& options);
 
 }  // namespace wellspring::test

@@ -53,7 +53,7 @@ struct Angles {
   vec3 truth, raw;  // radians
 };
 
-// What networks and pose make of each picture, before any filter.
+// Returns the rotations that networks and pose find in each picture, before any filter.
 std::vector<Angles> watch_head(FaceFinder& finder, double seconds,
                                const std::function<vec3(double)>& rotation) {
   std::vector<Angles> all;

@@ -30,7 +30,7 @@ using tcp = boost::asio::ip::tcp;
 
 constexpr double rate = 30;
 
-// As the synthetic camera that is live has it (kiosk/camera.h).
+// Returns the time as the live synthetic camera has it (kiosk/camera.h).
 double clock_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -109,7 +109,7 @@ void measure_way(const CompareOptions& options) {
     socket.read(buffer);
     const double now = clock_now();
     const auto seen = read(beast::buffers_to_string(buffer.data()));
-    if (!seen || now - began < 2) continue;  // what is slow at the beginning
+    if (!seen || now - began < 2) continue;  // the beginning is slow
     if (first < 0) first = seen->time;
 
     (seen->people.empty() ? empty : person).push_back((now - seen->time) * rate);

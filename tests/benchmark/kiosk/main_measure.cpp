@@ -84,7 +84,7 @@ void watch_scene(const ObserverSettings& settings, const Scene& scene, Errors& e
     FigurePose pose;
     pose.visible = time >= comes;
     pose.position = {0.01f * std::sin(3 * float(time)), 0, scene.distance};
-    // From the front to where the turn begins while settling.
+    // The head goes from the front to the turn's beginning while settling.
     const vec3 begin = scene.from * float(std::clamp(time / (0.8 * settle), 0.0, 1.0));
     pose.rotation = (time < settle ? begin : glm::mix(scene.from, scene.to, float(at))) * degree;
     const auto seen = observer.step(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of visitors as a folder that the kiosk's eye watches: PNG files and truth.json, which
-// says how long each is shown and what is true in it. wellspring_kiosk_watch
+// Shows pictures of visitors to the kiosk's eye as a folder: PNG files and truth.json, which says
+// how long each is shown and what is true in it. wellspring_kiosk_watch
 // (tests/benchmark/kiosk/main_watch.cpp) watches it, so that OpenCV stays out of the benchmark's
 // program.
 #pragma once
@@ -15,16 +15,16 @@ struct VisitorFrame {
   VisitorShot shot;
   double seconds = 0.8;                           // shown for so long
   bool judged = true;                             // else it only leads to others
-  std::function<void(VisitorPicture&)> change{};  // what is done to the finished picture
+  std::function<void(VisitorPicture&)> change{};  // edits the finished picture
 };
 
-// What a camera sees without a break; the eye knows nothing before it.
+// A sequence is what a camera sees without a break; the eye knows nothing before it.
 struct VisitorSequence {
   nlohmann::json about;  // fields that tell it apart in reports
   std::vector<VisitorFrame> frames;
 };
 
-// What the eye said of one frame.
+// Holds the eye's answer to one frame.
 struct VisitorSeen {
   struct Person {
     uint32_t id = 0;

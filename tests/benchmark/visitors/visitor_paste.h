@@ -6,12 +6,12 @@
 
 namespace wellspring::test {
 
-// In pixels.
+// Holds an area in pixels.
 struct PictureArea {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-// That part of `from`, stretched over `to`, with a frame; behind visitors or over them.
+// Pastes the `part` of `from`, stretched over `to`, with a frame; behind visitors or over them.
 void paste_portrait(const Image8& from, const PictureArea& part, const PictureArea& to,
                     bool behind_visitors, VisitorPicture& picture);
 // Stripes as of an escalator's steps, `phase` periods on their way, behind visitors.

@@ -66,7 +66,7 @@ struct Actor {
   mat4 stand(const Visitor& visitor, Pose& pose) const {
     const quat head = turned(visitor.turn) * half_turn;
     const quat body = turned({visitor.turn.x / 2, 0, 0}) * half_turn;
-    // From the body to the head, the neck takes its part.
+    // The neck takes its part of the way from the body to the head.
     const quat way = glm::inverse(body) * head;
     quat above{1, 0, 0, 0};
     for (const WeightedJoint& joint : rig.neck) {
@@ -93,7 +93,7 @@ struct Actor {
 };
 
 struct Lighting {
-  vec3 from;        // of the lamp
+  vec3 from;        // the lamp's position
   float lamp, sky;  // W/sr; radiance from everywhere
   float window;     // its radiance; 0: there is none
 };
@@ -114,7 +114,7 @@ Lighting lighting_of(VisitorLight light) {
 struct Room {
   Scene scene;
   std::vector<Figure> figures;
-  std::vector<int> things;  // of each figure the first moving mesh of what it may wear
+  std::vector<int> things;  // each figure's first moving mesh of things that it may wear
   std::vector<Mesh> worn;
   std::unique_ptr<World> world;
   Lights lights;

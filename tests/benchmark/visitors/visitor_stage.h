@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a kiosk's camera would see: the project's figures as visitors in a plain room, ray-traced.
-// Where each head is and how it is turned is known exactly. Axes are those of an observation
+// Draws pictures for a kiosk's camera: the project's figures as visitors in a plain room,
+// ray-traced. Each head's place and rotation are known exactly. Axes are those of an observation
 // (wire/messages.h, Person): origin in the lens, +x to the right as the visitor sees the screen, +y
 // up, +z towards the visitor; metres, radians.
 #pragma once
@@ -24,11 +24,11 @@ enum class Worn : uint8_t {
 };  // the hand is held before the face
 
 struct Visitor {
-  int figure = 0;          // of VisitorStage's files
+  int figure = 0;          // index into VisitorStage's files
   vec3 eyes{0, 0, 0.8f};   // the point between the pupils
   vec3 turn{0};            // yaw, pitch, roll of the head; identity faces the screen's plane
   float size = 1;          // 1: the figure's own
-  std::string expression;  // of the emotions (avatar/face/expression.h); empty: neutral
+  std::string expression;  // an emotion's name (avatar/face/expression.h); empty: neutral
   float strength = 1;
   Worn worn = Worn::nothing;
 };

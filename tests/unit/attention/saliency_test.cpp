@@ -166,7 +166,7 @@ Opponents eval_opponents(float r, float g, float b, float dark) {
   return {out[0], out[1], out[2]};
 }
 
-// By hand, after Itti, Koch, Niebur 1998.
+// These values are computed by hand, after Itti, Koch, Niebur 1998.
 TEST(Saliency, OpponentColoursByHand) {
   Opponents pure_red = eval_opponents(255, 0, 0, 0);
   EXPECT_FLOAT_EQ(pure_red.intensity, 1 / 3.0f);

@@ -107,7 +107,7 @@ TEST(Task, AHintMovesTheWinner) {
   EXPECT_EQ(most_important(view.seen({{{265, 45}, 10, 0.9f}})), 9u);       // on it
   EXPECT_EQ(most_important(view.seen({{{15, 45}, 40, 0.9f}})), 7u);        // beside it
   EXPECT_EQ(most_important(view.seen({{{15, 45}, 4, 0.9f}})), 3u);         // out of its reach
-  EXPECT_EQ(most_important(view.seen({{{265, 45}, 10, 0}})), 3u);          // of no weight
+  EXPECT_EQ(most_important(view.seen({{{265, 45}, 10, 0}})), 3u);          // without weight
   EXPECT_EQ(most_important(view.seen({{{265.5f, 45.5f}, 0, 0.9f}})), 9u);  // a single pixel
 }
 
@@ -137,7 +137,7 @@ TEST(Task, AnObjectIsAsSalientAsItsPixelsOnAverage) {
   View view{64, 32};
   // 0 on the left half, 1 on the right, a slope between the columns 1 and 2.
   view.saliency.map = {4, 2, {0, 0, 1, 1, 0, 0, 1, 1}};
-  view.saliency.offset = vec2(-0.46875f);  // of sizes that halve evenly
+  view.saliency.offset = vec2(-0.46875f);  // sizes halve evenly
   view.put(1, {0, 0}, {20, 32});
   view.put(2, {44, 0}, {20, 32});
   view.put(3, {20, 0}, {24, 32});

@@ -97,7 +97,7 @@ TEST(Parallel, EachIndexOnceAsAPiece) {
   parallel_each(-3, [](int) { FAIL(); });
 }
 
-// What is there stays when a raw vector grows, and copies are equal; items with a value have it.
+// Items stay when a raw vector grows, and copies are equal; items with a value have it.
 TEST(RawVector, KeepsWhatIsWritten) {
   RawVector<int> numbers(3);
   for (int i = 0; i < 3; i++) numbers[size_t(i)] = i;

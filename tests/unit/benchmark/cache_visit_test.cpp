@@ -270,7 +270,7 @@ TEST(VisitMethod, EveryMethodComesToRestAtTheRightPicture) {
   still.spp = 256;
   Frame wanted = render_still(*find_technique("direct"), box.world, box.lights,
                               box.moment(0, true).view, still);
-  // How far pictures of as many samples a pixel are.
+  // Returns how far pictures of as many samples a pixel are from the truth.
   auto distance_of = [&](int spp) {
     still.spp = spp;
     still.seed = 99;
@@ -311,7 +311,7 @@ TEST(VisitMethod, HoldShowsNothingThenTheViewOfThenWhole) {
   method->show(box.moment(4, true, 50), 32 * 24 / 4, picture);
   EXPECT_EQ(picture.empty, 0);
   std::vector<uint32_t> first = picture.frame.object;
-  // What it shows is the view of frame 0, not the one wanted now.
+  // The picture shows the view of frame 0, not the one wanted now.
   auto again = make_hold();
   VisitPicture other;
   for (int frame = 0; frame < 5; frame++) again->show(box.moment(frame, true), 32 * 24 / 4, other);

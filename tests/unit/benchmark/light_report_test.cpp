@@ -79,7 +79,7 @@ TEST(Curve, TimeToAnErrorIsReadFromTheLogarithms) {
   EXPECT_EQ(time_to_flip(level, 0.1).seconds, 0);
 }
 
-// What the reference says of its own noise is what a far better picture finds.
+// The reference's estimate of its own noise agrees with a far better picture.
 TEST(ReferencePicture, KnowsItsNoise) {
   Scene scene = scenes::make_cornell_box();
   World world(scene);

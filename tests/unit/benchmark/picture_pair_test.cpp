@@ -31,7 +31,8 @@ PicturePair pair_of(uint32_t seed, float sigma, float step = 0) {
 
 TEST(PicturePair, KnowsItsOwnNoise) {
   EXPECT_NEAR(noise(pair_of(1, 0.25f)), 0.25, 0.01);
-  EXPECT_NEAR(noise(pair_of(3, 0.25f, 0.5f)), 0.25, 0.01);  // what is in both is no noise
+  // Differences that both pictures share are no noise.
+  EXPECT_NEAR(noise(pair_of(3, 0.25f, 0.5f)), 0.25, 0.01);
 }
 
 TEST(PicturePair, NoiseAloneAgrees) {

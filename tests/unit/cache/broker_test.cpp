@@ -68,7 +68,7 @@ struct BrokeredVisit {
     take_all();
     answer_taken();
   }
-  // Of the pixels with a point, those whose point lies on another surface.
+  // Returns the share of the pixels with a point whose point lies on another surface.
   float wrong() const {
     Frame truth = render_room(visit.room, view, 1);
     const PointImage& image = visit.cache.image();
@@ -157,7 +157,7 @@ TEST(Broker, IsBoundedWhateverWorkersDo) {
   std::vector<Piece> pieces;
   while (auto piece = broker.take()) pieces.push_back(std::move(*piece));
   ASSERT_EQ(pieces.size(), 10u);
-  EXPECT_FALSE(broker.answer(answer_of(pieces[4])));  // of the five given up
+  EXPECT_FALSE(broker.answer(answer_of(pieces[4])));  // one of the five given up
   for (size_t i = 5; i < 10; i++) EXPECT_TRUE(broker.answer(answer_of(pieces[i])));
   EXPECT_EQ(broker.collect().size(), 3u);  // nobody collected in time: the newest
   EXPECT_EQ(broker.stats().lost, 70u);
@@ -178,8 +178,9 @@ TEST(BrokeredVisit, LateAnswersMakeTheSamePictureAtRest) {
     prompt.step(hall(), 700);
   }
   Frame truth = render_room(prompt.room, hall(), 256);
-  // As it is seen: of squares over the reference a single pixel at an edge may be half the sum.
-  // Late answers are none of the samples that correct a picture at rest, which waits for its own.
+  // FLIP judges as the eye does: a single pixel at an edge may be half of the sum of squares over
+  // the reference. Late answers are none of the samples that correct a picture at rest, which waits
+  // for its own.
   EXPECT_LT(flip(late.visit.frame, truth), 1.1 * flip(prompt.frame, truth));
   EXPECT_LT(flip(late.visit.frame, truth), 0.033);
 }
@@ -207,7 +208,7 @@ TEST(BrokeredVisit, AnswersAfterATeleportLandWhereTheyWereSeen) {
   v.take_all();
   View other = look_at(vec3(2, 1.5f, -3), vec3(3.9f, 1.4f, -3), 60, 160, 90);
   v.begin_picture(other);
-  v.answer_taken();  // of the view before
+  v.answer_taken();  // the answers are to the view before
   for (int i = 0; i < 8; i++) v.step(other);
   EXPECT_LT(v.wrong(), 0.1f);
   v.step(hall());  // and back: what was late is there
@@ -272,7 +273,7 @@ Sample trace_figure(const World& world, const Request& request) {
   return sample;
 }
 
-// Whether a pixel of the mask, 64 x 48, or one of its neighbours is set.
+// Says whether a pixel of the mask, 64 x 48, or one of its neighbours is set.
 bool is_near(const std::vector<uint8_t>& mask, int x, int y) {
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, 47); v++)
     for (int u = std::max(x - 1, 0); u <= std::min(x + 1, 63); u++)
@@ -322,14 +323,14 @@ TEST(BrokeredVisit, AnswersAboutAFigureThatHasMovedOnLandOnItsSkin) {
   EXPECT_EQ(land(broker.collect(), world, 2, cache), 64 * 48);
   cache.project(view);
   cache.reconstruct(view, frame);
-  // What it has uncovered nobody has seen: left out.
+  // Pixels that the figure has uncovered are left out: nobody has seen them.
   std::vector<uint8_t> there, shown;
   for (uint32_t i = 0; i < requests.size(); i++) {
     there.push_back(trace(requests[i]).object == 7);
     shown.push_back(frame.object[i] == 7 && (there[i] || !was_there[i]));
   }
   EXPECT_GT(std::count(there.begin(), there.end(), 1), 300);
-  // What was seen at pixel centres lies beside them now: the outline may err by a pixel.
+  // Samples of pixel centres lie beside them now: the outline may err by a pixel.
   for (int y = 0; y < 48; y++)
     for (int x = 0; x < 64; x++) {
       size_t i = size_t(y * 64 + x);

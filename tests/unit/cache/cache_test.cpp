@@ -28,7 +28,8 @@ struct Visitor : Visit {
     }
     return testing::AssertionSuccess();
   }
-  // Whose own light needs no sample; along its edges other pixels have a share of it.
+  // Says whether this pixel shows the lamp alone, whose own light needs no sample; along its edges
+  // other pixels have a share of it.
   bool shows_lamp_alone() const {
     for (int i = 0; i < int(frame.color.size()); i++)
       if (frame.color[size_t(i)] != vec3(0) && !touches(i, 7)) return false;
@@ -89,7 +90,7 @@ TEST(Cache, NoisyLightConvergesToo) {
   for (int i = 0; i < 600; i++) v.step(view, 120);
   double late = relative_mse(v.frame, truth);
   EXPECT_LT(late, early * 0.7);
-  // As many samples without a cache, averaged: 33 a pixel.
+  // The bound is the error of as many samples without a cache, averaged: 33 a pixel.
   EXPECT_LT(late, relative_mse(render_room(v.room, view, 33, 3), truth));
 }
 
@@ -320,8 +321,8 @@ TEST(Cache, MovingPointsFollowTheirTriangle) {
   points.normal[3] = pack_normal(vec3(0, 0, 1));
   points.anchors.push_back({3, 0, 0, 0, 65535});  // replaced by the newer one
   points.anchors.push_back({3, 0, 0, 65535 / 2, 65535 / 4});
-  points.anchors.push_back({4, 0, 0, 0, 0});           // of a point that lives no more
-  points.anchors.push_back({3 + 64 * 0, 7, 0, 0, 0});  // of an instance that is not there
+  points.anchors.push_back({4, 0, 0, 0, 0});           // its point lives no more
+  points.anchors.push_back({3 + 64 * 0, 7, 0, 0, 0});  // its instance does not exist
   std::vector<vec3> moved = mesh.positions, normals = mesh.normals;
   for (vec3& p : moved) p += vec3(5, 2, -1);
   world.move(0, moved, normals);

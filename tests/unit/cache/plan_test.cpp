@@ -212,7 +212,7 @@ TEST_F(Changes, NoiseIsNoChange) {
       bool bright = rng.uniform() < 0.05f;
       return ChangeSample{0, bright ? 0.92f : -0.6f, 2.6f};
     });
-    // And of points that have few samples yet, and know no noise.
+    // The others hear of points that have few samples yet, and know no noise.
     hear(96, 32, 20, [&] { return ChangeSample{0, rng.uniform() < 0.5f ? -0.7f : 0.7f, 0}; });
     judge();
   }
@@ -220,7 +220,8 @@ TEST_F(Changes, NoiseIsNoChange) {
   EXPECT_EQ(p.points.age[at(100, 36)], 10);
 }
 
-// A small change here, of which there is no prior variance elsewhere.
+// A small change at one place is not believed as long as nothing else has changed; after a change
+// elsewhere less will do.
 TEST_F(Changes, WhereOneThingHasChangedLessWillDo) {
   auto small = [&] { hear(108, 44, 60, -0.1f, 0.15f); };
   small();
@@ -240,7 +241,7 @@ TEST_F(Changes, WhereOneThingHasChangedLessWillDo) {
   EXPECT_EQ(p.points.age[at(76, 76)], 10);
 }
 
-// Of noisy samples it takes many tiles to tell, and then each of them is listened to more closely.
+// Noisy samples show a change only over many tiles, and then each tile is judged more finely.
 TEST_F(Changes, AreFoundTogetherWhereNoTileTellsAlone) {
   auto everywhere = [&](float change) {
     for (int y = 4; y < 80; y += 16)
@@ -260,7 +261,7 @@ TEST_F(Changes, AreFoundTogetherWhereNoTileTellsAlone) {
   EXPECT_GT(forgotten(), 10000);
 }
 
-// Of two points in a pixel the farther one may show in the next picture.
+// The farther one of two points in a pixel may show in the next picture.
 TEST_F(Changes, HiddenPointsForgetToo) {
   uint32_t behind = at(150, 80), aside = at(151, 80);
   auto put = [&](uint32_t i, int x, int y, float depth) {
@@ -291,11 +292,11 @@ TEST_F(Changes, SmallOnesAreLeftToTheMeans) {
   EXPECT_EQ(p.points.age[at(44, 44)], 10);
 }
 
-// Of points that a moving view has carried elsewhere since, those around where they are now.
+// A moving view has carried points elsewhere since; the points around their present place age.
 TEST_F(Changes, AreSeenWhereTheViewHasCarriedThem) {
   View turned = look_at(vec3(0), view_ray(p.view, 120, 45).direction, 60, 160, 90);
-  hear(116, 41, 40, 0.9f);  // what was at column 120 is in the middle now
-  hear(2, 2, 40, 0.9f);     // of these nobody is there any more
+  hear(116, 41, 40, 0.9f);  // the points of column 120 are in the middle now
+  hear(2, 2, 40, 0.9f);     // these points are out of view
   age_changed(p.points, turned, p.image);
   EXPECT_EQ(p.points.age[at(80, 45)], 42);
   EXPECT_EQ(p.points.age[at(4, 4)], 10);

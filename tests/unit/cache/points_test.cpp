@@ -145,7 +145,7 @@ TEST(Project, EveryPointFallsWhereTheViewSays) {
 // points behind it where the lines of sight cross the window.
 TEST(Project, PointsOfTheWindowStayWhileTheEyeMoves) {
   Rng rng(5);
-  const float half_height = 0.5f;  // of the window, 1 m before the eye at rest
+  const float half_height = 0.5f;  // the window's, 1 m before the eye at rest
   for (int i = 0; i < 50; i++) {
     Stage stage;
     const vec3 eye(rng.uniform() - 0.5f, 0.6f * rng.uniform() - 0.3f, rng.uniform() - 0.5f);
@@ -410,8 +410,9 @@ TEST(Remember, OneSurpriseIsAveragedTwoBeginAnew) {
   EXPECT_EQ(stage.points.count[20], 1);
 }
 
-// What points are compared of smooth light, of which one sample in eight brings nearly all: nothing
-// on average while it stays, with the noise that it has, and the change when it changes.
+// Change samples of smooth light, of which one sample in eight brings nearly all: they say nothing
+// on average while the light stays, have the noise of the light, and show the change when it
+// changes.
 TEST(Remember, WitnessesOfNoisyLightAreFair) {
   constexpr int samples_each = 12, visits = 4000;
   Rng rng(21);
@@ -445,7 +446,7 @@ TEST(Remember, WitnessesOfNoisyLightAreFair) {
   EXPECT_LT(tell(0.25f)[0], -0.4);
 }
 
-// What a point remembers besides its light stays out of the number of samples that it is worth.
+// A point's doubts and noise stay out of the number of samples that it is worth.
 TEST(ReadPoints, TellsSamplesWhateverElseIsKept) {
   Stage stage(64);
   stage.put(20, vec3(0, 0, -3), 3);

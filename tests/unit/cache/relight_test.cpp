@@ -17,10 +17,11 @@ View hall() { return look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, 160, 
 
 constexpr int pixels = 160 * 90;
 
-// Of the light nothing is known but that it changes.
+// Says that all light changes, and nothing more.
 bool everywhere(const RenderCache::Surface&, vec3&, vec3&) { return true; }
 
-// Of the pixels that look different in the other light: how many are within 10 % of right.
+// Holds the pixels that look different in the other light, and counts how many of them are within
+// 10 % of right.
 struct Affected {
   Frame before, after;
   int count = 0;
@@ -46,7 +47,7 @@ struct Affected {
 // 60 pictures a second and one sample for `mismatch` pixels.
 struct Switched {
   float before = 0;          // share right of the same pixels, long at rest in the old light
-  std::vector<float> right;  // of each picture
+  std::vector<float> right;  // each picture's share
 };
 Switched switch_spot(bool told, bool on, int mismatch) {
   Visit v;

@@ -231,7 +231,7 @@ View look_at(vec3 eye, vec3 target, float fov_degrees, int width, int height) {
 
 namespace {
 
-// Of the wall's surface from `a` along u and v, in metres: reflectances as a picture.
+// Paints the wall from `a` along u and v, in metres: its reflectances are a picture.
 Material paint_wall(Scene& scene, uint32_t object, vec3 a, vec3 u, vec3 v, int columns, int rows) {
   Image image;
   image.width = columns, image.height = rows;
@@ -263,7 +263,7 @@ Scene make_room_scene(const Room& room) {
   using namespace scenes;
   Scene scene = empty_scene();
   const vec3 size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
-  // In the order of RoomHit::object.
+  // The materials are in the order of RoomHit::object.
   auto plain = [&](uint32_t object) {
     return add_material(scene, diffuse(wall_albedo(object, vec3(0))));
   };

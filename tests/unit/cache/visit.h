@@ -33,7 +33,7 @@ struct Visit {
     cache.project(view);
     cache.attend();
   }
-  // At rest from the second picture of a view on.
+  // Shows a view, at rest from its second picture on.
   void show(const View& view) {
     if (view == shown_) compositor.draw_still(cache, view, place().visibility, frame);
     else compositor.draw(cache, view, place().visibility, frame);

@@ -32,7 +32,7 @@ struct Weights : testing::Test {
     uint32_t point = visit.cache.image().point[pixel];
     return point == no_point ? 0 : visit.cache.points().color[point].object;
   }
-  // Of so many plans: requests of each object, which are not answered.
+  // Makes so many plans and counts each object's requests, which are not answered.
   std::map<uint32_t, double> requests(int plans, int budget) {
     std::map<uint32_t, double> found;
     for (int i = 0; i < plans; i++) {
@@ -41,7 +41,8 @@ struct Weights : testing::Test {
     }
     return found;
   }
-  // That of the most pixels but one: it has neighbours, and is not most of the picture.
+  // Returns the object with the second most pixels: it has neighbours, and is not most of the
+  // picture.
   uint32_t find_object() {
     std::map<uint32_t, int> pixels;
     for (uint32_t i = 0; i < 160 * 90; i++) pixels[object_at(visit, i)]++;
@@ -69,7 +70,7 @@ TEST_F(Weights, OfOneEverywhereChangeNoBit) {
   EXPECT_TRUE(other.cache.image().weight.empty());
 }
 
-// Of samples without end nobody is chosen twice; of few, the odds change as the weight says.
+// The requests are a small part of the pixels, so that the odds change as the weight says.
 TEST_F(Weights, ChangeTheShareOfSamplesAsComputed) {
   uint32_t object = find_object();
   auto odds = [&](float weight) {

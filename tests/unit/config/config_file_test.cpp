@@ -40,7 +40,7 @@ struct Program {
     for (std::string& word : words) argv.push_back(word.data());
     parse_with_config(app, int(argv.size()), argv.data());
   }
-  // What is said against a file, without its folder.
+  // Returns the problems of a file, without its folder.
   std::vector<std::string> problems(const std::string& text, std::vector<std::string> words = {}) {
     try {
       run(text, std::move(words));

@@ -42,7 +42,7 @@ class TzaFile {
   static void append(std::vector<std::byte>& to, uint64_t value, int bytes) {
     for (int i = 0; i < bytes; i++) to.push_back(std::byte(value >> (8 * i) & 255));
   }
-  static uint16_t half_of(float value) {  // of normal halves and 0
+  static uint16_t half_of(float value) {  // takes normal halves and 0
     uint32_t bits = std::bit_cast<uint32_t>(value);
     if (value == 0) return 0;
     return uint16_t((bits >> 16 & 0x8000) | (((bits >> 23 & 255) - 112) << 10) |

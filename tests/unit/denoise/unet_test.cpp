@@ -17,7 +17,7 @@
 namespace wellspring::test {
 namespace {
 
-// Of few channels each, none a multiple of a vector's.
+// Makes weights of few channels each, none a multiple of a vector's.
 Weights make_weights(bool large) {
   std::mt19937 random(7);
   Weights weights;

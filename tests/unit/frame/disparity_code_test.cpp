@@ -53,7 +53,8 @@ TEST(DisparityCode, IsOffByHalfAStepAtMost) {
   }
 }
 
-// What is no distance is as far away as can be, and what is too near as near as can be told.
+// A value that is no distance is as far away as can be, and one that is too near is as near as the
+// code can say.
 TEST(DisparityCode, HoldsWhateverDepthsThereAre) {
   const float odd[] = {std::numeric_limits<float>::infinity(), NAN, -1, 1e9f, 1e-30f, 0};
   const std::vector<float> wanted =

@@ -143,9 +143,9 @@ TEST_F(PictureFile, DamagedLinearPicturesAreRefused) {
 // Before anything of that size is made: what is refused is named.
 TEST_F(PictureFile, SizesThatAnExrFileOnlyClaimsAreRefused) {
   save_picture(path("good.exr"), make_frame(), {});
-  // With room for the table of many rows.
+  // The file has room for the table of many rows.
   const std::string exr = bytes_of(path("good.exr")) + std::string(20'000, '\0');
-  // With these numbers `skip` bytes behind a name and its type.
+  // Writes these numbers `skip` bytes behind a name and its type.
   auto claims = [&](const std::string& name, size_t skip, std::vector<int32_t> numbers) {
     std::string bytes = exr;
     const size_t at = bytes.find(name) + name.size() + skip;

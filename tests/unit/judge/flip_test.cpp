@@ -167,7 +167,7 @@ TEST(Flip, AgreesWithTheReferenceToolPixelByPixel) {
     errors[{colors.rgb[3 * i], colors.rgb[3 * i + 1], colors.rgb[3 * i + 2]}].push_back(
         255 * map.error[i]);
   ASSERT_GT(errors.size(), 240u);
-  std::map<int, float> brightness;  // of each index
+  std::map<int, float> brightness;  // by index
   double mean = 0;
   for (auto& [color, of_color] : errors) {
     std::sort(of_color.begin(), of_color.end());

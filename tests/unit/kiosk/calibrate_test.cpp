@@ -10,7 +10,7 @@ namespace {
 
 constexpr float degree = pi / 180;
 
-// Where eyes at `place` seem to be for who believes that the camera sits as `believed`.
+// Returns where eyes at `place` seem to be if the camera is believed to sit as `believed`.
 vec3 seem(const Mount& truth, const Mount& believed, vec3 place) {
   vec3 camera = screen_to_camera(truth, place);
   camera.z *= focal_length(believed, 640) / focal_length(truth, 640);

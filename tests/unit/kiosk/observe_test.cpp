@@ -105,7 +105,7 @@ TEST(Observe, networks_that_are_missing_are_told) {
   const std::string weights = WELLSPRING_WEIGHTS_FOLDER "/face";
   if (!std::filesystem::exists(weights)) GTEST_SKIP() << weights << " is not here";
   EXPECT_EQ(watch_round({}, 0.2, weights).at(0).networks, EyeNetworks::all);
-  // Without the network for expressions alone.
+  // The folder lacks only the network for expressions.
   const std::filesystem::path part = testing::TempDir() + "some_face_networks";
   std::filesystem::create_directories(part);
   for (const auto& file : std::filesystem::directory_iterator(weights))

@@ -87,12 +87,12 @@ struct Comparison {
   std::string what;
   Estimate estimate;
   double expected = 0, error = 0;  // standard error of the difference
-  double degrees = 0;              // of freedom
+  double degrees = 0;              // degrees of freedom
 };
 
 struct Verdict {
   double t = 0;
-  double limit = 0;       // of |t|, at the family's significance
+  double limit = 0;       // limit of |t|, at the family's significance
   double detectable = 0;  // share of the expected value that would be found
   bool refuted = false, weak = false;
 };

@@ -40,7 +40,7 @@ TEST(Judge, FindsABiasOfOnePercent) {
       Estimate e = estimate_radiance(*technique, world, lights, view_along(lit_ray(), *technique),
                                      {}, {16, 512, seed});
       Family family;
-      // As many comparisons as a large family has: the bias must be found in spite of them.
+      // A large family has so many comparisons: the bias must be found in spite of them.
       for (int i = 0; i < 50; i++) family.add("biased", e, lit_radiance());
       Verdict verdict = judge(family.comparisons[0], family.comparisons.size());
       EXPECT_TRUE(verdict.refuted) << technique->name << ", seed " << seed << ": t = " << verdict.t;
@@ -62,8 +62,8 @@ TEST(Judge, NamesATestThatIsTooNoisyToTell) {
   EXPECT_TRUE(verdict.weak);
 }
 
-// Of a right technique, t follows Student's distribution: its deciles are equally filled. This is
-// what samples of one seed would fail: their spread is no measure of their error.
+// If a technique is right, t follows Student's distribution: its deciles are equally filled.
+// Samples of one seed would fail this: their spread is no measure of their error.
 TEST(Judge, RightTechniquesPassAsOftenAsStated) {
   Scene scene = make_plane_with_rect_light(10);
   World world(scene);

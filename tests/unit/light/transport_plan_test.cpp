@@ -309,7 +309,7 @@ TEST(TransportPlan, ExplanationListsEveryPartOnce) {
   EXPECT_LT(text.find("  refraction"), text.find("left out"));
   EXPECT_GT(text.find("  dispersion"), text.find("left out"));
   EXPECT_NE(text.find("'green?glass'"), std::string::npos);
-  // What each technique makes of colours parted is told where they are parted.
+  // The text says how each technique handles parted colours if the scene parts them.
   EXPECT_EQ(text.find("wavelengths from"), std::string::npos);
   scene.materials.back().dispersion = 0.3f;
   text = explain(make_transport_plan(scene));

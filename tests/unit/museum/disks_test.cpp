@@ -12,7 +12,7 @@ namespace {
 TEST(Disks, OnlyOnesWithoutRoomAreFull) {
   const test::Folder folder;
   EXPECT_TRUE(Disks(folder.file("a/b/cache"), "").full().empty()) << "not there yet";
-  // Where the system gives one without a free byte.
+  // Some systems have such a disk without a free byte.
   if (std::filesystem::exists("/proc/self") && std::filesystem::space("/proc/self").available == 0)
     EXPECT_EQ(Disks("", "/proc/self").full(), std::vector<std::string>{"/proc/self"});
 }

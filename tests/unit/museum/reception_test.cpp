@@ -34,13 +34,13 @@ struct ReceptionTest : testing::Test {
   std::shared_ptr<Link> visit(std::vector<std::string> texts) {
     return come(LinkKind::visit, std::move(texts));
   }
-  // How many come in at once; they stay inside.
+  // Counts how many come in at once; they stay inside.
   size_t let_in() {
     auto shown = reception.show_in(0);
     for (auto& one : shown) inside.push_back(std::move(one));
     return shown.size();
   }
-  // Who waits is looked at now and then only.
+  // Says whether the link is in at second 5: waiting ones are looked at now and then only.
   bool comes_in(const std::shared_ptr<Link>& link) {
     for (auto& one : reception.show_in(5)) inside.push_back(std::move(one));
     return std::ranges::any_of(inside, [&](const auto& one) { return one.link == link; });

@@ -88,8 +88,8 @@ TEST(Cells, FilteringTakesNoiseFromWhatIsFilledIn) {
   EXPECT_LT(wall.error(), filled / 3);
 }
 
-// Of a floor that runs away from the viewer, each hole is where the floor is, not where the nearest
-// known cell is.
+// A floor runs away from the viewer: each hole is filled at the floor's depth, not at that of the
+// nearest known cell.
 TEST(Cells, HolesLieInThePlaneAround) {
   SparseWall wall(6);
   Cells& cells = wall.cells;

@@ -66,8 +66,8 @@ void expect_light(const Frame& frame) {
   for (vec3 c : frame.color) ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
 }
 
-// What is drawn for the eye at once is the frame, tone-mapped; along edges light is mixed as the
-// codes tell it.
+// A picture drawn for the eye at once is the frame, tone-mapped; along edges light is mixed by the
+// tone-mapped codes.
 void expect_same_for_the_eye(DrawnVisit& drawn, const View& view,
                              const VisibilityPass& visibility) {
   for (float exposure : {1.0f, 3.5f}) {
@@ -91,8 +91,7 @@ void expect_same_for_the_eye(DrawnVisit& drawn, const View& view,
   }
 }
 
-// Of a place that nothing was known of a moment ago; odd sizes too: tiles and blocks end
-// anywhere.
+// Halfway the view leaps to a place without points; odd sizes too: tiles and blocks end anywhere.
 TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
   for (ivec2 size : {ivec2(160, 120), ivec2(151, 97)}) {
     Stage stage = make_room_with_ball();
@@ -140,7 +139,7 @@ TEST(Drawn, DarkBarsBeforeABrightSkyAreThoseOfAllOfThePixel) {
   EXPECT_LT(error, 9);
 }
 
-// What lies around a picture has a larger image for as long as it is drawn, and no more points.
+// Surroundings have a larger image for as long as they are drawn, and no more points.
 TEST(Drawn, SurroundingsCostNoPoint) {
   Stage stage(make_room());
   DrawnVisit drawn;
@@ -168,7 +167,7 @@ TEST(Drawn, SurroundingsCostNoPoint) {
   EXPECT_GE(drawn.cache.stats().points, 0.5f * float(pixels));
 }
 
-// Who has just arrived sees shapes at once, also at rest.
+// A visitor who has just arrived sees shapes at once, also at rest.
 TEST(Drawn, StillPicturesHaveExactShapesWithFewPoints) {
   Stage stage(make_room());
   DrawnVisit drawn;
@@ -210,10 +209,10 @@ TEST(Drawn, StartingAndStoppingLosesNoPoint) {
   visit.step(stage, view(0.01), pixels / 60, PictureOf::moving);
   size_t moving = visit.memory_bytes();
   for (int i = 2; i < 6; i++) visit.step(stage, view(0.01 * i), pixels / 60, PictureOf::moving);
-  EXPECT_NEAR(double(visit.memory_bytes()), double(moving), 1 << 15);  // of 1.3 MB
+  EXPECT_NEAR(double(visit.memory_bytes()), double(moving), 1 << 15);  // the memory is 1.3 MB
   visit.step(stage, view(0), 0, PictureOf::still);
   EXPECT_GT(visit.cache.stats().reprojected, 0.98f * rested.reprojected);
-  EXPECT_LT(visit.memory_bytes(), at_rest - 5 * pixels);  // what keeps samples comes later
+  EXPECT_LT(visit.memory_bytes(), at_rest - 5 * pixels);  // memory for the samples comes later
   for (int i = 0; i < 2; i++) visit.step(stage, view(0), pixels / 8, PictureOf::still);
   EXPECT_NEAR(double(visit.memory_bytes()), double(at_rest), 1 << 15);
   EXPECT_NEAR(double(at_rest - moving), 12.0 * pixels,

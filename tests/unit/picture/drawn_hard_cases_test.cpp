@@ -37,7 +37,7 @@ View view_of(const Stage& stage, dvec3 eye, float yaw, float fov = 0.9f, int acr
   return make_view(stage.scene, eye, yaw, 0, fov, across, down);
 }
 
-// As the eye sees it: no brighter than white.
+// Compares the pictures as the eye sees them: no brighter than white.
 double shown_error(Frame a, Frame b) {
   for (Frame* frame : {&a, &b})
     for (vec3& c : frame->color) c = glm::min(c, vec3(1));
@@ -257,7 +257,7 @@ TEST(DrawnHardCases, AnEyeWithinGlass) {
   EXPECT_LT(shown_error(visitor.frame, truth), 0.033);
 }
 
-// What is finer than its light's pixels is neither lost nor moved.
+// Things finer than their light's pixels are neither lost nor moved.
 TEST(DrawnHardCases, ThinRailings) {
   Scene scene = make_room();
   int dark = add_material(scene, diffuse(vec3(0.05f)));

@@ -31,7 +31,7 @@ Shown stroll(const Stage& stage, int pixels_a_sample) {
   return shown;
 }
 
-// Whether the pixels around show the same object, too.
+// Says whether the pixels around show the same object, too.
 bool is_inside(const Shown& shown, int x, int y) {
   size_t at = size_t(y * width + x);
   for (size_t other : {at - 1, at + 1, at - size_t(width), at + size_t(width)})
@@ -39,7 +39,8 @@ bool is_inside(const Shown& shown, int x, int y) {
   return true;
 }
 
-// Of pixels inside of objects: those brighter or darker than what is around by more than 15 %.
+// Counts pixels inside of objects, and those that are brighter or darker than the pixels around by
+// more than 15 %.
 struct Outliers {
   int outliers = 0, inside = 0;
 };
@@ -100,7 +101,7 @@ TEST(FewPoints, NarrowMetalIsAboutAsBrightAsTheReference) {
   EXPECT_LT(bars.mean, 2.5 * bars.expected);  // they are darker than what is behind them
 }
 
-// Who has just come to rest: what lamps do on a glossy floor is seen by one sample in many.
+// The visitor has just come to rest: only one sample in many sees the lamps in a glossy floor.
 TEST(FewPoints, GlossyFloorsHaveFewOutliersAtRest) {
   Scene scene = make_cornell_box();
   for (Material& material : scene.materials)

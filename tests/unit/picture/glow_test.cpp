@@ -37,7 +37,7 @@ Scene make_board() {
 
 struct Mean {
   vec3 shown{0}, wanted{0};
-  float worst = 0;  // of a pixel's channel
+  float worst = 0;  // largest error of a pixel's channel
 };
 // Over pixels of the stripe of that number, away from its edges.
 Mean compare(const Frame& frame, const Frame& truth, const View& view, int stripe) {

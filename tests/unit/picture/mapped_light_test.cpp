@@ -39,7 +39,8 @@ struct MappedStage {
     return pole;
   }
 
-  // What the map makes of a pixel's middle; negative: it does not know it, or it emits light.
+  // Returns the map's light at a pixel's middle; negative: the map has none there, or the surface
+  // emits light.
   vec3 expected(int x, int y) const {
     Ray ray = view_ray(view, float(x) + 0.5f, float(y) + 0.5f);
     Hit hit = stage.world->intersect(ray);

@@ -75,14 +75,14 @@ TEST(Metal, LightIsContinuousAcrossRoughness) {
 TEST(Metal, LightIsContinuousAcrossMetallic) {
   expect_board(make_board(vec2(0.5f), {1, 0.98f}), 0.1f);
 }
-// Of one material with paint, as compression leaves it.
+// One material is part metal, part paint, as compression leaves it.
 TEST(Metal, LightIsContinuousBesidePaint) {
   Scene scene = make_board({0.3f, 0.4f}, {0.97f, 1});
   for (size_t i = 0; i < 4 * 64 * 8; i += 4) scene.images.back().texels8[i + 2] = 0;
   expect_board(std::move(scene), 0.2f);
 }
 
-// What samples and drawn pictures keep as a reflectance is the same.
+// Samples and drawn pictures keep the same reflectance.
 TEST(Metal, HasOneReflectanceInSamplesAndDrawnPictures) {
   for (vec2 metallic : {vec2(1), vec2(0.9f, 1), vec2(0, 1), vec2(0.3f, 0.3f)})
     for (vec2 roughness : {vec2(0.05f, 0.1f), vec2(0.25f, 0.3f), vec2(0.5f, 0.9f)}) {

@@ -175,7 +175,7 @@ TEST(MovingPicture, IsThatOfWholePictures) {
   // ball's shadow to the lamp's side.
   EXPECT_LT(double(sum) / of_ball, 24);
   EXPECT_NEAR(brightness / of_ball, 0, 14);
-  // What is nearer stays.
+  // The bars, which are nearer, stay.
   Image8 ground;
   copy_colors(keyframe, {0, 0, width, height}, ground);
   int changed = 0;
@@ -188,7 +188,7 @@ TEST(MovingPicture, IsThatOfWholePictures) {
       }
       if (inner) changed += difference(got, ground, x, y) > 0;
     }
-  EXPECT_LE(changed, 4);  // where a silhouette of it is hidden beside the bar's own
+  EXPECT_LE(changed, 4);  // the ball's silhouette is hidden beside a bar's own
 }
 
 // Between pictures of the rest it goes where its mesh goes, with its light, and what it has left
@@ -223,15 +223,15 @@ TEST(MovingPicture, FollowsItsMesh) {
         left++, left_wrong += difference(after, ground, x, y) > 0;
     }
   EXPECT_GT(here, 200);
-  // Of where it was.
+  // The light is still that of its former place.
   EXPECT_NEAR(light / here, true_light / here, 0.2 * true_light / here);
   EXPECT_GT(left, 200);
   EXPECT_EQ(left_wrong, 0);
 }
 
-// What it covers begins anew, and samples of it are none of the backdrop's.
-// A layer has the colours of what moves, and its depth; elsewhere nothing is in it, nor in the
-// picture that it is laid over.
+// The covered place begins anew, and samples of the ball are none of the backdrop's. A layer has
+// the colours and the depth of moving things; elsewhere nothing is in it, nor in the picture that
+// it is laid over.
 TEST(MovingPicture, IsALayerOfItsOwn) {
   Stage stage = make_stage();
   View view = view_of(stage);
@@ -330,7 +330,7 @@ TEST(MovingPicture, CoversWhatLiesBehindIt) {
   }
 }
 
-// Of every kind of picture, whatever points say.
+// This holds for every kind of picture, whatever points say.
 TEST(MovingPicture, IsLitByItsSkinAlone) {
   Stage stage = make_stage();
   View view = view_of(stage);
@@ -367,7 +367,8 @@ TEST(MovingPicture, NeedsNoPoint) {
   EXPECT_TRUE(rested.moving.empty());
 }
 
-// What white was is not known: the least that is shown so. Below, codes tell their light.
+// A peak above white cannot be read from its code: the least that is shown so is taken. Below,
+// codes give their light.
 TEST(MovingPicture, GuessesPeaksFromColours) {
   Image8 image;
   image.width = 256, image.height = 1;

@@ -53,8 +53,8 @@ std::vector<Known> make_points(float share, uint64_t seed, Frame& frame) {
   return known;
 }
 
-// As the header says it: rings one after the other until some know the light, which count the less
-// the farther off they are.
+// Computes what the header says: rings one after the other until some know the light, which count
+// the less the farther off they are.
 NearbyLight expected(const std::vector<Known>& known, int px, int py) {
   double points = 0, sum = 0, squares = 0, light = 0, reached = 0;
   for (int ring = 0; ring <= 5 && points < 6; ring++)
@@ -78,7 +78,7 @@ NearbyLight expected(const std::vector<Known>& known, int px, int py) {
 
 }  // namespace
 
-// What one point lights has no border: it is trusted less and less.
+// Light of a single point has no border: it is trusted less and less.
 TEST(NearbyLight, IsTrustedLessTheFartherItIs) {
   View view;
   view.width = width, view.height = height;
@@ -97,7 +97,7 @@ TEST(NearbyLight, IsTrustedLessTheFartherItIs) {
     before = found.samples;
   }
   EXPECT_GT(before, 0);
-  EXPECT_LT(before, 1);  // of sixteen
+  EXPECT_LT(before, 1);  // less than one of sixteen samples
 }
 
 TEST(NearbyLight, RingsEndAtThePicturesBorders) {

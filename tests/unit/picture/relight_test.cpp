@@ -50,7 +50,7 @@ struct Backdrop {
   BackdropLight both() const { return {surfaces, planes}; }
 };
 
-// What a picture at rest might be: from black to twice as bright as white.
+// Makes a picture at rest: from black to twice as bright as white.
 Frame make_rest(const View& view) {
   Frame frame;
   fit_frame(view.width, view.height, frame);

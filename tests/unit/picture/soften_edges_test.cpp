@@ -52,7 +52,7 @@ TEST(SoftenEdges, SeveralEdgesNeverTakeMoreThanThereIs) {
   EXPECT_EQ(color[0], vec3(1));
   color = {vec3(1), vec3(100), vec3(3)};
   edges = {{{1, 2, 0.5f}, {1, 0, 0.5f}, {1, 2, 0.5f}, {1, 0, 0.5f}}};
-  soften_edges(edges, color);  // of a thing narrower than the pixel
+  soften_edges(edges, color);  // the thing is narrower than the pixel
   EXPECT_GE(color[1].x, 1);
   EXPECT_LT(color[1].x, 10);
 }

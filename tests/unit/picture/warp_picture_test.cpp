@@ -106,8 +106,8 @@ TEST(WarpPicture, OfTheSameViewIsThePictureItself) {
   EXPECT_EQ(warp(keyframe, view).rgb, drawn.picture.rgb);
 }
 
-// What lies outside of the keyframe is left out; the error of linear interpolation of the pattern
-// stays below a level, quantising twice adds one.
+// The keyframe is wider than the picture; the error of linear interpolation of the pattern stays
+// below a level, quantising twice adds one.
 TEST(WarpPicture, TurningShowsTheSameSky) {
   View before = look_at({0, 0, 0}, 0), now = look_at({0, 0, 0}, 0.05f);
   before.width = 260, before.height = 144;
@@ -224,7 +224,7 @@ TEST(WarpPicture, SaysHowMuchTheKeyframeDoesNotShow) {
   EXPECT_EQ(warp_picture(Keyframe{}, before, 1, scratch, out), 1);
 }
 
-// Of a room teleported from nothing is known; the picture asked for is left alone.
+// A cut to a place that the keyframe does not show is refused; the picture asked for is left alone.
 TEST(WarpPicture, ACameraCutIsRefused) {
   Keyframe keyframe = keyframe_of(wall, look_at({0, 0, 0}, 0));
   WarpScratch scratch;
@@ -405,7 +405,7 @@ TEST(SurroundingView, HoldsAllViewsInFewPixels) {
     EXPECT_NEAR(dot(around.forward, around.up), 0, 1e-6f);
     EXPECT_NEAR(length(around.right), 1, 1e-6f);
   }
-  // What no flat picture can hold is held in part.
+  // Views that no flat picture can hold are held in part.
   const View apart[] = {a, look_at({0, 0, 0}, 0.2f + 3.14159f)};
   View around = surrounding_view(apart, 1 / 4.0f);
   EXPECT_EQ(around.forward, a.forward);

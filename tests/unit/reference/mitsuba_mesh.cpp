@@ -23,7 +23,7 @@ namespace {
 // A property of a PLY element: where it lies in the element's bytes.
 struct PlyElement {
   size_t count = 0, bytes = 0;
-  std::map<std::string, size_t> offset;  // of floats
+  std::map<std::string, size_t> offset;  // bytes at which a float lies
 };
 
 float float_at(const uint8_t* p) {

@@ -73,8 +73,8 @@ struct Appearance {
   Material material;
   std::string inexact;                 // why
   bool two_sided = false;              // else its back is black
-  std::string attribute;               // of the mesh: becomes its vertex colours
-  vec3 blend[2] = {vec3(0), vec3(1)};  // of two colours by a weight
+  std::string attribute;               // the mesh's attribute that becomes its vertex colours
+  vec3 blend[2] = {vec3(0), vec3(1)};  // two colours, mixed by a weight
 };
 
 Appearance make_appearance(Conversion& c, pugi::xml_node bsdf);
@@ -282,8 +282,8 @@ void set_view(ReferenceScene& out, pugi::xml_node sensor) {
   out.gaussian_filter = filter == "gaussian";
 }
 
-// Mitsuba counts what glass does as edges, our walks do not. Where it shows two edges, glass is
-// its reflection alone.
+// Mitsuba counts passages through glass as edges, our walks do not. In pictures of two edges, glass
+// is its reflection alone.
 void bound_glass(ReferenceScene& reference) {
   for (Material& material : reference.scene.materials) {
     if (material.transmission == 0 || reference.max_depth >= unbounded) continue;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mitsuba 3 scenes as ours, for tests against its reference pictures. What our model expresses
-// exactly is converted; a shape of any other material keeps its geometry, so that its shadows fall
-// right, and is named in `inexact`: the pixels that see it are not judged. A scene whose lights we
-// do not have is refused with a reason.
+// Reads Mitsuba 3 scenes as ours, for tests against its reference pictures. Materials that our
+// model expresses exactly are converted; a shape of any other material keeps its geometry, so that
+// its shadows fall right, and is named in `inexact`: the pixels that see it are not judged. A scene
+// whose lights we do not have is refused with a reason.
 //   exact: diffuse (with textures and mesh attributes), twosided and masked diffuse, blends of
 //     diffuse, smooth dielectrics; area, point, constant, envmap and directional emitters; box and
 //     Gaussian pixel filters

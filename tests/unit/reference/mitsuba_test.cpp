@@ -104,13 +104,13 @@ std::vector<bool> judged_pixels(const ReferenceScene& reference, const World& wo
 
 struct Judgement {
   int values = 0, outside = 0;  // colour components judged; beyond the limit
-  double worst = 0, limit = 0;  // of |z|
-  double mean_z = 0;            // of the sum over the picture
+  double worst = 0, limit = 0;  // |z|
+  double mean_z = 0;            // z of the sum over the picture
   double relative = 0;          // difference of the means
 };
 
-// Where the reference's variance is negative (it is a difference of moments, lost to rounding),
-// ours stands in for it.
+// If the reference's variance is negative (it is a difference of moments, lost to rounding), ours
+// stands in for it.
 Judgement judge(const Moments& ours, const Frame& reference, const Frame& variance,
                 const std::vector<bool>& judged, int spp) {
   Judgement j;

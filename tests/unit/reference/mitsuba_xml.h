@@ -14,7 +14,7 @@ namespace wellspring::mitsuba {
 
 struct Document {
   pugi::xml_document xml;
-  std::vector<std::filesystem::path> folders;   // where files are looked for, in this order
+  std::vector<std::filesystem::path> folders;   // searched for files, in this order
   std::map<std::string, pugi::xml_node> by_id;  // whatever has an id, and aliases
   pugi::xml_node root() const { return xml.child("scene"); }
 };

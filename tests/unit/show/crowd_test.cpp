@@ -22,8 +22,8 @@ struct Crowd : testing::Test, ShowStage {
   const size_t people = 20;
   std::mt19937 random{7};
   std::vector<size_t> present;      // browsers of the crowd
-  std::vector<std::string> tokens;  // of visits that ended
-  std::string code;                 // of a group
+  std::vector<std::string> tokens;  // tokens of visits that ended
+  std::string code;                 // a group's code
   std::set<std::string> errors;
 
   void SetUp() override {
@@ -84,7 +84,7 @@ struct Crowd : testing::Test, ShowStage {
     else browsers[number].link->mark_closed();
     present.erase(present.begin() + long(place));
   }
-  // What browsers have read is looked at and forgotten, as a browser does; the quiet one's stays.
+  // Looks at messages and forgets them, as a browser does; the quiet browser's stay.
   void read() {
     for (size_t i = 1; i < browsers.size(); i++) {
       for (const std::string& text : browsers[i].texts) {

@@ -17,7 +17,7 @@ struct Browser {
   std::shared_ptr<Link> link;
   bool reads = true;
   bool acknowledges = false;  // pictures
-  // What it has read.
+  // These packets and texts the browser has read.
   std::vector<Packet> pictures, sounds;
   std::vector<std::string> texts;
 };
@@ -26,8 +26,8 @@ struct ShowStage {
   Arrivals arrivals;
   std::vector<Browser> browsers;  // in the order in which they came; visitors' numbers below
   double tick_seconds = 0.02;
-  double now = 0;              // of the last tick
-  uint32_t seq = 0;            // of the last turn()
+  double now = 0;              // time of the last tick
+  uint32_t seq = 0;            // number of the last turn()
   std::unique_ptr<Show> show;  // the last member: its renderer may be at work
 
   void begin(Exhibit exhibit, const ShowSettings& settings);
@@ -37,8 +37,8 @@ struct ShowStage {
   void say(const std::string& text, size_t visitor = 0);
   void turn(double yaw, double forward = 0, size_t visitor = 0);
 
-  // One tick, which the encoders are waited for. What the renderer has begun is finished by then,
-  // too, but for step_on(), where it may go on.
+  // Goes a tick on, and waits for the encoders. The renderer's work is finished by then, too, but
+  // in step_on() it may go on.
   void step() { step(tick_seconds); }
   void step(double seconds);
   void step(bool) = delete;
@@ -56,14 +56,14 @@ struct ShowStage {
 
   Visitor& visitor() { return show->visitors.front(); }
   const std::vector<Packet>& pictures(size_t visitor = 0) { return browsers[visitor].pictures; }
-  PacketHeader header(size_t picture);  // of those of the first visitor
+  PacketHeader header(size_t picture);  // the first visitor's
   Image8 image(size_t picture);
   PacketHeader last_header();
   Image8 last_image(size_t visitor = 0);
   // Texts of a type; the last is null where there is none.
   std::vector<nlohmann::json> told(const std::string& type, size_t visitor = 0);
   nlohmann::json last(const std::string& type, size_t visitor = 0);
-  // What `samples` a pixel make of a view, as it is shown.
+  // Returns a view's picture by `samples` a pixel, as it is shown.
   Image8 truth(const View& view, int samples);
 };
 

@@ -76,7 +76,7 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
                                  visitor.place.last_view, settings);
   double error = 0, size = 0;
   for (size_t i = 0; i < reference.color.size(); i++) {
-    // As it is shown: of lamps no more than white.
+    // Pictures are compared as they are shown: lamps are no brighter than white.
     auto seen = [&](vec3 light) { return luminance(min(light * show->exhibit.exposure, vec3(1))); };
     error += std::abs(seen(show->renderer.work.frame.color[i]) - seen(reference.color[i]));
     size += seen(reference.color[i]);

@@ -126,7 +126,7 @@ TEST(Admission, an_address_makes_place_for_its_own) {
   EXPECT_FALSE(admission.enter(1, at("203.0.113.9"), Standing::stranger, 0).drop);
   for (uint64_t id = 2; id <= 3; id++)
     EXPECT_FALSE(admission.enter(id, at("2001:db8::1"), Standing::stranger, 0).drop);
-  EXPECT_EQ(admission.enter(4, at("2001:db8::2"), Standing::stranger, 0).drop, 2u);  // of one /64
+  EXPECT_EQ(admission.enter(4, at("2001:db8::2"), Standing::stranger, 0).drop, 2u);  // the same /64
   admission.leave(2);
   admission.end_waiting(3);
   admission.end_waiting(4);
@@ -189,7 +189,7 @@ TEST(Admission, many_addresses_together_are_bounded_too) {
   EXPECT_EQ(admission.take_input(loud, {40, 0}, false, 0.5), Taken::yes);
 }
 
-// What Limits promises, in numbers of connections, files and messages.
+// The numbers of connections, files and messages are those that Limits promises.
 TEST(Admission, a_school_class_behind_one_address_gets_in) {
   Admission admission({});
   const Address school = at("198.51.100.1");

@@ -33,7 +33,7 @@ struct House {
   std::mutex mutex;
   std::condition_variable news;
   std::vector<std::shared_ptr<Link>> links;
-  std::string first_texts;  // of the links, in order, each with a semicolon
+  std::string first_texts;  // the links' first texts, in order, each with a semicolon
   Server server;
 
   explicit House(const StreamSettings& settings = quick_settings(),

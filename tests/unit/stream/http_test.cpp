@@ -53,7 +53,7 @@ TEST(Http, every_reply_carries_the_security_headers) {
   auto settings = quick_settings();
   settings.limits.connections = 9;
   House house(settings);
-  std::map<int, std::string> heads;  // of each status, one
+  std::map<int, std::string> heads;  // one of each status
   const auto note = [&](const RawClient::Reply& reply) { heads[reply.status] = reply.head; };
   const auto ask = [&](const std::string& line, const std::string& more = "") {
     RawClient client(house.port());

@@ -136,7 +136,7 @@ TEST(Limits, what_all_addresses_together_may_have) {
   for (int i = 0; i < 590; i++) more += frame_bytes(0x81, "x");
   loud.send(more);
   EXPECT_EQ(loud.closed_with(), 1008);
-  arrive();  // what was taken of it before that
+  arrive();  // takes the messages that came before that
   arrived = 0;
   modest.send(many);
   EXPECT_TRUE(eventually(arrive)) << "no more than a page says";

@@ -31,7 +31,7 @@ TEST(SlowReader, is_cut_although_it_pings_while_others_see_on) {
   ASSERT_TRUE(slow_link && good_link);
 
   const auto big =
-      picture_packet(1, 400'000);  // of one allocation, so that memory seen to grow is the server's
+      picture_packet(1, 400'000);  // one allocation, so that memory seen to grow is the server's
   const auto small = picture_packet(2);
   const long before = resident_kib();
   long most = 0;
@@ -111,7 +111,7 @@ TEST(SlowReader, gets_the_newest_picture_when_it_reads_again) {
     }
     seen.push_back(number);
   }
-  // What the kernel held, the one being written, and the newest.
+  // The pictures are those that the kernel held, the one being written, and the newest.
   EXPECT_LE(seen.size(), 8u);
   EXPECT_TRUE(text_before_last);
   EXPECT_EQ(seen.size() + link->pictures_dropped(), count);

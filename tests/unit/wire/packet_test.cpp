@@ -81,7 +81,7 @@ struct Change {
   size_t at;
   std::vector<uint8_t> bytes;
 };
-// With any one of the changes it is no picture message.
+// Checks that with any one of the changes the bytes are no picture message.
 static void expect_refused(const Packet& golden, const std::vector<Change>& changes) {
   for (const Change& change : changes) {
     Packet packet = golden;

@@ -11,7 +11,7 @@ namespace wellspring::test {
 
 struct SoundView {
   SoundHeader header;
-  std::vector<int16_t> samples;  // of all channels, interleaved
+  std::vector<int16_t> samples;  // all channels, interleaved
 };
 // Empty when the bytes are no sound message: short, other magic, header length < 56 or past the
 // end, no channels or no rate, half a sample, more samples than the utterance has, a mouth that is

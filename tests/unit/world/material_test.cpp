@@ -66,7 +66,7 @@ TEST(Material, DefaultsAndFactors) {
   EXPECT_EQ(plain.emission, vec3(0));
   EXPECT_EQ(plain.ior, 1.5f);
   EXPECT_EQ(plain.alpha_mode, AlphaMode::opaque);
-  EXPECT_TRUE(scene.images.empty());  // what no material uses is not opened
+  EXPECT_TRUE(scene.images.empty());  // an image that no material uses is not opened
 
   scene = load(textured("unused", {{"pbrMetallicRoughness",
                                     {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}},
@@ -129,7 +129,7 @@ TEST(Material, LayersAndGlossAreRead) {
   EXPECT_EQ(m.sheen_color, vec3(0.5f, 0.25f, 1));
   EXPECT_EQ(m.sheen_roughness, 0.5f);
   EXPECT_EQ(m.dispersion, 0.36f);
-  // What the extensions say where they say nothing.
+  // These extensions are empty and have their defaults.
   scene = load(extended({{"KHR_materials_specular", json::object()},
                          {"KHR_materials_clearcoat", json::object()},
                          {"KHR_materials_sheen", json::object()},

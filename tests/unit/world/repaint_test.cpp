@@ -88,7 +88,7 @@ TEST(Repaint, ChangesWhatMovesAndNothingElse) {
   world.repaint(99, change);
 }
 
-// What is opaque now may be seen through later: the ray tracer must have been made for that.
+// An opaque surface may be seen through later: the ray tracer must have been made for that.
 TEST(Repaint, MayLetRaysThrough) {
   for (AlphaMode mode : {AlphaMode::mask, AlphaMode::blend}) {
     Stage stage(mode);

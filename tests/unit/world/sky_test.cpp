@@ -25,7 +25,7 @@ struct Sky {
     int x = int(std::fmod(azimuth / 360 + 0.5, 1.0) * image().width);
     return vec3(image().texels[size_t(y * image().width + x)]);
   }
-  vec3 irradiance() const {  // of the sky alone, on level ground
+  vec3 irradiance() const {  // the sky's alone, on level ground
     dvec3 sum(0);
     for (int y = 0; y < image().height / 2; y++)
       for (int x = 0; x < image().width; x++) {

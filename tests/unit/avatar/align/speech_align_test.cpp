@@ -51,8 +51,8 @@ void report(const std::vector<double>& errors) {
                                   int(std::lround(100 * share_within(errors, 0.08))));
 }
 
-// Where sound begins after at least 100 ms of silence: the first 5 ms window that is louder than
-// 40 dB under the loudest.
+// Returns when sound begins after at least 100 ms of silence: the first 5 ms window that is louder
+// than 40 dB under the loudest.
 std::vector<double> energy_onsets(const Speech& speech) {
   size_t window = size_t(speech.rate / 200);
   std::vector<double> energy, onsets;
@@ -114,7 +114,7 @@ std::vector<double> errors_of(const Speech& speech, const Narrated& narrated) {
   return errors;
 }
 
-// At the narrator's own pace.
+// Aligns at the narrator's own pace.
 Speech align(SpeechProcess& process, const std::string& text, const std::string& lang,
              const Sound& recording) {
   std::string error;
@@ -222,7 +222,7 @@ TEST(SpeechMarks, StutteringNarratorsAreAligned) {
   EXPECT_GE(share_within(errors, 0.08), 0.95);
 }
 
-// Where a narrator who says beginnings of words again is heard, his mouth does something.
+// A narrator says the beginnings of some words twice; whenever he is heard, his mouth moves.
 TEST(SpeechMarks, LipsStutterWithTheirNarrator) {
   const std::string text =
       "The castle stands above the river, where merchants once paid their toll in silver. "

@@ -116,7 +116,7 @@ TEST(Hold, TheGripIsInTheFistAndFollowsIt) {
     EXPECT_GT((*grip)[3].y, stage.place("skullbase").y - 0.45f) << "near the shoulder's height";
     EXPECT_EQ((*grip)[3].x > 0, side == 0) << "on that hand's side";
     const vec3 still((*grip)[3]), hand = stage.place(wrist);
-    stage.input.guests = {{1, {1.5f, 1.6f, 0.2f}, vec3(0), true}};  // she turns there
+    stage.input.guests = {{1, {1.5f, 1.6f, 0.2f}, vec3(0), true}};  // the storyteller turns there
     stage.run(4);
     grip = eval_grip(stage.state, stage.storyteller, stage.pose);
     const float moved = glm::length(stage.place(wrist) - hand);
@@ -134,13 +134,13 @@ TEST(Hold, GesturesOfOneHandAreMadeByTheFreeOne) {
   stage.input.story.held = thing(0);
   stage.run(4);
   const vec3 holding = stage.place("r_radiocarpal"), free = stage.place("l_radiocarpal");
-  stage.input.story.gesture = "point_up";  // of the right hand
+  stage.input.story.gesture = "point_up";  // the right hand's
   stage.run(0.02);
   stage.input.story.gesture.clear();
   stage.run(0.9);
   EXPECT_LT(glm::length(stage.place("r_radiocarpal") - holding), 0.03f);
   EXPECT_GT(stage.place("l_radiocarpal").y, free.y + 0.2f);
-  stage.input.story.gesture = "open_arms";  // of both
+  stage.input.story.gesture = "open_arms";  // both hands'
   stage.run(0.02);
   stage.input.story.gesture.clear();
   stage.run(0.9);

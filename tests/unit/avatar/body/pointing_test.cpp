@@ -101,11 +101,11 @@ TEST(Pointing, KeepsToTheLimitsOfTheJoint) {
     float up = std::asin(arm.y), out = std::atan2(-arm.x, arm.z);
     EXPECT_LE(up, arm_up + 1e-3f);
     if (up > -0.79f) {  // lower down it hangs, and may hang anywhere
-      // As an arc: near the pole an angle about the vertical is worth little.
+      // The angle is an arc: near the pole an angle about the vertical is worth little.
       EXPECT_LE((out - arm_outward) * std::cos(up), 1e-3f);
       EXPECT_LE((-arm_across - out) * std::cos(up), 1e-3f);
     }
-    // What it answers is what is seen.
+    // The angle left is the one that is seen.
     PointingLine line = eval_pointing_line(rig, pose, 1, Aim::finger);
     EXPECT_NEAR(left, angle_between(line.direction, place - line.from), 2e-3f);
     beyond += left > 2 * pi / 180;

@@ -85,7 +85,7 @@ TEST_P(CastleFigure, IsWholeAndKnownToTheRig) {
     if (!appearance.texture.empty())
       EXPECT_TRUE(std::filesystem::exists(appearance.texture)) << appearance.texture;
   for (const Appearance& appearance :
-       c.appearances)  // what is near the eye has relief too fine for triangles
+       c.appearances)  // near the eye, relief is too fine for triangles
     if (appearance.texture.find("_skin.") != std::string::npos ||
         appearance.texture.find("_hair.") != std::string::npos)
       EXPECT_TRUE(std::filesystem::exists(appearance.normal_texture)) << appearance.texture;
@@ -113,7 +113,7 @@ TEST_P(CastleFigure, WeightsAndTrianglesAreSound) {
       all++;
     }
   EXPECT_LT(flat, all / 500);
-  EXPECT_LT(all, 65000u);  // what a tick can afford
+  EXPECT_LT(all, 65000u);  // a tick can afford so many
 }
 
 TEST_P(CastleFigure, FacesMoveAlikeOnBothSides) {

@@ -164,7 +164,7 @@ TEST(JointConstraints, AreThoseOfTheFormatWhateverTheAxesOfTheNodes) {
       Pose pose = make_rest_pose(character);
       std::vector<int> joint_of = joints_of_nodes(nodes, character, options.world);
       joint_of[between] = find_joint(character, "between"), joint_of[twist] = constraint.joint;
-      std::vector<quat> rest_turn;  // of each node in humanoid space
+      std::vector<quat> rest_turn;  // each node's, in humanoid space
       for (size_t i = 0; i < joint_of.size(); i++)
         rest_turn.push_back(glm::conjugate(options.world) * nodes.turn(int(i), nodes.rest));
       auto above = [&](size_t i) {
@@ -243,7 +243,7 @@ TEST(JointConstraints, AreFollowedInTheOrderOfWhatTheyDependOn) {
             {"rotation", "", arm, 1});
   size_t tail = add_node(asset, chain[0], {0, 0.1f, 0}, quat(1, 0, 0, 0), "tail");
   size_t dog = add_node(asset, tail, {0, 0.1f, 0}, quat(1, 0, 0, 0), "dog");
-  constrain(asset, tail, {"aim", "PositiveY", dog, 1});  // what it aims at turns with it
+  constrain(asset, tail, {"aim", "PositiveY", dog, 1});  // its target turns with it
   character = load_asset(asset);
   EXPECT_TRUE(says(character, "in a circle are not followed: "));
   for (const char* name : {"link2", "link3", "link4", "narcissus", "tail"}) {

@@ -28,7 +28,7 @@ quat random_rotation(Rng& rng) {
   return glm::normalize(q);
 }
 
-// How far a joint's turn is beyond its limits, radians.
+// Returns how far a joint's turn is beyond its limits, radians.
 float beyond(const Joint& joint, quat turn) {
   vec3 v =
       rotation_vector(glm::conjugate(joint.limit_orientation) * turn * joint.limit_orientation);

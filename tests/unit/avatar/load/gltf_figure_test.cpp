@@ -69,7 +69,8 @@ TEST(GltfFigure, CamerasAndLightsAreCountedAsLeftOut) {
   EXPECT_TRUE(says(c, "left out, as a figure has none: 1 light(s)"));
 }
 
-// Of the figure's triangles, how many have their winding's side where their normals are.
+// Counts the figure's triangles whose winding agrees with their normals, and those whose winding
+// does not.
 std::pair<int, int> outward_and_inward(const Character& c) {
   std::pair<int, int> count(0, 0);
   for (const Part& part : c.parts)

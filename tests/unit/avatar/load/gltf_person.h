@@ -14,7 +14,7 @@ struct PersonBone {
   const char* vrm;     // VRM's name
   const char* parent;  // "" for the root
   vec3 place;          // facing +Z, arms in T-pose
-  vec3 to;             // where its box ends
+  vec3 to;             // end of the bone's box
 };
 
 inline const std::vector<PersonBone>& person_bones() {
@@ -45,7 +45,7 @@ struct PersonOptions {
   quat axes{1, 0, 0, 0};                     // every bone's own axes
   bool odd_axes = false;                     // and a different turn each
   std::map<std::string, quat> posed;         // turn of a bone about world axes, after binding
-  std::map<std::string, std::string> names;  // of bones; absent: VRM's
+  std::map<std::string, std::string> names;  // names of bones; absent: VRM's
   bool named = true;
 };
 

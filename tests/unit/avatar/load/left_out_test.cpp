@@ -83,7 +83,7 @@ TEST(VertexColors, TakeThePlaceOfTheMaterials) {
   EXPECT_EQ(c.colors[0], vec4(1, 0, 0, 1));
   EXPECT_EQ(c.colors[1], vec4(0, 0, 1, 1));
   EXPECT_NEAR(c.colors[2].x, 0.2140f, 1e-4f) << "as written they are for the eye";
-  // By colorIndex, and after a part that has none.
+  // The colours come by colorIndex, and after a part that has none.
   Character by_index = test::load_text(
       skin_figure(in_skin(colored("plain")) +
                   in_skin(colored("a", "coordIndex='0 1 2 3' colorIndex='1 1 0 0'", rgb))));

@@ -22,7 +22,7 @@ TEST(Thumbs, CloseAcrossThePalm) {
       }
       for (int joint : joints) ASSERT_GE(joint, 0);
       ASSERT_GE(middle, 0);
-      // From the thumb's last joint to the root of the ring finger, in the hand.
+      // Returns the gap from the thumb's last joint to the root of the ring finger, in the hand.
       auto gap = [&](float curl, float thumb) {
         BodyPlan plan;
         plan.fingers = true;

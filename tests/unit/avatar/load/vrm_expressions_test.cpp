@@ -153,7 +153,7 @@ TEST(VrmExpressions, ForbidBlinksGazeAndSpeechAsTheFormatSays) {
   presets(asset)["relaxed"]["isBinary"] = true;
   presets(asset)["oh"]["isBinary"] = true;
   presets(asset)["surprised"]["overrideMouth"] = "blend";
-  presets(asset)["blink"]["overrideBlink"] = "block";  // of its own kind: does not count
+  presets(asset)["blink"]["overrideBlink"] = "block";  // blocks its own kind: does not count
   Character c = load_asset(asset);
   auto after = [&](std::initializer_list<std::pair<const char*, float>> weights) {
     Pose pose = with(c, weights);
@@ -201,7 +201,7 @@ TEST(VrmExpressions, AFigureThatAsksForNothingIsLeftAlone) {
   EXPECT_EQ(pose.displacers, before);
 }
 
-// Of an expression and a morph target with one name, however it is spelt, the expression counts.
+// If an expression and a morph target have one name, however it is spelt, the expression counts.
 TEST(VrmExpressions, ComeBeforeMorphTargetsOfTheirName) {
   Asset asset = dressed_person();
   add_vrm_1(asset);

@@ -62,7 +62,7 @@ std::vector<std::string> extension_places(const Asset& asset) {
   return places;
 }
 
-// What a show does with a figure in a tick.
+// Does with a figure what a show does in a tick.
 void use_figure(const Character& c, Rng& rng, const std::string& place) {
   Pose pose = make_rest_pose(c);
   for (float& w : pose.displacers) w = rng.uniform() * 2 - 0.5f;

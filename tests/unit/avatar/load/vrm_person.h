@@ -29,7 +29,7 @@ inline Asset dressed_person() {
   return asset;
 }
 
-// Of version 1.
+// Returns the expressions of version 1.
 inline json& presets(Asset& asset) {
   return asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"];
 }

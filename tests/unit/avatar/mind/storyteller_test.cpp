@@ -48,7 +48,7 @@ float angle_between(vec3 a, vec3 b) {
   return std::acos(std::clamp(dot(normalize(a), normalize(b)), -1.0f, 1.0f));
 }
 
-// How far an eye looks past a point of humanoid space.
+// Returns how far an eye looks past a point of humanoid space.
 float eye_error(const Stage& stage, const char* eye, vec3 target) {
   JointFrame frame = stage.frame(eye);
   return angle_between(frame.rotation * vec3(0, 0, 1), target - frame.center);

@@ -26,7 +26,7 @@ struct Manner {
   float hiss = 0;     // standard deviation of the noise; 1 is full scale
   float hum = 0;      // amplitude of 50 Hz and its third harmonic
   double room = 0;    // seconds until the room's echo is 60 dB down
-  int rate = 22050;   // of the recording: 8000 is a telephone
+  int rate = 22050;   // samples a second: 8000 is a telephone
   uint64_t seed = 1;
 };
 

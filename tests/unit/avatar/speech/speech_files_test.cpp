@@ -104,7 +104,7 @@ TEST(SpeechSound, ResamplingKeepsATone) {
       ASSERT_NEAR(other[size_t(i)], std::sin(2 * std::numbers::pi * 1000 * i / to), 0.01)
           << from << " to " << to;
   }
-  // What the lower rate cannot hold is gone.
+  // Frequencies that the lower rate cannot hold are gone.
   std::vector<float> high;
   for (int i = 0; i < 44100; i++)
     high.push_back(std::sin(float(2 * std::numbers::pi * 12000 * i / 44100)));

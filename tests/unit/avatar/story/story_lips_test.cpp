@@ -39,7 +39,7 @@ StorySpeech tell(const std::string& story, const std::string& lang) {
 }
 
 struct Edges {
-  std::vector<double> begins, ends;  // of sound between silences
+  std::vector<double> begins, ends;  // seconds; each sound lies between silences
 };
 
 // Windows of 5 ms that are louder than 40 dB under the loudest.

@@ -22,7 +22,7 @@ constexpr int width = 64, height = 48;
 
 using Words = std::array<uint32_t, surface_planes>;
 
-// Everything that is asked for is traced and kept. What it says is in `truth` by the pixel.
+// Traces and keeps everything that is asked for. `truth` holds the samples by pixel.
 struct Corrected {
   Stage stage;
   std::vector<float> shining;
@@ -113,7 +113,7 @@ TEST(Corrections, CostNothingWhereNothingShines) {
   EXPECT_EQ(room.corrections.counts().pictures, 0u);
 }
 
-// What is shown in the end is what is traced, bit for bit.
+// A case is a scene; its picture ends as the traced samples are, bit for bit.
 struct Case {
   const char* name;
   Scene (*make)();
@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
                          }}),
     [](const auto& info) { return info.param.name; });
 
-// Of two balls that are not enough samples for, the one looked at is known first.
+// The budget is too small for two balls; the one looked at is sampled first.
 TEST(Corrections, ComeFirstToWhatIsLookedAt) {
   Corrected room(room_with({metal(vec3(0.9f), 0), metal(vec3(0.9f), 0)}));
   std::vector<float> weights(room.stage.scene.objects.size(), 1);
@@ -210,7 +210,7 @@ TEST(Corrections, GroupsAreOfOneMaterialAndClose) {
   EXPECT_EQ(group, (std::vector<uint32_t>{first, first, first + 2, first + 3, first + 4, first}));
 }
 
-// What something that moves is near to does not have the map's light: points know it.
+// Samples near a moving object do not have the map's light: they are left to the cache's points.
 TEST(Corrections, LeaveOutShadowsOfWhatMoves) {
   Corrected room(room_with({plastic(vec3(0.5f), 0.1f)}));
   std::vector<Request> requests = room.ask(10);

@@ -119,7 +119,7 @@ TEST(ObjectSamples, TheFirstLevelWithTenSamplesDecides) {
   EXPECT_EQ(store.count(), 69);
   add_at_origin(store, 1, false, 0, 1);
   EXPECT_EQ(age_samples(store, eye_at(1).position, 1).dropped, 70);
-  // Where no level has ten, all are asked.
+  // If no level has ten, all are asked.
   add_at_origin(store, 3, false, 0, 1);
   add_at_origin(store, 4, false, 0, 2);
   EXPECT_EQ(age_samples(store, eye_at(1).position, 1).checked, 7);

@@ -139,7 +139,7 @@ TEST(Sqrt5Grid, FinerFootprintsCoverNoPlaceOfACoarserLevel) {
           for (int x = test::footprint_begin(p.x, side), xn = x + side; x < xn; x++) {
             if (x < 0 || y < 0 || x >= size || y >= size) continue;
             bool own = x == p.x && y == p.y;
-            // What is painted with its own number is a place of this or a coarser level.
+            // A pixel painted with its own number is a place of this or a coarser level.
             ASSERT_TRUE(own || painted[size_t(y * size + x)] != y * size + x);
             painted[size_t(y * size + x)] = own ? y * size + x : -2;
             overlaps += times[size_t(y * size + x)]++;

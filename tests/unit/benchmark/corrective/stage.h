@@ -25,7 +25,7 @@ struct Stage {
   // The first ball that the ray through the centre of a pixel meets; object 0: none. The words
   // are a function of object and pixel.
   CorrectiveSample trace(const View& view, ivec2 pixel) const;
-  std::vector<uint32_t> objects(const View& view) const;  // of each pixel
+  std::vector<uint32_t> objects(const View& view) const;  // each pixel's object
   // A sample for each pixel of the level that shows something, or of all levels.
   std::vector<CorrectiveSample> trace_level(const View& view, const Sqrt5Grid& grid,
                                             int level) const;
@@ -35,7 +35,7 @@ struct Stage {
 // A ball as wide as a good part of the picture, and a smaller one that hides some of it; `unit` is
 // a metre of theirs in metres.
 Stage two_balls(float unit = 1);
-// From `distance` units before them, turned by `angle` round the first.
+// Views the balls from `distance` units before them, turned by `angle` round the first.
 View view_of_balls(int width, int height, float angle = 0, float distance = 4, float unit = 1);
 
 // A number for each pixel, bit by bit.

@@ -81,7 +81,7 @@ TEST(WarpAndSplat, AThousandKilometresFromZeroNothingChanges) {
   ASSERT_EQ(view_of(near), view_of(far));
   View view = view_of(far);
   EXPECT_EQ(count_wrong(splat(traced(stage, view), view, stage.objects(view)), stage, view), 0);
-  // With an origin that is far from what is seen, floats are too few; nothing worse happens.
+  // The origin is far from the balls, so that floats are too coarse; nothing worse happens.
   for (test::Ball& ball : stage.balls) ball.center += vec3(1e6f);
   view.position += vec3(1e6f);
   SplatStats stats = splat(traced(stage, view), view, stage.objects(view)).stats;
@@ -261,7 +261,7 @@ TEST(WarpAndSplat, TilesAndLanesAgreeWithAPlainLoop) {
   SampleStore store;
   add_samples(store, view, 0, samples);
   Picture fast = splat(store, now, object), plain = plain_splat(store, now, object);
-  // Where a sample falls on the very border of a pixel, another rounding takes the next one.
+  // If a sample falls on the very border of a pixel, another rounding takes the next pixel.
   int differ = 0;
   for (size_t i = 0; i < object.size(); i++)
     differ += fast.color[i] != plain.color[i] || fast.level[i] != plain.level[i];

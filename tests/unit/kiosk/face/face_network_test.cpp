@@ -25,7 +25,7 @@ GrayFrame stand(vec3 position, vec3 rotation, double time) {
   return draw_figure({640, 480, 1, 2.5f, 1}, {}, pose, time);
 }
 
-// What the observer says of a visitor who sways a little for `seconds`, in turns at `rotation`.
+// Returns the observation of a visitor who sways a little for `seconds`, in turns at `rotation`.
 Observation watch(const ObserverSettings& settings, vec3 rotation, double seconds) {
   Observer observer(settings);
   Observation seen;

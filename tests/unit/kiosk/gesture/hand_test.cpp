@@ -90,7 +90,7 @@ TEST(Skin, is_learnt_from_the_face) {
   EXPECT_EQ(wall, 0);
 }
 
-// Where the hand is seen while it goes round below the face from frame `from` on.
+// Returns the place of the hand, which goes round below the face from frame `from` on.
 vec2 orbit(int frame) {
   return vec2(80, 160) + 30.f * vec2(std::cos(0.2f * float(frame)), std::sin(0.2f * float(frame)));
 }

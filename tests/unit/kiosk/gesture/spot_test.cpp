@@ -18,7 +18,7 @@ const GestureModels& models() {
   return trained;
 }
 
-// What the digits' models alone make of each other's motion.
+// Returns models that are trained with the digits alone.
 const GestureModels& digits() {
   static const GestureModels trained = [] {
     auto paths = write_set(WriterGroup::training, 21, 2, 1);
@@ -112,7 +112,7 @@ TEST(Spot, a_hand_that_leaves_ends_its_motion) {
 }
 
 TEST(Spot, memory_stays_level_over_hours) {
-  // What two hours leave behind answers like a new spotter.
+  // After two hours a spotter answers like a new one.
   const HandWriter writer = make_writer(WriterGroup::training, 3);
   const HandPath minutes = write_other(writer, 600, 4);
   GestureSpotter old(models());

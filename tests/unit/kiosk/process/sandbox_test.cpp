@@ -22,7 +22,7 @@
 namespace wellspring::test {
 namespace {
 
-// Whether the deed says 0 in a process of its own, in the sandbox.
+// Says whether the deed returns 0 in a process of its own, in the sandbox.
 bool works(const std::function<int()>& deed, SandboxSettings settings = {}) {
   pid_t child = fork();
   if (child == 0) {
@@ -100,7 +100,7 @@ TEST_F(Sandbox, WhatIsOpenStaysOpen) {
   close(pair[0]), close(pair[1]);
 }
 
-// What is needed of the eye reaches it there.
+// Orders to the eye reach it there.
 TEST_F(Sandbox, OrdersAreHeard) {
   EXPECT_TRUE(works([] {
     int ends[2];

@@ -12,7 +12,7 @@
 
 namespace wellspring::test {
 
-// Until so many passes are done.
+// Bakes until so many passes are done.
 inline void bake_passes(const BakeScene& scene, Bake& bake, uint64_t passes) {
   if (passes > 0) go_on(scene, bake, [&] { return bake.passes >= passes; });
 }
@@ -91,7 +91,7 @@ inline bool same_bits(const Bake& a, const Bake& b) {
          a.refined == b.refined && a.cursor == b.cursor;
 }
 
-// Where node `i` of a tile lies on its chart's plane.
+// Returns where node `i` of a tile lies on its chart's plane.
 inline vec3 node_place(const IlluminationChart& chart, const TilePlace& at,
                        const IlluminationTile& tile, uint32_t i) {
   float u = float(at.column) + float(i % (tile.columns + 1u)) / float(tile.columns),

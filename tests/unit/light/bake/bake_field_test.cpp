@@ -63,7 +63,7 @@ TEST(BakeField, NodesOfASquareStandForACellOrHalfOrAQuarter) {
     }
 }
 
-// Where the chart lies askew: what is within half a cell of the node, counted on a fine grid.
+// The chart lies askew: the surface within half a cell of the node is counted on a fine grid.
 TEST(BakeField, NodesStandForTheSurfaceInTheirBoxes) {
   Field f(make_square(false), 0.4f, 2);
   int partial = 0;
@@ -112,8 +112,8 @@ TEST(BakeField, PlacesLieInWhatTheirNodeStandsForAndOnItsSide) {
   }
 }
 
-// As many lie in one half of the square as there is surface of that half in the node's box, within
-// five standard errors and the error of counting.
+// As many places lie in one half of the square as there is surface of that half in the node's box,
+// within five standard errors and the error of counting.
 TEST(BakeField, PlacesAreSpreadEvenly) {
   Field f(make_square(false), 1, 1);
   const IlluminationTile& tile = f.field.tiles[0];

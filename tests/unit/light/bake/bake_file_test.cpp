@@ -155,7 +155,7 @@ TEST_F(BakeFiles, DamagedMapsAreNeitherLoadedNorFatal) {
   EXPECT_FALSE(load().map);
 }
 
-// Whoever makes such a file knows how its sum is made: what it says is checked, too.
+// Anyone who makes such a file knows how its sum is made, so its content is checked, too.
 TEST_F(BakeFiles, WhatAMapSaysOfItselfIsNotTrusted) {
   ASSERT_TRUE(save_map(baked.world, *baked.map(1), map_file, 1));
   std::string head = folder.read("square.maps").substr(0, 24), bytes;

@@ -32,7 +32,7 @@ TEST(BakeLeaks, TheRoomBesideALitOneIsDarkBehindThinWalls) {
     test::Baked baked(make_two_rooms(wall), {.gather_nodes = 6000, .direct_nodes = 40000});
     auto map = baked.map(4);
     ASSERT_TRUE(map);
-    // Of the light that is gathered, whose nodes are never refined; on the mean.
+    // The mean cell of gathered light, whose nodes are never refined.
     const float cell = float(std::sqrt(baked.bake.charts.area / 6000));
     double lit = 0, lit_places = 0, dark = 0;
     int dark_places = 0;

@@ -182,7 +182,7 @@ TEST(Bake, NodesAreFinerAtTheEdgeOfAShadow) {
   add_quad(scene, add_material(scene, card), {-0.25f, 0.45f, 0.25f}, {0.5f, 0, 0}, {0, 0, -0.5f});
   Baked baked(scene, {.gather_nodes = 1500, .direct_nodes = 8000});
   bake_passes(baked.lit, baked.bake, 1);
-  const float edge = 0.25f / 0.55f;  // of the shadow, from the middle
+  const float edge = 0.25f / 0.55f;  // the shadow's edge, from the middle
   double at_edge = 0, edges = 0, elsewhere = 0, others = 0;
   for (uint32_t t = 0; t < baked.bake.charts.tiles; t++) {
     const TilePlace& at = baked.bake.places[t];

@@ -37,7 +37,7 @@ struct Tiles {
     add_mesh(scene, std::move(mesh), "it");
     return scene;
   }
-  // At u, v from 0 to 1 of one tile, as the light lies there.
+  // Returns the light at u, v from 0 to 1 of one tile, as it lies there.
   float at(uint32_t tile, float u, float v) const {
     const IlluminationTile& t = tiles[tile];
     u *= float(t.columns), v *= float(t.rows);

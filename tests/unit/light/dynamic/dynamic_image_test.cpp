@@ -44,7 +44,7 @@ View view_of(const Scene& scene, int width, int height) {
   return make_view_towards(scene, {-2.5, 1.6, 2.5}, {0, 0.4, 0}, {0, 1, 0}, 0.8f, width, height);
 }
 
-// What compute_dynamic_light() makes, times reflectance, as a picture would show it.
+// Returns the light of compute_dynamic_light() times reflectance, as a picture would show it.
 std::vector<vec3> draw_dynamic(const Scene& scene, const View& view,
                                std::vector<DynamicLight> from) {
   World world(scene);

@@ -64,7 +64,7 @@ TEST(SettledBounce, BeginsAnewWhenALightChanges) {
   EXPECT_EQ(moved.size(), 1u);
   EXPECT_EQ(settled.passes, 0);
   EXPECT_FALSE(wants_pass(settled));
-  // Of no number a light is never like itself.
+  // A light with NaN is never equal to itself.
   show_pictures(settled, {lamp({NAN, 1, 1})}, 40);
   EXPECT_TRUE(settled.lights.empty());
 }

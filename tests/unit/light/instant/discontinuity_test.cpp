@@ -26,7 +26,8 @@ View flat_view() {
   return view;
 }
 
-// What the view sees of the plane `distance` before it, tilted so that its depth varies a lot.
+// Returns the view's samples of the plane `distance` before it, tilted so that its depth varies a
+// lot.
 std::vector<Sample> see_plane(vec3 normal, float distance = 2) {
   std::vector<Sample> samples;
   View view = flat_view();

@@ -141,7 +141,7 @@ TEST(InstantRadiosity, ChosenLightsAreWorthAllCandidates) {
   for (uint64_t seed = 0; seed < 300; seed++) {
     InstantPass chosen = draw_instant_pass({world, *lights.tables}, settings, view, seed, 0),
                 every = draw_instant_pass({world, *lights.tables}, all, view, seed + 1000, 0);
-    size_t wanted = 9 * (2 + 3);  // of each kind, one more or less
+    size_t wanted = 9 * (2 + 3);  // one more or less of each kind
     EXPECT_LE(chosen.lights.size(), wanted + 2);
     EXPECT_GE(chosen.lights.size(), wanted - 2);
     chosen_seen.add(irradiance_of(chosen, 4, seen));

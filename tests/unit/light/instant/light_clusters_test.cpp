@@ -37,7 +37,7 @@ Scene box_and_lamp() {
   return scene;
 }
 
-// What each light does to each place, of all that they get; each place counts for as much.
+// Returns each light's share of the effect of all lights, as the mean over the places.
 std::vector<double> exact_shares(const LightClusters& clusters, float clip,
                                  std::span<const LitPoint> points) {
   std::vector<double> shares(clusters.size() * lane_count, 0.0);
@@ -79,7 +79,7 @@ TEST(LightOrder, NeighboursAreNearAndFaceOneWay) {
   // A curve through n places of a surface is about as long as their square root, not as their
   // number.
   EXPECT_LT(walked, 0.2 * as_drawn);
-  EXPECT_LT(turns, 200);  // of some thousands
+  EXPECT_LT(turns, 200);  // out of some thousands
 }
 
 // The second moment of choosing by shares s what would best be chosen by shares e is the sum of

@@ -121,7 +121,7 @@ TEST(CausticPhotons, ArriveFromSharpThingsOnRoughOnes) {
   ASSERT_GT(photons.size(), 500u);
   for (const Photon& p : photons) {
     ASSERT_NEAR(p.position.y, 0, 1e-4);  // on the floor: the lamp is black, the ball is not rough
-    ASSERT_EQ(p.depth, 1u);              // what solid glass does is no edge of its path
+    ASSERT_EQ(p.depth, 1u);              // solid glass adds no edge to its path
     Ray back;
     back.origin = p.position + 1e-4f * p.direction;
     back.direction = p.direction;
@@ -163,7 +163,7 @@ TEST(CausticPhotons, WithEverythingElseTheyArePath) {
         << c.name << ": " << ours.mean << " +- " << ours.error << " against " << path.mean << " +- "
         << path.error;
     EXPECT_LT(error, 0.01 * path.mean) << c.name;
-    // And the caustic is a part that would be missed.
+    // The caustic is a part that would be missed.
     settings.instant.photons = 0;
     if (c.ball.transmission > 0) {
       Estimate without = estimate_radiance(*find_technique("instant_radiosity"), world, lights,

@@ -41,8 +41,8 @@ TransportSettings few_of_many() {
 
 }  // namespace
 
-// What a region asks is in the mean worth all lights, in every list, at a place that its probes see
-// and at one that they do not; and it is as few as it was wanted to be.
+// The lights that a region asks are in the mean worth all lights, in every list, at a place that
+// its probes see and at one that they do not; and they are as few as was wanted.
 TEST(RegionLights, AreWorthAllLights) {
   Scene scene = make_cornell_box();
   World world(scene);
@@ -72,14 +72,14 @@ TEST(RegionLights, AreWorthAllLights) {
     EXPECT_LE(std::abs(on_floor.mean()), significance_z * on_floor.error());
     EXPECT_LE(std::abs(on_ceiling.mean()), significance_z * on_ceiling.error());
     EXPECT_NEAR(asked / 300, 5, 0.6);  // a list gets one more or less
-    // Where probes look, the choice is the better one: F-test, a ratio of variances of 300 draws
-    // below 0.64 has probability 1e-4 if they were equal.
+    // At places that the probes see, the choice is the better one: F-test, a ratio of variances of
+    // 300 draws below 0.64 has probability 1e-4 if they were equal.
     double relative = on_floor.error() / 1, other = on_ceiling.error() / 1;
     EXPECT_LT(relative * relative, 0.64 * other * other);
   }
 }
 
-// Also of a set so large that a share of it is looked at.
+// The set may be so large that only a share of it is looked at.
 TEST(RegionLights, ChoiceForOnePlaceIsWorthItsSet) {
   Scene scene = make_cornell_box();
   World world(scene);

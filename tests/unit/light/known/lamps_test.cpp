@@ -82,7 +82,7 @@ TEST(SwitchedLamps, LightIsThatOfASceneWithoutThem) {
     }
 }
 
-// Of a dimmed lamp as of one that the scene has so.
+// A dimmed lamp gives the same light as one that is so dark in the scene.
 TEST(SwitchedLamps, DimmedLightIsThatOfASceneWithDarkerLamps) {
   Switched switched("gather");
   constexpr LampLevel lamp = 90, spot = 200;
@@ -197,7 +197,7 @@ TEST(SwitchedLamps, AChangeIsToldWhereItIs) {
   kept = vec3(1);
   ASSERT_TRUE(all.changes(corner, wall, kept, added));
   EXPECT_LT(luminance(kept), 0.6f);
-  // Whoever keeps no light knows nothing of places.
+  // Without kept light every place counts as changed.
   Switched unprepared;
   LightChange unknown(unprepared.scene, unprepared.all, nullptr, both, none);
   kept = vec3(1), added = vec3(0);

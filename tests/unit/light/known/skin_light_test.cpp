@@ -30,7 +30,7 @@ void add_ceiling(Scene& scene) {
   scenes::add_quad(scene, scenes::add_material(scene, scenes::diffuse(vec3(0.8f))), {-1, 0.6f, -1},
                    {2, 0, 0}, {0, 0, 2}, "ceiling");
 }
-// As the ball would be lit after very many samples.
+// Returns the ball's light after very many samples.
 std::vector<vec3> converged(SkinStage& stage) {
   SkinLight kept = stage.skin;
   std::vector<dvec3> sum(stage.skin.places.size(), dvec3(0));
@@ -101,7 +101,7 @@ TEST(SkinLight, CosineUnderASun) {
   int lit = 0, dark = 0;
   for (uint32_t v = 0; v < uint32_t(stage.moving[0].positions.size()); v++) {
     float cosine = stage.normal_at(v).y;
-    if (std::abs(cosine) < 0.2f) continue;  // where a place is partly in the shadow
+    if (std::abs(cosine) < 0.2f) continue;  // such a place is partly in the shadow
     EXPECT_NEAR(stage.light_at(v).x, std::max(cosine, 0.0f), 0.02f);
     (cosine > 0 ? lit : dark)++;
   }
@@ -142,7 +142,7 @@ TEST(SkinLight, OneSampleAPlaceIsCalmOnceSmoothed) {
   double raw = rms_error(stage.skin, truth, false), smooth = rms_error(stage.skin, truth, true);
   EXPECT_GT(raw, 0.2);
   EXPECT_LT(smooth, 0.5 * raw);
-  // And with more samples it converges.
+  // With more samples it converges.
   stage.look(int(stage.skin.places.size()), 24);
   EXPECT_LT(rms_error(stage.skin, truth, true), 0.6 * smooth);
 }
@@ -364,7 +364,7 @@ TEST(SkinLight, NothingToDo) {
   EXPECT_LT(memory_bytes(dark.skin), 400 * dark.skin.places.size());
 }
 
-// Where nothing was sampled yet, light is that of what is known, not black.
+// Places that were not sampled yet have the light of sampled ones, and are not black.
 TEST(SkinLight, WhatIsUnknownIsNotBlack) {
   SkinStage stage;
   int lambertian = stage.add_lambert();

@@ -33,7 +33,7 @@ struct SkinStage {
     lights = make_lights(*world);
     skin = make_skin_light(*world);
   }
-  // As a show would: some samples and then smoothing, again and again.
+  // Does as a show would: some samples and then smoothing, again and again.
   int look(int samples, int times = 1, int cycles = 2) {
     update.samples = samples;
     int traced = 0;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int rows = 24, columns = 16, fine = 24, draws = 20000;
 
-// How surprising the counts are: the chi-squared statistic as a normal deviate (Wilson and Hilferty
-// 1931). Bins that expect fewer than five are judged together.
+// Says how surprising the counts are: the chi-squared statistic as a normal deviate (Wilson and
+// Hilferty 1931). Bins that expect fewer than five are judged together.
 struct Judged {
   double deviate = 0, total = 0;  // integral of the density
 };
@@ -150,8 +150,8 @@ TEST(BsdfSampling, IsReciprocalButForLayersAndBrushing) {
   EXPECT_GT(compared, 500);
 }
 
-// What the layers' dimming by the viewer's angle alone costs: the base differs by the ratio of what
-// the layers leave to either direction, and by nothing else.
+// Layers dim the base by the viewer's angle alone, which costs reciprocity: the base differs by the
+// ratio of what the layers leave to either direction, and by nothing else.
 TEST(BsdfSampling, LayersAreNotReciprocalByWhatTheyLeave) {
   for (const Material& m :
        {coated(plastic(vec3(1), 0.5f), 1, 0), coated(metal(vec3(1), 0.5f), 1, 0),

@@ -122,7 +122,7 @@ TEST(Dispersion, ClustersAgreeWithSingleWavelengths) {
       carry_wavelengths(*spread, hero, Lobes::all, s, carried);
       four += s.weight * light(s.direction) / float(count);
 
-      // And the same by sampling the light: uniform directions.
+      // The same light is sampled in uniform directions.
       vec3 l = sample_sphere(b.next2());
       eval += eval_bsdf(hero, l).specular * light(l) * (4 * pi) / float(count);
     }
@@ -140,9 +140,9 @@ TEST(Dispersion, ClustersAgreeWithSingleWavelengths) {
             significance_z * single[0].error());  // colours part
 }
 
-// An eye and a light of one hue each are, in the mean over the light's hues, one walk of the eye's:
-// each has coloured what it brings, and the colour counts once. Where either is in colour, nothing
-// changes.
+// An eye's walk and a light's walk of one hue each are, in the mean over the light's hues, one walk
+// of the eye's: each has coloured what it brings, and the colour counts once. If either has all
+// colours, nothing changes.
 TEST(Dispersion, HuesThatMeetCountOnce) {
   constexpr int steps = 8192;
   for (float eye : {0.0f, 0.01f, 0.3f, 0.5f, 0.97f}) {

@@ -111,7 +111,7 @@ TEST(Lambert, SurfacesAreThoseOfTheLongWay) {
   EXPECT_GT(moved, 100);
 }
 
-// What is kept of a triangle and what is made of a moving one on the way are the same.
+// A triangle's kept surface and one that is made on the way for a moving mesh are the same.
 TEST(Lambert, StillAndMovingMeshesLookTheSame) {
   Scene still = heaps(), empty = heaps();
   still.instances.resize(1);

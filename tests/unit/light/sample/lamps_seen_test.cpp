@@ -52,7 +52,7 @@ SurfacePlace on_floor(float x, float z) {
   return place;
 }
 
-// What arrives of the drawn lamp, many times.
+// Averages the light that arrives from a drawn lamp, over many draws.
 Mean estimate(const Place& p, const LampsSeen* lamps, const SurfacePlace& place, int count) {
   Transport transport{p.world, *p.lights.tables, nullptr, lamps};
   Mean mean;

@@ -47,7 +47,8 @@ std::vector<LightBounds> random_lights(int count, uint64_t seed, bool ranges = f
   return lights;
 }
 
-// What a light certainly sends to a place: the least that a point of it, straight or aslant, does.
+// Says whether a light certainly reaches a place: the least that a point of the light, straight or
+// aslant, does.
 bool reaches(const LightBounds& b, vec3 point, vec3 place, vec3 normal) {
   vec3 line = point - place;
   float distance = length(line);
@@ -198,9 +199,9 @@ TEST(LightTree, LightsInOnePlaceAndLightsInAChain) {
   }
 }
 
-// The whole of it in a scene: light from many lamps at a point is what adding them up says, with
-// most of them behind a wall or facing away. Of the wall the tree knows nothing: what it gains is
-// by nearness and facing alone, and that must be worth more than twice the samples.
+// The whole tree in a scene: light from many lamps at a point is their sum, with most of them
+// behind a wall or facing away. The tree does not know of the wall: it gains by nearness and facing
+// alone, and that must be worth more than twice the samples.
 TEST(LightTree, ManyLampsBehindAWallAreSampledWithoutBias) {
   Scene scene = empty_scene();
   add_floor(scene, 0.5f);

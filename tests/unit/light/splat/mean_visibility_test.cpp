@@ -71,7 +71,8 @@ TEST(MeanVisibility, LightDoesNotPassWalls) {
     EXPECT_EQ(sum_virtual_lights(rooms.drawn.lights, probe.position, probe.normal), vec3(0));
 }
 
-// Where some places are reached and others are not, lights are as bright as the mean is right.
+// Lights are dimmed by their mean visibility: over all places, some reached and others not, the sum
+// of light is right.
 TEST(MeanVisibility, IsRightInTheMean) {
   Rooms rooms;
   auto sum = [&](const std::vector<LitProbe>& probes) {

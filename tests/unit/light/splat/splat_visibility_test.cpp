@@ -47,7 +47,7 @@ TEST(SplatVisibility, ShadowsAreRightInTheMean) {
   settings.coarsest = 1000;        // pixel by pixel
   settings.smooth_visibility = 0;  // each for itself
   settings.virtual_lights = 64;
-  settings.shadow_rays = 64;  // of a pixel a quarter
+  settings.shadow_rays = 64;  // a quarter for a single pixel
   stage.draw(settings);
   constexpr int passes = 64;
   constexpr int places[][2] = {{4, 18}, {12, 22}, {8, 12}, {16, 17}, {20, 6}, {12, 3}};
@@ -71,7 +71,7 @@ TEST(SplatVisibility, ShadowsAreRightInTheMean) {
   EXPECT_GE(shadowed, 2);
 }
 
-// Of lights of one colour nothing is left to chance where nothing is in the way.
+// If lights have one colour and nothing is in the way, nothing is left to chance.
 TEST(SplatVisibility, WithoutShadowsNothingIsLeftToChance) {
   Scene scene = empty_scene();
   add_mesh(scene, box_mesh(add_material(scene, diffuse(vec3(0.5f))), vec3(2), true), "room");

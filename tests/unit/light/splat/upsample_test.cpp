@@ -86,7 +86,7 @@ TEST(Upsample, NothingIsPulledFromEmptySquares) {
     }
 }
 
-// Of the two squares of one depth behind each other, each keeps its light; a hole stays dark.
+// The picture's halves lie at two depths: each keeps its light; a hole stays dark.
 TEST(Upsample, StepsOfDepthAndHolesPartLight) {
   Squares squares;
   for (int i = 0; i < side * side; i++) {

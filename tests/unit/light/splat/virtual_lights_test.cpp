@@ -27,7 +27,7 @@ double reflected_by_texels(const ReflectiveShadowMap& map) {
   for (const ReflectiveTexel& texel : map.texels) sum += double(texel.flux.x);
   return sum;
 }
-// Of lights of one colour; intensity times pi.
+// Returns the lights' intensity times pi; they have one colour.
 double reflected_by_lights(const VirtualLights& lights) {
   double sum = 0;
   for (size_t i = 0; i < size_t(lights.count); i++) sum += double(lights.red[i]) * double(pi);

@@ -24,8 +24,8 @@ enum LightKinds : unsigned {
 
 struct Claim {
   const char* technique;
-  unsigned kinds;      // of light that it renders without bias
-  const char* except;  // what it does not claim, and why
+  unsigned kinds;      // LightKinds that it renders without bias
+  const char* except;  // light that it leaves out, and why
 };
 const Claim* find_claim(const std::string& technique);
 

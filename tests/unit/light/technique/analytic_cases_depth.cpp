@@ -15,7 +15,7 @@ constexpr double by_pi = 1 / double(pi), gray = 0.5;
 Ray at_ground(vec3 p) { return ray_towards(p + vec3(0.3f, 0.5f, 0.8f), p); }
 
 void add_panes(std::vector<AnalyticCase>& cases) {
-  TransportSettings two;  // what the panes mirror back at the floor is not asked for
+  TransportSettings two;  // light that the panes mirror back at the floor is left out
   two.max_depth = 2;
   PunctualLight point;
   point.position = {0.5f, 2, 0};
@@ -72,8 +72,8 @@ void add_slabs(std::vector<AnalyticCase>& cases) {
     cases.push_back({"slab that absorbs, index " + std::to_string(index), scene,
                      ray_towards({0.1f, 0.1f, 3}, {0.1f, 0.1f, 0}), through + back, chains, deep,
                      768});  // few samples come back, and bring most of the light
-    // From within, half way through: out at this face, or back across the whole slab first. Inside,
-    // radiance is denser by the squared index.
+    // The eye is within, half way through: light goes out at this face, or back across the whole
+    // slab first. Inside, radiance is denser by the squared index.
     double inside = double(index) * double(index) * (1 - r) * std::sqrt(a) / (1 - r * a);
     cases.push_back({"eye within the slab, index " + std::to_string(index), scene,
                      ray_towards({0.1f, 0.1f, 0}, {0.1f, 0.1f, 1}), inside, chains, deep, 512});

@@ -10,7 +10,7 @@ using namespace scenes;
 namespace {
 
 constexpr float water_index = 1.33f, glass_index = 1.5f;
-constexpr double water_keeps = 0.3, glass_keeps = 0.6;  // of light, a metre
+constexpr double water_keeps = 0.3, glass_keeps = 0.6;  // share of light, a metre
 
 Layer water(double thickness) { return {double(water_index), std::pow(water_keeps, thickness)}; }
 Layer clear(double thickness) { return {double(glass_index), std::pow(glass_keeps, thickness)}; }

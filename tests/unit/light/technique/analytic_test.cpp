@@ -83,7 +83,7 @@ TEST(Analytic, GlassAndMirrors) { judge_cases(glass_and_mirror_cases()); }
 TEST(Analytic, NestedGlass) { judge_cases(nested_glass_cases()); }
 TEST(Analytic, Interreflection) { judge_cases(interreflection_cases()); }
 
-// What a technique does not claim it indeed leaves out: the table is no excuse.
+// A technique indeed leaves out light that it does not claim: the table is no excuse.
 TEST(Analytic, DirectLeavesOutInterreflection) {
   for (const AnalyticCase& c : interreflection_cases()) {
     if (!(c.needs & interreflection) || c.expected < 1.01) continue;

@@ -137,7 +137,7 @@ TEST(Dispersion, EveryTechniqueBringsTheSameColors) {
 // Fresnel's formula; nothing where the right face reflects all of it.
 struct Passed {
   dvec3 inside, behind;  // its directions
-  double share = 1;      // that both faces let through
+  double share = 1;      // light that both faces let through
 };
 std::optional<Passed> pass_prism(const Material& glass_of_prism, float hue, dvec3 direction) {
   const double index = double(index_at(glass_of_prism, wavelength_at(hue)));
@@ -199,7 +199,7 @@ TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
   Lights lights = make_lights(world);
   std::vector<Photon> photons = shoot_caustic_photons(
       {world, *lights.tables}, lights.tables->casters, 8, 1, 0, 40000, 1.0f / 40000);
-  // Without those that a face reflected: they leave elsewhere.
+  // Photons that a face reflected are left out: they leave elsewhere.
   std::erase_if(photons, [&](const Photon& p) {
     const auto passed = pass_prism(glass_of_prism, p.hue, dvec3(sun.direction));
     return !passed || glm::length(dvec3(p.direction) + passed->behind) > 1e-3;

@@ -52,7 +52,7 @@ Survey far_find() { return {{1000, 0, 700}, vec3(0), 1024}; }
 Survey near_find() { return {{0, 0, 0}, vec3(0), 2}; }
 
 struct Difference {
-  double mean = 0, most = 0;  // of luminance, as shares of the mean and of the brightest
+  double mean = 0, most = 0;  // luminance, as shares of the mean and of the brightest
 };
 Difference difference(const Frame& a, const Frame& b) {
   Difference d;
@@ -125,7 +125,8 @@ TEST(FarFinds, TheRasteriserSeesWhatRaysSee) {
   EXPECT_GT(double(same) / all, 0.97);  // corners are rounded to 1/256 of a pixel
 }
 
-// What is left: light is gathered a fifth of a millimetre off the find, where rounding allows.
+// A small difference is left: light is gathered a fifth of a millimetre off the find, where
+// rounding allows.
 TEST(FarFinds, LightOnThemIsAsAtTheOrigin) {
   Difference d = difference(render(far_find(), "direct", 4), render(near_find(), "direct", 4));
   EXPECT_LT(d.mean, 0.01);
@@ -165,7 +166,7 @@ TEST(FarFinds, NoPlaceShadowsItself) {
   EXPECT_EQ(shadowed, 0);
 }
 
-// From a file: a node's place is kept apart from the places of its corners.
+// The scene is read from a file: a node's place is kept apart from the places of its corners.
 TEST(FarFinds, AreReadFromFilesAsFineAsTheyAre) {
   Asset asset;
   Mesh find = find_mesh(0);

@@ -70,8 +70,8 @@ TEST(Gather, AgreesWithPathInTheCornellBox) {
 }
 
 // A small lamp and a polished ball: walls find the ball's highlight now and then, and each time are
-// dazzled. What a wide ray meets is blunter in `gather`: a bias in how that light is spread, for a
-// smaller error.
+// dazzled. In `gather` surfaces that a wide ray meets are blunter: a bias in how that light is
+// spread, for a smaller error.
 TEST(Gather, HighlightsMetByChanceAreNoSparks) {
   Scene scene = scenes::make_cornell_box();
   scene.materials[3].emission = vec3(0);  // its lamp

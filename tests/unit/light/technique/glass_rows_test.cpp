@@ -35,7 +35,7 @@ TransportSettings edges(int count) {
   return settings;
 }
 
-// By every technique, where it draws passes with its lights.
+// Returns a picture's mean by any technique, also by one that draws passes with lights of its own.
 Mean picture_mean(const Technique& technique, const Scene& scene, int max_depth) {
   World world(scene);
   Lights lights = make_lights(world);
@@ -91,7 +91,7 @@ TEST(GlassRows, ARoomBehindPanesIsLitAsDeepAsBeforeThem) {
   for (int i = 0; i < 6; i++)
     add_slab(scene, clear, -0.1f * float(i) - 0.01f, -0.1f * float(i), 1.9f);
   for (int depth : {4, 8}) {
-    // As many terms of the series as there are edges.
+    // The series has as many terms as there are edges.
     double expected = (1 - std::pow(double(albedo), depth)) / (1 - double(albedo));
     World world(scene);
     Ray ray = ray_towards({0, 0, 0.9f}, {0.1f, 0.05f, -1});
@@ -120,7 +120,7 @@ TEST(GlassRows, GlassInsideGlassCountsNoEdgesEither) {
                 see_through(1, layers).passes, "nested");
 }
 
-// What mirrors and matt walls do is counted as before: two edges are direct light.
+// Mirrors and matt walls are counted as before: two edges are direct light.
 TEST(GlassRows, WhatIsNoGlassIsCountedAsBefore) {
   Scene scene = make_furnace(0.5f);
   add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 1)), vec3(0.5f)), "block");

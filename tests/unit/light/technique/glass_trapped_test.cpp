@@ -43,7 +43,7 @@ Counted count_rays(const World& world, const Lights& lights, Ray ray, int sample
   Counted counted;
   WalkRules rules;
   Transport transport{world, *lights.tables};
-  trace_sample(transport, rules, {ray});  // what surrounds the eye is found once
+  trace_sample(transport, rules, {ray});  // the media around the eye are found once
   for (int i = 0; i < samples; i++) {
     Request request;
     request.ray = ray;

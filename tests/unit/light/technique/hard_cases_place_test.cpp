@@ -80,8 +80,8 @@ std::vector<Estimate> estimate_tiles(const Technique& technique, const Scene& sc
   return estimates;
 }
 
-// Of techniques that prepare themselves, what they keep has an error of its own that no replicate
-// shows; they are asked for finite pictures elsewhere.
+// Techniques that prepare themselves keep light with an error of its own, which no replicate shows;
+// they are asked for finite pictures elsewhere.
 void expect_same_pictures(const Scene& a, const View& view_a, const Scene& b, const View& view_b,
                           const std::string& what) {
   Family family;

@@ -229,7 +229,8 @@ TEST(PlanSaves, LightThatNothingKeeps) {
   EXPECT_EQ(std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(vec3)), 0);
 }
 
-// Without anything sharp nobody looks for it: gathering rays end where point lights take over.
+// A scene without anything sharp has no search for caustics: gathering rays end where point lights
+// take over.
 TEST(PlanSaves, LookingForCaustics) {
   BothWays both(scene_with(plastic({0.6f, 0.5f, 0.4f}, 0.6f)), caustics);
   Transport planned{both.world, *both.planned.tables}, forced{both.world, *both.forced.tables};

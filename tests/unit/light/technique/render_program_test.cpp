@@ -167,7 +167,7 @@ TEST_F(RenderProgram, LampsAreAsTheExhibitBeginsUnlessToldOtherwise) {
   EXPECT_EQ(run(scene() + " --lamp warm=on --out " + out("x.png")).status, 2);
 }
 
-// What visitors of an exhibit see, and what is asked for.
+// Pictures of an exhibit have its exposure, unless another is asked for.
 TEST_F(RenderProgram, ExposureIsTheExhibitsUnlessToldOtherwise) {
   auto brightness = [&](const std::string& what, const std::string& arguments) {
     Answer answer = run(what + " --eye 0.25,0.25,1 --target 0.25,0.25,0 --fov 10 --size 5x5 " +

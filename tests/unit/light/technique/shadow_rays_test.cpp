@@ -75,7 +75,7 @@ vec3 visibility(const World& world) {
   return eval_visibility(transport, from, light);
 }
 
-// By Fresnel's formulas and the tint alone.
+// Computes the light by Fresnel's formulas and the tint alone.
 vec3 expected(const World& world, int panes) {
   SurfacePlace from = floor_place();
   Ray ray;

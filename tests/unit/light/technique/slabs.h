@@ -12,19 +12,19 @@ namespace wellspring::test {
 struct Layer {
   double index = 1, kept = 1;  // kept: share of light left after one way through it
 };
-// By flux; the same from both sides if the layers are.
+// Holds shares of flux, the same from both sides if the layers are.
 struct Slab {
   double reflects = 0, passes = 1;
 };
 
-// What lies behind `a` as light comes from a's side.
+// Puts `b` behind `a`, as light comes from a's side.
 inline Slab stack(Slab a, Slab a_from_behind, Slab b) {
   double echo = 1 - a_from_behind.reflects * b.reflects;
   return {a.reflects + a.passes * a_from_behind.passes * b.reflects / echo,
           a.passes * b.passes / echo};
 }
 
-// From inside `first` through all further layers, the last of them without end.
+// Sees from inside `first` through all further layers, the last of them without end.
 inline Slab see_through(double first, std::span<const Layer> layers) {
   if (layers.empty()) return {};
   double r = std::pow((first - layers[0].index) / (first + layers[0].index), 2);

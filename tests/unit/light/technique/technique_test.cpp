@@ -201,8 +201,8 @@ TEST(Technique, APaneShowsWhatIsBehindAndItsMirrorImage) {
                   0.96f * 3 + 0.04f * 50, 1e-3f);
 }
 
-// Of what a sample is sure of, every other sample of the same ray is the same, shadow or not; where
-// one of two lamps is drawn, or a gloss, it is not sure.
+// If a sample is sure, every other sample of the same ray is the same, shadow or not; if one of two
+// lamps is drawn, or a gloss, it is not sure.
 TEST(Technique, SureSamplesRepeatThemselves) {
   Scene one_lamp = make_mixed_scene();
   Scene two_lamps = one_lamp;
@@ -285,7 +285,7 @@ TEST(Technique, MaxDepthCountsEdges) {
 TEST(Technique, ClampBoundsASampleAndKeepsItsHue) {
   Scene scene = make_cornell_box();
   for (bool polished : {false, true}) {    // light by chance in `smooth`, and in `rest`
-    Material& white = scene.materials[1];  // of the floor
+    Material& white = scene.materials[1];  // the floor's
     white.metallic = polished ? 1.0f : 0.0f;
     white.roughness = polished ? 0.3f : 1.0f;
     World world(scene);

@@ -129,7 +129,7 @@ TEST(Guides, AreFiniteOnBadTriangles) {
   }
 }
 
-// As a camera sees what stands behind show-cases in a row: no number of panes hides its colour.
+// A camera sees through show-cases in a row: no number of panes hides the colour behind them.
 TEST(Guides, SeeThroughAnyNumberOfPanes) {
   for (float thickness : {0.0f, 0.01f}) {
     Scene scene = with_wall(diffuse(red));
@@ -146,7 +146,7 @@ TEST(Guides, SeeThroughAnyNumberOfPanes) {
   }
 }
 
-// What total reflection keeps in a block of glass for ever has an end.
+// A ray that total reflection keeps in a block of glass for ever has an end.
 TEST(Guides, EndWhereGlassKeepsARay) {
   Scene scene = empty_scene();
   add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 1)), vec3(1)), "block");

@@ -103,7 +103,7 @@ TEST(KnownRuns, AreLitAsThePlacesThatRaysMeet) {
   EXPECT_GT(known, width * height / 3);
   EXPECT_GT(unknown, 20);
   EXPECT_GT(moved, 20);
-  // Where a triangle's edge runs through the middle of a pixel.
+  // These may differ: a triangle's edge runs through the middle of the pixel.
   EXPECT_LE(differ, known / 500);
 }
 

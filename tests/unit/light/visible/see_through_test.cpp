@@ -71,7 +71,7 @@ TEST_P(See, AgreesWithTheSamplesOfTechniques) {
     bool hit = lit.flags & sample_hit;
     ASSERT_EQ(seen[i].object, hit ? lit.object : 0) << i;
     nothing += !hit;
-    // What solid glass does is no edge, so what lies behind it is there, too; it shines by nothing.
+    // Solid glass adds no edge, so things behind it are seen there, too; glass shines by nothing.
     const bool glass = hit && scene.objects[seen[i].object] == "glass";
     const vec3 own = glass ? vec3(0) : dark.rest;
     glowing += hit && own != vec3(0);

@@ -51,7 +51,7 @@ struct LitRoom {
     wellspring::light::trace(*find_technique(technique), world, lights, {}, requests, samples);
     return samples;
   }
-  // What a map has to say where a sample lies.
+  // Returns the map's light where a sample lies.
   vec3 known(const Sample& sample, const Request& request) const {
     const IlluminationCharts& places = *lights.maps->places;
     vec3 face = eval_face(world, sample.instance, sample.triangle);
@@ -79,7 +79,7 @@ TEST(KnownLight, TracedSamplesAreAsBrightAsWithoutMaps) {
                           with = room.trace("path", true, light);
       int mapped = 0;
       for (size_t i = 0; i < with.size(); i++) {
-        // Of light that is added and taken away again in floats.
+        // The tolerance is for light that is added and taken away again in floats.
         expect_near(with[i].radiance(), without[i].radiance(), 2e-5f, 1e-6f, "radiance", i);
         EXPECT_EQ(with[i].albedo, without[i].albedo);
         EXPECT_EQ(without[i].flags & sample_mapped, 0);
@@ -119,7 +119,8 @@ TEST(KnownLight, GatheredSamplesOfCoatedSurfacesHaveTheMapsLightBeneathTheCoat) 
     vec3 known = room.known(s, room.requests[i]), told = s.smooth * s.known - vec3(s.raised);
     EXPECT_TRUE(s.flags & sample_mapped);
     EXPECT_FALSE(s.flags & sample_sure) << "its gloss is chance";
-    // What the coat leaves of it, and gloss of what chance meets.
+    // A sample has the map's light that the coat leaves, and gloss that reflects what a random
+    // direction meets.
     bool glossy = false;
     for (int c = 0; c < 3; c++) {
       EXPECT_GE(told[c], 0.2f * known[c] - 1e-4f);
@@ -131,7 +132,7 @@ TEST(KnownLight, GatheredSamplesOfCoatedSurfacesHaveTheMapsLightBeneathTheCoat) 
   EXPECT_GT(plain, coated / 3);
 }
 
-// What a bake finds beneath a coat, read again: as bright as traced, from above and at a slant.
+// A baked map beneath a coat, read again, is as bright as traced light, from above and at a slant.
 TEST(KnownLight, BakedCoatedSurfacesAreAsBrightAsTracedOnes) {
   Scene scene = empty_scene();
   Material coated = plastic(vec3(0.6f), 0.4f);

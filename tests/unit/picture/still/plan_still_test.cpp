@@ -82,8 +82,8 @@ TEST(PlanStill, AnyPartIsSpreadOverThePicture) {
   }
 }
 
-// A third of the picture counts four times, a third as it is, a third a quarter. What is kept is as
-// many as were asked for.
+// A third of the picture counts four times, a third as it is, a third a quarter. As many samples
+// are kept as were asked for.
 TEST(PlanStill, CellsHaveAsManySamplesAsTheyCount) {
   View view = view_of(96, 36);
   PointImage image;
@@ -94,7 +94,7 @@ TEST(PlanStill, CellsHaveAsManySamplesAsTheyCount) {
                                                     : weight_one / 4));
   StillSamples kept;
   resize_samples(kept, 96 * 36);
-  std::map<std::pair<uint32_t, uint32_t>, int> samples;  // of a pixel, its number
+  std::map<std::pair<uint32_t, uint32_t>, int> samples;  // by pixel and the sample's number
   double thirds[3] = {};
   uint64_t next = 0;
   for (int piece = 0; piece < 40; piece++) {
@@ -109,7 +109,7 @@ TEST(PlanStill, CellsHaveAsManySamplesAsTheyCount) {
   }
   EXPECT_NEAR(thirds[0] / thirds[1], 4, 0.2);
   EXPECT_NEAR(thirds[2] / thirds[1], 0.25, 0.05);
-  // Who has all that are kept asks for no more.
+  // A pixel that has all samples that are kept asks for no more.
   std::fill(kept.count.begin(), kept.count.end(), uint8_t(most_still_samples));
   std::vector<Request> requests;
   EXPECT_EQ(plan_still(view, 7, 900, 3, image, kept, requests), 7u + 96 * 36);

@@ -68,7 +68,7 @@ TEST_F(ReconstructStill, TwoSamplesAPixelComeNearTheReference) {
   Rest rest;
   rest.sample(step, 2);
   rest.reconstruct(*denoiser);
-  EXPECT_LT(rest.error(step), 0.15);  // of two samples: 0.7
+  EXPECT_LT(rest.error(step), 0.15);  // the two samples themselves: 0.7
 }
 
 TEST_F(ReconstructStill, PixelsWithoutSamplesAreNoHoles) {
@@ -107,7 +107,7 @@ TEST_F(ReconstructStill, CertainSamplesAreShownAsTheyAre) {
   EXPECT_LT(rest.error(fine_pattern), 0.01);
 }
 
-// Of rare bright samples, most pixels' few samples agree on black by chance.
+// Bright samples are rare, so that most pixels' few samples agree on black by chance.
 TEST_F(ReconstructStill, FewSamplesThatAgreeAreNotBelieved) {
   Rest rest;
   std::mt19937 random(3);
@@ -115,7 +115,7 @@ TEST_F(ReconstructStill, FewSamplesThatAgreeAreNotBelieved) {
     for (int k = 0; k < int(random() % 4); k++)
       add_sample(rest.samples, i, vec3(random() % 8 == 0 ? 2.4f : 0.0f), uint32_t(random()));
   rest.reconstruct(*denoiser);
-  EXPECT_LT(rest.error([](size_t) { return 0.3f; }), 0.5);  // of the means: 2 and more
+  EXPECT_LT(rest.error([](size_t) { return 0.3f; }), 0.5);  // the means themselves: 2 and more
 }
 
 TEST_F(ReconstructStill, LivesThroughLightOfAnyStrength) {

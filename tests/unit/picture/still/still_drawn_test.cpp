@@ -51,7 +51,7 @@ std::vector<bool> edge_pixels(const Still& stage) {
   return edge;
 }
 
-// As the eye sees it: of a lamp's edge no more than white.
+// Returns the frame as the eye sees it: nothing is brighter than white, not a lamp's edge.
 Frame shown(Frame frame) {
   for (vec3& c : frame.color) c = min(c, vec3(1));
   return frame;
@@ -91,7 +91,7 @@ TEST(StillDrawn, EdgesAreAntialiasedInTime) {
   for (size_t i = 0; i < before.size(); i++) ASSERT_LT(length(now[i] - before[i]), 0.05f) << i;
 }
 
-// Of more and more samples the picture becomes the reference.
+// With more and more samples the picture becomes the reference.
 TEST(StillDrawn, ConvergesToTheReference) {
   Still stage = make_still();
   Frame truth = stage.truth();
@@ -103,7 +103,7 @@ TEST(StillDrawn, ConvergesToTheReference) {
   }
   EXPECT_LT(error[1], 0.8 * error[0]);
   EXPECT_LT(error[2], 0.8 * error[1]);
-  EXPECT_LT(error[2], 0.012);  // of white; 48 samples a pixel, and noise of 256 in the reference
+  EXPECT_LT(error[2], 0.012);  // white is 1; 48 samples a pixel, and noise of 256 in the reference
 }
 
 TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
@@ -116,7 +116,7 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
       Hit hit = stage.world->intersect(
           view_ray(stage.view, float(i % width) + 0.5f, float(i / width) + 0.5f));
       bool there = hit.valid() && stage.world->object_of(hit.instance) == ball;
-      // Where it touches what stands still, that may be seen at another place of the pixel.
+      // At the ball's rim, the object may be seen at another place of the pixel.
       bool rim = false;
       for (vec2 to : {vec2(0, 0), vec2(1, 0), vec2(0, 1), vec2(1, 1)}) {
         Hit corner = stage.world->intersect(
@@ -133,7 +133,7 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
     visit.step(stage, pixels / 8);
     expect_ball();
   }
-  // Of its colour nothing stays where it was: a yellow that the walls have not.
+  // The ball's colour, a yellow that the walls have not, does not stay at its former place.
   Frame truth = stage.truth();
   for (int i = 0; i < 4; i++) visit.step(stage, pixels / 8);
   double yellow = 0, expected = 0;
@@ -147,7 +147,7 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
   EXPECT_NEAR(yellow, expected, 0.25 * std::abs(expected) + 4);
 }
 
-// Also of a view that was drawn once only.
+// This holds also if the other view was drawn only once.
 TEST(StillDrawn, NothingOfAnotherViewRemains) {
   Still stage = make_still();
   Visit visit;

@@ -101,7 +101,7 @@ TEST(MeanShare, WhatIsRightStays) {
   }
 }
 
-// How far first samples are off nobody knows.
+// Nobody knows how far first samples are off.
 TEST(MeanShare, OfFewSamplesIsNothing) {
   Picture p;
   draw_wrongly(p);
@@ -151,9 +151,9 @@ TEST(StillSamples, AreForgottenWhereThePictureBeginsAnew) {
   for (size_t i = 0; i < 10; i++) EXPECT_EQ(p.samples.count[i], i == 5 ? 0 : 3) << i;
 }
 
-// Of an exponential distribution the deviation is the mean. Means over 61 pixels of 200 samples
-// each, four of their standard deviations (one in 16,000), and two thousandths for what roundings
-// do.
+// The deviation of an exponential distribution is its mean. The bounds are those of means over 61
+// pixels of 200 samples each, four of their standard deviations (one in 16,000), and two
+// thousandths for rounding.
 TEST(StillSamples, MeansAndDeviationsAreThoseOfTheSamples) {
   Picture p;
   p.sample(200, 3);

@@ -218,7 +218,8 @@ TEST_F(GoTest, WhereVisitorsFlyTheyFlyThere) {
   EXPECT_NEAR(here().y, 1.6, 1e-4);
 }
 
-// Of the statue alone: how many pixels of the last picture's view, and whether they touch a side.
+// Counts the pixels of the last picture's view that show the statue, and says whether they touch a
+// side.
 struct SeenStatue {
   int pixels = 0;
   bool cut = false;

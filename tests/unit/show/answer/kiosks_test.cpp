@@ -71,7 +71,7 @@ TEST_F(Kiosks, AScreenOfKnownSizeIsSeenThroughFromTheGuestsHead) {
   EXPECT_EQ(seen(attic), other) << "its size is not known";
   const View view = seen(hall);
   EXPECT_NE(view.middle, vec2(0));
-  // She looks at the guest's head: that is where the picture is seen from.
+  // The storyteller looks at the guest's head: from there the picture is seen.
   const vec3 guest = find_kiosk(*show, "hall")->audience.guests.at(0).head;
   EXPECT_LT(glm::length(guest - view.position), 1e-3f);
   for (vec2 corner : {vec2(-0.3f, 0.3f), vec2(0.3f, 0.3f), vec2(0.3f, -0.3f)}) {

@@ -35,7 +35,8 @@ struct MineAndOurs : testing::Test, ShowStage {
     for (int i = 0; i < 2; i++) join(32, 32);
     run(0.5);
   }
-  // What the second visitor is told, without what the machine's work and a glance change.
+  // Returns the second visitor's messages, without fields that the machine's work and a glance
+  // change.
   std::vector<json> told_to_other() {
     std::vector<json> all;
     for (const std::string& text : browsers[1].texts) {
@@ -115,7 +116,8 @@ TEST_F(MineAndOurs, EachHasTheirOwnStorytellerWhoTellsThemAlone) {
   EXPECT_TRUE(told("error", 0).empty() && told("error", 1).empty());
 }
 
-// The one figure in the world stands as each visitor's own teller does while their picture is made.
+// The one figure in the world stands as each visitor's own storyteller does while their picture is
+// made.
 TEST_F(MineAndOurs, WhoHidesHerHidesHerFromThemselves) {
   begin(false);
   for (size_t i : {0, 1}) {
@@ -123,7 +125,7 @@ TEST_F(MineAndOurs, WhoHidesHerHidesHerFromThemselves) {
     visitor.place.view.position = {-2, 0.3, 2};
     visitor.place.view.yaw = visitor.place.view.pitch = 0;
   }
-  run(10);  // she is small, so her light takes a while
+  run(10);  // the figure is small, so its light takes a while
   // The figure is bright before the wall, which is the picture's upper half.
   auto stands_out = [&](size_t i) {
     const Image8 picture = last_image(i);
@@ -156,7 +158,7 @@ TEST_F(MineAndOurs, WhatTheExhibitSharesIsEverybodys) {
   for (const Visitor& visitor : show->visitors) EXPECT_EQ(visitor.own_teller, nullptr);
 }
 
-// A kiosk's guests are the house's storyteller's: nobody far away takes her from them, nor do they
+// A kiosk's guests have the house's storyteller: nobody far away takes it from them, nor do they
 // take a visitor's.
 TEST_F(MineAndOurs, AKioskHasTheHousesStoryteller) {
   begin(false);

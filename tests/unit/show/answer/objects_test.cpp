@@ -65,7 +65,7 @@ TEST_F(ObjectsTest, AreDescribedInAllLanguagesAndInOne) {
 
 TEST_F(ObjectsTest, TheMapShowsRoomWallsAndPlaces) {
   json map = json::parse(ask("/api/v1/exhibits/tiny/map").body);
-  auto cell = [&](double x, double z) {  // of the room, whose middle is at x = 50
+  auto cell = [&](double x, double z) {  // metres from the room's middle, which is at x = 50
     int column =
         int(std::lround((50 + x - map["corner"][0].get<double>()) / map["cell"].get<double>()));
     int row = int(std::lround((z - map["corner"][1].get<double>()) / map["cell"].get<double>()));

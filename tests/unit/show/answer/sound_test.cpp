@@ -395,7 +395,7 @@ TEST_F(SoundTest, ATourIsHeardByItsVisitorAloneAndEverywhere) {
   run(0.03);
   EXPECT_EQ(subtitles(a).back()["text"], "") << "the line goes with the voice";
   run(0.07);
-  // What the storyteller says to the other is heard again.
+  // The storyteller's words to the other visitor are heard again.
   ASSERT_GE(speech(a).size(), 5u);
   EXPECT_EQ(speech(a)[3]["action"], "stop");
   EXPECT_NE(speech(a)[4]["text"], "Here");

@@ -161,7 +161,7 @@ TEST(ExhibitLight, AutoFollowsTheLightAndIsTheSameEachTime) {
 
 TEST(ExhibitLight, DarkThingsStayDark) {
   Asset white = room_asset(), black = room_asset();
-  // Of the same light: nearly all of it comes from the lamp, not from walls.
+  // Both rooms have the same light: nearly all of it comes from the lamp, not from walls.
   for (json& material : white.root["materials"])
     material["pbrMetallicRoughness"]["baseColorFactor"] = {0.2, 0.2, 0.2, 1};
   for (json& material : black.root["materials"])

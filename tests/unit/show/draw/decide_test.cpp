@@ -28,7 +28,7 @@ constexpr double now = 100;  // show time
 
 using States = std::vector<VisitorDrawState>;
 
-// Who walks, whose last picture was sent, and whose next is not due for a second.
+// Returns a walking visitor whose last picture was sent, and whose next is not due for a second.
 VisitorDrawState walker() {
   VisitorDrawState state;
   state.welcomed = state.can_take = true;
@@ -37,7 +37,7 @@ VisitorDrawState walker() {
   return state;
 }
 
-// Who has stood for a while: nothing changes in its picture.
+// Returns a visitor who has stood for a while: nothing changes in the picture.
 VisitorDrawState stander() {
   VisitorDrawState state = walker();
   state.stands = state.same_view = true;
@@ -45,7 +45,7 @@ VisitorDrawState stander() {
   return state;
 }
 
-// Before whom the storyteller stands, drawn by herself over a picture at rest.
+// Returns a visitor before whom the storyteller stands, drawn by itself over a picture at rest.
 VisitorDrawState listener() {
   VisitorDrawState state = stander();
   state.sees_moving = state.drew_moving = state.backdrop = true;
@@ -53,7 +53,7 @@ VisitorDrawState listener() {
   return state;
 }
 
-// Whose picture is a reconstruction.
+// Returns a visitor whose picture is a reconstruction.
 VisitorDrawState reconstructed() {
   VisitorDrawState state = stander();
   state.rest.reconstructed = true;
@@ -63,19 +63,19 @@ VisitorDrawState reconstructed() {
   return state;
 }
 
-// For whom a picture is due.
+// Returns a visitor for whom a picture is due.
 VisitorDrawState due(VisitorDrawState state, double seconds_ago = 2) {
   state.drawn_at = now - seconds_ago;
   return state;
 }
 
-// For whom what moves is due.
+// Returns a visitor for whom the moving picture is due.
 VisitorDrawState moving_due(VisitorDrawState state, double seconds_ago = 2) {
   state.posed_at = now - seconds_ago;
   return state;
 }
 
-// Who wants pictures all the time, and was shown the last one when it was drawn.
+// Returns a visitor who wants pictures all the time, and was shown the last one when it was drawn.
 VisitorDrawState hurried() {
   VisitorDrawState state = walker();
   state.picture_rate = 60;
@@ -460,9 +460,9 @@ TEST(Decide, nobody_goes_without_a_picture_for_much_longer_than_others) {
   auto longest = [](const std::vector<double>& costs) { return max_of(longest_gaps(costs)); };
   // Equal time alone: 1.9 s for the dear ones.
   EXPECT_LE(longest({0.05, 0.2, 0.05, 0.05, 0.2, 0.05, 0.05, 0.05}), 0.8);
-  // Where one for each takes longer than that, each has as many: 3.8 s by equal time.
+  // If one picture for each takes longer than that, each has as many: 3.8 s by equal time.
   EXPECT_LE(longest({0.2, 0.2, 0.05, 0.4, 0.2, 0.05, 0.1, 0.1}), 1.31);
-  // Where nobody waits for long, each has as much time.
+  // If nobody waits for long, each has as much time.
   const std::vector<double> gaps = longest_gaps({0.02, 0.02, 0.04});
   EXPECT_NEAR(gaps[2], 0.16, 0.01);
   EXPECT_NEAR(gaps[0], 0.08, 0.01);

@@ -32,7 +32,7 @@ struct DynamicPictures : testing::Test, ShowStage {
     begin(std::move(exhibit), settings);
     join(96, 64);
   }
-  // With what the light at a time adds, straight and scattered once.
+  // Returns the picture with the light that the lights add at a time, straight and scattered once.
   Image8 lit_truth(double time) {
     const View& view = visitor().place.last_view;
     StillSettings settings;
@@ -86,7 +86,7 @@ TEST_F(DynamicPictures, FollowTheLight) {
   expect_lit(4);
 }
 
-// What a light scatters that stays as it is becomes better from picture to picture.
+// The bounce of a light that stays as it is becomes better from picture to picture.
 TEST_F(DynamicPictures, GatherTheBounceOfALightThatStays) {
   ChangingLight stays = torch();
   stays.track.clear();

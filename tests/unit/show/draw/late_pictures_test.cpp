@@ -24,7 +24,7 @@ struct LatePictures : testing::Test, ShowStage {
     ShowStage::begin(make_tiny_exhibit(), settings_for("direct", true, 50));
     for (int i = 0; i < visitors; i++) join(96, 64);
   }
-  // From now on the renderer is busy, as if a picture took long.
+  // Makes the renderer busy from now on, as if a picture took long.
   void hold_renderer() {
     step();
     step();
@@ -59,7 +59,7 @@ TEST_F(LatePictures, GoOnWhileOneIsDrawn) {
     EXPECT_EQ(header(i).seq, seq - 5 + uint32_t(i - first));
   EXPECT_EQ(show->totals.drawn, drawn);
   EXPECT_EQ(show->totals.warped, warped + 6);
-  // What is sent shows the view as it is, not as it was.
+  // The sent picture shows the view as it is, not as it was.
   Image8 now = truth(), shown = last_image();
   EXPECT_LT(mean_difference(shown, now), 0.5 * mean_difference(before, now));
   release_renderer();
@@ -181,7 +181,7 @@ TEST_F(LatePictures, WhoseKeyframesAreDearIsChargedLess) {
   EXPECT_GT(charge_weight(*show, dear), 0.3);  // within bounds
 }
 
-// What a still picture waits for is samples, which whoever moves on needs no more.
+// A still picture waits for samples, which a visitor who moves on needs no more.
 TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   begin();
   steps(60);

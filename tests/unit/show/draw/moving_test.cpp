@@ -90,7 +90,7 @@ TEST_F(Moving, ShowsWhereItIs) {
   EXPECT_LT(red_at(after, here), 20);
 }
 
-// Who walks on sees it in pictures that are warped from what was shown.
+// A visitor who walks on sees the storyteller in pictures that are warped from the last one.
 TEST_F(Moving, IsInWhatIsWarped) {
   ASSERT_TRUE(rested());
   steps(200);
@@ -110,7 +110,7 @@ TEST_F(Moving, IsInWhatIsWarped) {
   EXPECT_TRUE(visitor().picture.moving.empty());
 }
 
-// Who waits for a picture waits for no more light of another's.
+// A visitor who waits for a picture does not wait for more light of another's.
 TEST_F(Moving, OthersNeedNotWaitForLight) {
   ASSERT_TRUE(rested());
   ASSERT_TRUE(step_until([&] {
@@ -145,7 +145,7 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   EXPECT_FALSE(visitor().picture.backdrop);
 }
 
-// The next picture shows the wall as though she had never stood there.
+// The next picture shows the wall as though the storyteller had never stood there.
 TEST_F(Moving, NoGhostStaysWhereSheStood) {
   ASSERT_TRUE(rested());
   steps(200);
@@ -167,7 +167,7 @@ TEST_F(Moving, NoGhostStaysWhereSheStood) {
   const Projected head = project_point(view, {-2, 2.2f, 0.5f}),
                   left = project_point(view, {-2.4f, 0.6f, 0.5f}),
                   right = project_point(view, {-1.6f, 0.6f, 0.5f});
-  // She is red: what is left of her would be.
+  // The storyteller is red, and so would be any remains.
   double red = 0, count = 0;
   for (int y = int(head.y) - 4; y < int(left.y) + 4 && y < after.height; y++)
     for (int x = int(left.x) - 4; x < int(right.x) + 4; x++, count++) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int width = 328, height = 184;
 
-// What a browser does with what it is sent.
+// Puts packets together as a browser does.
 struct Canvas {
   Image8 canvas{width, height, std::vector<uint8_t>(size_t(width* height * 3))};
   size_t bytes = 0, packets = 0;

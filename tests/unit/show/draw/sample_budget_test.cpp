@@ -43,7 +43,7 @@ TEST(SampleBudget, WhoStandsGetsAQuarterInLight) {
   }
 }
 
-// What a picture for who moves takes is what counts once it is known.
+// Once the cost of pictures in motion is known, it counts.
 TEST(SampleBudget, FollowsWhatPassingPicturesTake) {
   DrawingCosts costs{1e5, 0.02, 0.1, 0};
   int guessed = sample_budget(0.1, pixels, costs, false);
@@ -63,7 +63,7 @@ TEST(SampleBudget, SmallPicturesNeedNoMoreSamplesThanTheyHavePixels) {
 
 TEST(PlanKeyframe, ResolutionFallsBeforeKeyframesComeLate) {
   struct {
-    double seconds;  // that a keyframe of scale `before` took
+    double seconds;  // time of a keyframe of scale `before`
     float before, scale;
     double period;
   } const table[] = {
@@ -115,7 +115,7 @@ TEST(PlanKeyframe, WhoPassesNearThingsNeedsMany) {
   }
 }
 
-// Where nothing changes, the next picture is not of another size again.
+// If nothing changes, the next picture is not of another size again.
 TEST(PlanKeyframe, Settles) {
   for (double full = 0.01; full < 0.4; full += 0.003)
     for (float before : {1.0f, 0.75f, 0.5f, 0.375f}) {
@@ -135,10 +135,10 @@ TEST(TourPace, SlowsDownWhereAKeyframeWouldMissAFifth) {
 TEST(SampleBudget, TheReferenceComesLast) {
   EXPECT_FALSE(wants_reference(1, false, 0, 1));
   EXPECT_FALSE(wants_reference(30, false, 0.4f, 0.6f));
-  EXPECT_FALSE(wants_reference(30, false, 0.05f, 0.3f));  // of few samples its noise would show
+  EXPECT_FALSE(wants_reference(30, false, 0.05f, 0.3f));  // with few samples its noise would show
   EXPECT_TRUE(wants_reference(30, false, 0.05f, 0.6f));
-  EXPECT_TRUE(
-      wants_reference(30, true, 0.15f, 0.4f));     // the storyteller moves: what she hid is new
+  // The storyteller moves: what it hid is new.
+  EXPECT_TRUE(wants_reference(30, true, 0.15f, 0.4f));
   EXPECT_FALSE(wants_reference(0.5, true, 0, 1));  // walks again
 }
 

@@ -57,7 +57,7 @@ TEST_F(SkinSamples, SomeWhereSheIsSeen) {
   EXPECT_GT(most, 0u);
 }
 
-// She is in the cone of the visitor's view, and the wall across the room before her.
+// The storyteller is in the cone of the visitor's view, and the wall across the room before it.
 TEST_F(SkinSamples, NoneBehindAWall) {
   run_with_teller({-2, 0, -1.5});
   EXPECT_GT(show->renderer.skin.turn, 3u);

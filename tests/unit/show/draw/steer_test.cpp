@@ -74,7 +74,7 @@ struct Steering : testing::Test, ShowStage {
     const auto& weights = visitor().looks.weights;
     return weights && object < weights->size() ? (*weights)[object] : 1;
   }
-  // Of so many pictures.
+  // Counts the object's requests in so many pictures.
   double requests_of(uint32_t object, int pictures) {
     double count = 0;
     for (int i = 0; i < pictures; i++) {
@@ -104,7 +104,7 @@ TEST_F(Steering, APointerOnAnObjectRaisesItsSamples) {
   EXPECT_GT(found[0], 1.5 * found[1]);
 }
 
-// Of one picture, with and without a pointer.
+// One picture is analysed with and without a pointer.
 TEST_F(Steering, TheSliderGoesFromTheEyeToTheTask) {
   begin();
   ask_attention(0.25);

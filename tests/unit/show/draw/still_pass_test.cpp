@@ -62,7 +62,7 @@ TEST_F(StillPassTest, OnePictureFadesIntoTheNext) {
   }
 }
 
-// Who moves on sees the newest at once.
+// A visitor who moves on sees the newest picture at once.
 TEST_F(StillPassTest, NobodyWaitsForAFade) {
   if (!begin()) GTEST_SKIP() << show->pass.problem;
   ASSERT_TRUE(step_until([&] { return show->totals.reconstructed >= 1; }));
@@ -77,7 +77,7 @@ TEST_F(StillPassTest, SamplesOfAViewThatWasLeftMeanwhileAreNotThoseOfTheNext) {
   step();
   Visitor& one = visitor();
   ASSERT_TRUE(step_until([&] { return one.picture.rest.samples > 1; }));
-  show->renderer.drawn = nullptr;  // what it has begun is left
+  show->renderer.drawn = nullptr;  // the renderer's work is dropped
   show->renderer.given_up = false;
   for (bool leaves : {false, true}) {
     const RestState before = one.picture.rest;
@@ -106,7 +106,7 @@ TEST_F(StillPassTest, WhoMovesOnLeavesItBehind) {
   EXPECT_FALSE(visitor().picture.rest.reconstructed);
   ASSERT_TRUE(step_until([&] { return show->totals.reconstructed >= 1; }));
   ASSERT_TRUE(step_until([&] { return is_shown(); }));
-  EXPECT_LT(error_of_last(), 9);  // of where the visitor is now
+  EXPECT_LT(error_of_last(), 9);  // from where the visitor is now
 }
 
 TEST_F(StillPassTest, WhoLeavesMeanwhileIsForgotten) {

@@ -35,7 +35,7 @@ struct Package {
                                      languages + ", " + fields + "}");
     exhibit = read_exhibit(folder.path.string(), problems);
   }
-  // Where the problems of book and sounds lie.
+  // Returns where the problems of book and sounds lie.
   Places places() const {
     Places list;
     for (const Problem& p : problems)

@@ -67,7 +67,7 @@ TEST(ExhibitLights, NewOnesAreMadeAndMove) {
      "track": [{"time": 0}, {"time": 2, "position": [1, 2, 1], "intensity": 0.5},
                {"time": 4, "position": [1, 2, 0], "intensity": 1}]},
     {"name": "Moon", "type": "sun", "direction": [0, -1, 0], "lux": 2, "flicker": {}}])");
-  package.manifest["scale"] = 2;  // of the scene; other places are metres
+  package.manifest["scale"] = 2;  // the scene's; other places are metres
   const Exhibit exhibit = package.read();
   EXPECT_EQ(package.told(), "");
   ASSERT_EQ(exhibit.lights.size(), 2u);

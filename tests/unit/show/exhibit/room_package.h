@@ -103,7 +103,7 @@ struct RoomPackage {
     for (const Problem& problem : problems) all += to_string(problem) + "\n";
     return all;
   }
-  // How many problems lie at `where` and hold these words.
+  // Counts the problems that lie at `where` and hold these words.
   int says(const std::string& where, const std::string& what) const {
     int count = 0;
     for (const Problem& problem : problems)

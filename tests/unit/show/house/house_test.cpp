@@ -118,7 +118,7 @@ TEST(House, WeekdaysAreThoseOfTheCalendar) {
   }
 }
 
-// In a time zone of its own, and back.
+// Sets a time zone for the test, and sets it back.
 struct HouseZone : testing::Test {
   std::string before;
   void SetUp() override {
@@ -131,7 +131,7 @@ struct HouseZone : testing::Test {
     else setenv("TZ", zone.c_str(), 1);
     tzset();
   }
-  // What the clock shows so many minutes after midnight in Greenwich.
+  // Returns the clock's time so many minutes after midnight in Greenwich.
   static LocalTime clock(year_month_day date, int minutes) {
     return local_time(std::time_t(day_of(date) * 86400 + minutes * 60 + 30));
   }

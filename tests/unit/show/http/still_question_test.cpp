@@ -102,7 +102,7 @@ TEST(StillRoom, SaysWhereItIsNotDenoisedForWantOfWeights) {
   EXPECT_NE(made.jpeg.find("weights are missing"), std::string::npos);
 }
 
-// What is asked for is seen: the view of a viewpoint, told by numbers, is that picture.
+// A viewpoint's view, given in numbers, is the picture from there.
 TEST(StillQuestion, AViewInNumbersIsThePictureFromThere) {
   Exhibit exhibit = make_tiny_exhibit();
   const Viewpoint first = exhibit.viewpoints[0].view;

@@ -42,7 +42,8 @@ struct Window : testing::Test {
 
 TEST_F(Window, AtRestIsTheViewpointsPicture) {
   EXPECT_EQ(now(), rest);
-  EXPECT_EQ(through_window(rest, ScreenSize(), {0.1f, 0, 0}), rest);  // of unknown size
+  // The screen's size is unknown.
+  EXPECT_EQ(through_window(rest, ScreenSize(), {0.1f, 0, 0}), rest);
   EXPECT_EQ(place_of_head({0, 0, distance()}, screen, rest), vec3(0));
   EXPECT_EQ(rest_distance(ScreenSize(), rest), viewing_distance);
   go({}, 2);
@@ -99,8 +100,8 @@ TEST_F(Window, EyesBeyondReasonAreLimited) {
   }
 }
 
-// Screens hang with their middle at 1.4 m: from below more of the ceiling is seen, but she who
-// stands in the picture at rest stays in it.
+// Screens hang with their middle at 1.4 m: from below more of the ceiling is seen, but a
+// storyteller who stands in the picture at rest stays in it.
 TEST_F(Window, ChildrenAndWheelchairsSeeTheStoryteller) {
   for (float eye_height : {1.0f, 1.15f, 1.75f, 1.95f})
     for (float away : {0.5f, 0.8f, 1.5f})
@@ -128,7 +129,7 @@ TEST_F(Window, WhoLooksAtTheGuestLooksOutOfThePicture) {
     const Guest guest = place_person(person, rest, 1, distance());
     EXPECT_LT(glm::length(guest.head - now().position), 1e-3f);
   }
-  // From afar: in the head's direction, seen from the middle of the screen.
+  // From afar the eye is in the head's direction, seen from the middle of the screen.
   eye = {};
   go({vec3(0.3f, -0.2f, 2)}, 5);
   Person person;
@@ -215,10 +216,12 @@ TEST_F(Window, HeadsLostForAMomentChangeNothing) {
 
 // Noise of a standard deviation of 1 cm: what is 5 m behind the screen moves by less than 1.5
 // pixels of 1080 rows from tick to tick and by less than 12 in 100 s, what is at the screen not at
-// all. Noise below 1 cm moves nothing.
+// Noise has a standard deviation of 1 cm: things 5 m behind the screen move by less than 1.5 pixels
+// of 1080 rows from tick to tick and by less than 12 in 100 s, things at the screen not at all.
+// Noise below 1 cm moves nothing.
 TEST_F(Window, NoiseOfACentimetreIsHardlySeen) {
   Rng rng(17);
-  auto noise = [&] {  // of standard deviation 1
+  auto noise = [&] {  // standard deviation 1
     float sum = -6;
     for (int i = 0; i < 12; i++) sum += rng.uniform();
     return sum;
@@ -241,7 +244,7 @@ TEST_F(Window, NoiseOfACentimetreIsHardlySeen) {
   eye = {};
   go({vec3(0.1f, 0, 0.65f)}, 3);
   const View still = now();
-  for (int i = 0; i < 500; i++) {  // of at most 1 cm: nothing at all
+  for (int i = 0; i < 500; i++) {  // at most 1 cm: nothing moves
     step({vec3(0.1f, 0, 0.65f) + 0.01f * normalize(vec3(noise(), noise(), noise()))});
     EXPECT_EQ(now(), still);
   }

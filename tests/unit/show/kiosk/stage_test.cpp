@@ -284,7 +284,7 @@ TEST_F(KioskStage, ClocksMayBeOdd) {
 TEST_F(KioskStage, RandomGuests) {
   std::mt19937 random(20);
   auto chance = [&](double p) { return std::uniform_real_distribution(0.0, 1.0)(random) < p; };
-  bool visit = false, met = false;  // what the changes so far say
+  bool visit = false, met = false;  // as the changes so far say
   double noticed = -1e9;
   int farewells = 0;
   for (int i = 0; i < 10000; i++) {

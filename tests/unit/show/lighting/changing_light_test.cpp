@@ -18,10 +18,10 @@ std::vector<float> brightness(const ChangingLight& light, double seconds) {
   return values;
 }
 
-// WCAG 2.2's general flash: a pair of opposing changes of 10 % of the greatest or more. The most of
-// them in any second.
+// Counts WCAG 2.2's general flashes, pairs of opposing changes of 10 % of the greatest or more: the
+// most of them in any second.
 int most_flashes(const std::vector<float>& values, float greatest) {
-  std::vector<size_t> changes;              // where one has become that large
+  std::vector<size_t> changes;              // frames at which a change becomes that large
   float low = values[0], high = values[0];  // since the last change
   int way = 0;
   for (size_t i = 0; i < values.size(); i++) {

@@ -118,7 +118,7 @@ TEST(FigureOfGltf, TangentsOfNormalMapsFollowTheBentSkin) {
   EXPECT_GT(made.moving[0].positions.size(), made.character.positions.size())
       << "split where the picture is seen mirrored, on the back";
 
-  // In a World of its own: turned, and with one arm bent.
+  // The figure is in a World of its own, turned, and with one arm bent.
   std::vector<vec4> rest = made.moving[0].tangents;
   World world(made.scene, made.moving, made.objects);
   Pose pose = make_rest_pose(made.character);

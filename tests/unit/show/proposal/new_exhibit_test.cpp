@@ -104,7 +104,7 @@ TEST(NewExhibit, MillimetresBecomeMetres) {
 TEST(NewExhibit, WhatMovesPlaysByItself) {
   Asset asset = room_asset();
   add_clip(asset, "Lift", 1, {0, 0.4f, 0}, true);
-  add_clip(asset, "Lift more", 1, {0, 0.8f, 0}, true);  // of the same node
+  add_clip(asset, "Lift more", 1, {0, 0.8f, 0}, true);  // the same node's
   add_clip(asset, "Lamp", 2, {1, 0, 0}, true);          // nothing is seen of that
   Made made(asset);
   EXPECT_EQ(made.told(), "");

@@ -114,7 +114,7 @@ TEST_F(BakerTest, GoesOnWhereTheLastOneEnded) {
     EXPECT_TRUE(wait_until([&] { return baker.status().passes > passes; })) << time;
     passes = baker.status().passes;
   }
-  // What is good enough already is left as it is.
+  // A map that is good enough already is left as it is.
   settings.least_error = 1e9;
   Baker baker(scene, settings);
   baker.allow(BakerCores::all);

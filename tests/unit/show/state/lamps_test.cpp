@@ -75,8 +75,8 @@ TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
   }
 }
 
-// What becomes of the light is found out once for all caches that knew the same lamps, and kept
-// until the last of them has followed.
+// The change of light is computed once for all caches that knew the same lamps, and kept until the
+// last of them has followed.
 TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   Exhibit exhibit = make_lit_exhibit();
   add_lamp({"corner", {"weak"}, {}}, exhibit.scene);
@@ -93,7 +93,7 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   step();
   EXPECT_TRUE(steps.empty());
 
-  // Who has missed a switch before has another way to go.
+  // A visitor who has missed a switch before has another change to follow.
   constexpr LampLevel full = lamp_full;
   const LampLevels known[] = {{full, full}, {full, 0}, {full, full}, {full, 0}};
   size_t i = 0;

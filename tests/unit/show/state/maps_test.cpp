@@ -35,7 +35,7 @@ struct Maps : testing::Test, ShowStage {
     saved = load_map(world, file, hash_scene(exhibit.scene)).map;
     ASSERT_TRUE(saved);
   }
-  // By paths, which nothing has to be found out for.
+  // Opens a show that draws by paths, which need no preparation.
   void open(Display display = Display::automatic, const std::string& technique = "path") {
     ShowSettings settings = settings_for(technique, false);
     settings.cache = folder.path.string();
@@ -185,7 +185,7 @@ TEST_F(Maps, FollowTheLampsAtOnce) {
     light_world(*show, {LampLevel(on ? lamp_full : 0)});
     expect(on);
   }
-  // And by a visitor's word.
+  // A visitor's order switches a lamp, too.
   say(R"({"type":"lamp","name":"ceiling","on":false})");
   ASSERT_TRUE(step_until([&] { return show->world->lamp_levels()[0] == 0; }));
   expect(false);

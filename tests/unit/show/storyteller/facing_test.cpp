@@ -26,7 +26,7 @@ const Exhibit& content_package(const std::string& name) {
 
 float turn_between(float a, float b) { return std::abs(std::remainder(a - b, 2 * pi)); }
 
-// A storyteller who tells, as the show drives her.
+// Drives a storyteller who tells a story, as the show does.
 struct Telling {
   const Exhibit& exhibit;
   const StorytellerPlace& place;
@@ -49,12 +49,12 @@ struct Telling {
     tick_storyteller(state, storyteller, input, pose, events);
   }
   vec3 here(vec3 world) const { return vec3(glm::inverse(storyteller.placement) * vec4(world, 1)); }
-  // Of the skull or the root, humanoid space.
+  // Returns the yaw of the skull or the root, humanoid space.
   float yaw(int joint) const {
     vec3 ahead = eval_joint_frame(place.character, pose, joint).rotation * vec3(0, 0, 1);
     return std::atan2(ahead.x, ahead.z);
   }
-  float away(int joint, vec3 guest) const {  // of the first guest
+  float away(int joint, vec3 guest) const {  // from the first guest
     vec3 from = eval_joint_frame(place.character, pose, joint).center, to = here(guest) - from;
     return turn_between(yaw(joint), std::atan2(to.x, to.z));
   }

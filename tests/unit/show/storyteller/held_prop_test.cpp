@@ -201,7 +201,7 @@ TEST(HeldProp, AFlameFlickersAtMostThreeTimesASecond) {
   Exhibit exhibit = make_tiny_exhibit();
   exhibit.props = {make_torch({0.3f, float(most_turns)})};
   HeldProp held{0, 1, 1, mat4(1)};
-  std::deque<double> flashes;  // of the last second
+  std::deque<double> flashes;  // the last second's
   size_t all = 0;
   float turning = 0, least = 1e9f, most = 0;
   int way = 0;

@@ -153,7 +153,7 @@ TEST_F(Recordings, AreToldInTheirOwnTime) {
     return SpeechState{utterance.line.at("en").recording, false, "en"};
   };
   const float step = 0.01f;
-  std::vector<double> begins;  // of the sentences' sound
+  std::vector<double> begins;  // when sentences begin to sound, seconds
   double told = 0;
   for (; !voice.queue.empty() && told < 60; told += double(step)) {
     size_t before = begins.size();

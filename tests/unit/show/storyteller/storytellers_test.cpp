@@ -42,7 +42,7 @@ struct StorytellersTest : testing::Test, ShowStage {
     ShowStage::join(32, 32, "en", role);
     run(0.1);
   }
-  // Who is to be seen: rays from above onto the places where the two stand.
+  // Says who is to be seen, by rays from above onto the places where the two stand.
   std::string seen() {
     std::string who;
     for (const StorytellerPlace& storyteller_place : show->exhibit.storytellers) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double megabit = 1e6 / 8;
 
-// Of those sent between two times.
+// Returns the pictures sent between two times.
 std::vector<SimulatedPicture> between(const std::vector<SimulatedPicture>& all, double from,
                                       double to) {
   std::vector<SimulatedPicture> some;

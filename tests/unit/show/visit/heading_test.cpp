@@ -39,7 +39,7 @@ TEST(Heading, GoesOnAsItWent) {
   }
 }
 
-// Where ticks come later than motion is measured over.
+// Ticks come later than the time over which motion is measured.
 TEST(Heading, GoesOnAsItWentWhereTicksAreFew) {
   Heading heading;
   View view;
@@ -79,7 +79,7 @@ float missing_share(const View& drawn, const View& wanted) {
   return warp_picture(keyframe, wanted, 1, scratch, out);
 }
 
-// What is drawn around a view for a turn shows all of the view that the turn leads to.
+// A keyframe drawn wide for a turn shows all of the view that the turn leads to.
 TEST(Heading, MarginsAreAsWideAsTheTurn) {
   for (float turn : {0.0f, 0.01f, 0.05f}) {
     View wide = keyframe_view(facing(0), turn);
@@ -91,8 +91,8 @@ TEST(Heading, MarginsAreAsWideAsTheTurn) {
   EXPECT_EQ(keyframe_view(facing(0), NAN).width, keyframe_view(facing(0)).width);
 }
 
-// Whoever turns by nearly half a radian while the next one is on its way sees no border; a
-// step to the side does not need another one, some do.
+// A visitor who turns by nearly half a radian while the next wide view is on its way sees no
+// border; a step to the side does not need another wide view, several do.
 TEST(WideView, HoldsWhatAPageMayTurnTo) {
   const View now = facing(0.7f, vec3(1, 2, 3));
   const View wide = wide_view(now);

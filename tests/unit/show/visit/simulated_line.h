@@ -13,9 +13,10 @@
 namespace wellspring::test {
 
 struct SimulatedLine {
-  // Of the time in seconds.
-  std::function<double(double)> rate = [](double) { return 2.5e6; };    // bytes a second
-  std::function<double(double)> encode = [](double) { return 0.006; };  // of a whole picture
+  // The functions take the time in seconds.
+  std::function<double(double)> rate = [](double) { return 2.5e6; };  // bytes a second
+  // seconds for a whole picture
+  std::function<double(double)> encode = [](double) { return 0.006; };
   std::function<double(double)> decode = [](double) { return 0.004; };  // likewise
   std::function<double(double)> others = [](double) { return 0.0; };    // seconds of others' queue
   double trip = 0.02;                                                   // there and back, seconds

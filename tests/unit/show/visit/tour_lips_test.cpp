@@ -122,7 +122,7 @@ TEST_F(TourLips, OfTwoToursTheNearerOneInViewCounts) {
   EXPECT_EQ(heard_on_tour(*show, show->teller), nullptr);
 }
 
-// Who stands before a kiosk sees her from there, not from where the picture's camera is.
+// A guest before a kiosk sees the storyteller from there, not from where the picture's camera is.
 TEST_F(TourLips, ThePersonBeforeAKioskIsTheViewer) {
   ShowStage::join(32, 32, "en", "kiosk");
   run(0.1);

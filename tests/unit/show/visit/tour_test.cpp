@@ -114,7 +114,7 @@ TEST_F(TourTest, PauseComesToRestSoftlyAndHoldsThePlaceAndTheText) {
 TEST_F(TourTest, WhereItLeapsItIsAtOnceAtItsStopsAndTellsAllTheSame) {
   exhibit.tours[0].stops[1].way_text["en"].emplace_back().text = "On the way.";
   play();
-  ride.leaps = true;  // of the visitor, with every step
+  ride.leaps = true;  // the visitor's setting, taken with every step
   bool between = false;
   const dvec3 ends[2] = {exhibit.viewpoints[0].view.position, exhibit.viewpoints[1].view.position};
   for (int i = 0; i < 2000 && !finished; i++) {

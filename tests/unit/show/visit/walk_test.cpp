@@ -21,7 +21,7 @@ struct Walk : testing::TestWithParam<double> {
 
 TEST(KeepDistance, NobodyComesNearerThanTheInnermostWall) {
   const dvec3 centre(100, 0, -50);
-  // From everywhere, in steps of any length, straight at it and past it.
+  // The visitor comes from everywhere, in steps of any length, straight at it and past it.
   for (double length : {0.01, 0.1, 0.5, 5.0})
     for (int i = 0; i < 64; i++) {
       double angle = i * 0.0981747704;
@@ -47,8 +47,8 @@ TEST(KeepDistance, OneSlidesRoundAndGoesAway) {
   }
   EXPECT_LT(at.z, -2) << "past it, not stuck before it";
   EXPECT_NEAR(least, nearest_to_storyteller, 0.02);
-  // Who stands within (a viewpoint there, a storyteller that has just come) may leave, not go
-  // farther in.
+  // A visitor who stands within (a viewpoint there, a storyteller that has just come) may leave,
+  // not go farther in.
   dvec3 within(0.4, 1.6, 0);
   EXPECT_NEAR(keep_distance(within, {0.2, 1.6, 0}, dvec3(0)).x, 0.4, 1e-9);
   EXPECT_EQ(keep_distance(within, {0.6, 1.7, 0}, dvec3(0)), dvec3(0.6, 1.7, 0));
@@ -65,7 +65,7 @@ TEST_P(Walk, ViewpointsWithoutGroundAreNamed) {
   }
   exhibit.viewpoints[4].view.name = "outside";
   exhibit.viewpoints[5].where.clear();
-  // Of these the second is too high above the ceiling, one can climb down from the first.
+  // The second of these is too high above the ceiling, one can climb down from the first.
   for (size_t i = 2; i < 4; i++) exhibit.viewpoints[i].view.position.y += 4;
   std::vector<Problem> problems;
   check_ground(exhibit, world, problems);

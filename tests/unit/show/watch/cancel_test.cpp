@@ -26,7 +26,7 @@ struct CancelledShow : testing::Test {
   Lights lights = make_lights(world);
   std::vector<vec3> eyes = {vec3(-2, 1.6f, 3)};
 
-  // Whether `step` is done, and then whether it ends when it is cancelled.
+  // Checks that `step` ends by itself, and then that it ends when it is cancelled.
   template <class Step>
   void expect_ends(const Step& step) {
     const CancelScope scope(source.get_token());

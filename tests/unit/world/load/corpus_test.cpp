@@ -70,7 +70,8 @@ TEST(Corpus, ValidFilesLoad) {
   EXPECT_GT(loaded, 70);
 }
 
-// What the validator calls an error and yet has one meaning that can be shown (gltf/file.h).
+// Lists files that the validator calls an error and that yet have one meaning that can be shown
+// (gltf/file.h).
 const std::map<std::string, const char*> only_odd = {
     {"EMPTY_ENTITY", "an empty list"},
     {"DUPLICATE_ELEMENTS", "an extension listed twice"},
@@ -119,7 +120,7 @@ const std::map<std::string, const char*> only_odd = {
     {"SCENE_NON_ROOT_NODE", ""},
 };
 
-// Without errors for the validator and still refused, and why.
+// Lists files that have no errors for the validator and are still refused, and why.
 const std::map<std::string, const char*> cannot_be_shown = {
     {"asset/min_version_valid.gltf", "needs glTF 2.1"},
     {"root/named_objects.gltf", "has no data"},  // a shown mesh over a buffer without content

@@ -135,7 +135,7 @@ TEST(Lamp, ANodeStandsForAllBelowIt) {
     emitting += scene.meshes[size_t(instance.mesh)].material == scene.lamps[0].materials[0];
   EXPECT_EQ(emitting, 1u);  // the other candle belongs to nobody
   auto rest = add_lamp({"rest", {"candle", "glow"}, {}}, scene);
-  EXPECT_EQ(rest.size(), 2u);  // of each name, one is taken
+  EXPECT_EQ(rest.size(), 2u);  // one of each name
   EXPECT_EQ(scene.lamps[1].lights.size(), 1u);
 }
 

@@ -7,7 +7,7 @@
 namespace wellspring::test {
 namespace {
 
-constexpr size_t corners = 17'000'001;  // of one primitive
+constexpr size_t corners = 17'000'001;  // indices of one primitive
 
 // A square of two triangles after very many without area, all in one list of bytes.
 Asset long_list(size_t primitives) {

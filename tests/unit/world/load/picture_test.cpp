@@ -65,7 +65,7 @@ TEST(Picture, TablesThatAreTooLongAreRefused) {
   bytes.insert(bytes.end(), {0xff, 0xd9});
   Image image;
   EXPECT_NE(decode(bytes, image), "");
-  // In a picture that is right otherwise.
+  // The picture is right otherwise.
   std::vector<uint8_t> whole = read_seed("small.jpg");
   for (size_t i = 0; i + 20 < whole.size(); i++)
     if (whole[i] == 0xff && whole[i + 1] == 0xc4) std::fill_n(&whole[i + 5], 16, uint8_t(17));

@@ -145,7 +145,7 @@ TEST(SceneLoad, Cameras) {
   EXPECT_TRUE(warns_of(scene, "not perspective"));
 }
 
-// What the camera's node does to its axes is what the view has.
+// The view has the axes to which the camera's node turns them.
 TEST(SceneLoad, CamerasKeepTheirRoll) {
   Asset asset = triangle_asset();
   asset.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};

@@ -79,7 +79,7 @@ CoverageError compare_coverage(const World& world, const View& view, const Cover
   return error;
 }
 
-// At a distance of two metres, 120 pixels to a metre; before a wall.
+// Looks at a mesh from two metres, 120 pixels to a metre, before a wall.
 CoverageError look_at(const Mesh& mesh) {
   Scene scene = empty_scene();
   int grey = add_material(scene, diffuse(vec3(0.5f)));
@@ -122,7 +122,7 @@ TEST(Raster, EdgesTellHowMuchOfAPixelIsCovered) {
     Coverage c = coverage_by(raster, view, 0);
     CoverageError error = compare_coverage(world, view, c, 0);
     EXPECT_GT(error.cut, 300);
-    // What is left are corners, and where edges run rather along the other axis.
+    // Errors are left at corners, and where edges run rather along the other axis.
     EXPECT_LT(error.softened, 0.2 * error.plain) << "background " << background;
   }
 }
@@ -179,7 +179,8 @@ TEST(Raster, EdgesTellOfGapsWithinAnInstance) {
   }
 }
 
-// What a box's faces have in common, with vertices shared or not, and what a fan does not.
+// Neighbours are found over a box's edges, with vertices shared or not, and not where three
+// triangles meet.
 TEST(Raster, TrianglesKnowTheirNeighbours) {
   Mesh box;
   add_face(box, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});

@@ -144,7 +144,7 @@ TEST(Raster, SeesWhatRaysSeeBesideTheAxis) {
   }
 }
 
-// What is nearer than the view begins is cut away, for rays and for the raster alike.
+// Surfaces nearer than the view's beginning are cut away, for rays and for the raster alike.
 TEST(Raster, SeesWhatRaysSeeBehindTheViewsBeginning) {
   Scene scene = empty_scene();
   add_mesh(scene, soup(1, 3000), "soup");
@@ -201,7 +201,7 @@ TEST(Raster, LeavesOutWhatIsHidden) {
   EXPECT_GT(moved, 500);
 }
 
-// What stands still and what moves, drawn apart and the nearer taken, are the whole picture.
+// Still and moving things, drawn apart and the nearer taken, are the whole picture.
 TEST(Raster, StillAndMovingMakeAll) {
   Scene scene = empty_scene();
   add_mesh(scene, soup(3, 2000), "soup");

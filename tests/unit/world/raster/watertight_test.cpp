@@ -38,7 +38,7 @@ struct Target {
   vec3 from, to;
 };
 
-// From around the middle of a convex mesh towards places on its edges.
+// Aims from around the middle of a convex mesh towards places on its edges.
 Target aim(const Mesh& mesh, const mat4& to_world, vec3 middle, float reach, Rng& random) {
   uvec3 triangle = mesh.triangles[random.next() % mesh.triangles.size()];
   uint32_t side = random.next() % 3;
@@ -141,7 +141,7 @@ TEST(Watertight, ClosedMeshesThatMove) {
   }
 }
 
-// From afar: a ray to a place inside the outline passes the near side at an edge and must meet it,
+// A ray from afar to a place inside the outline passes the near side at an edge and must meet it,
 // not the far side through it.
 TEST(Watertight, NearSidesOfSolidsFromAfar) {
   Scene scene = empty_scene();
