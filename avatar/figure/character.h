@@ -193,6 +193,7 @@ int find_displacer(const Character& character, std::string_view name);  // -1: n
 //   hair and cloth (springs) -                   yes                       yes
 //   lazy mirror, empathy     -                   -                         yes
 
+// A level of detail.
 enum class Detail : uint8_t { none, medium, full };
 const char* to_string(Detail detail);
 

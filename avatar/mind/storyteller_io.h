@@ -47,7 +47,7 @@ struct StorytellerInput {
   bool telling =
       false;  // a story is being told (Mood::telling while no greeting or farewell is due)
   float viewer_distance =
-      0;           // metres to the nearest viewer: how much of the storyteller needs to run (character.h)
+      0;  // metres to the nearest viewer: how much of the storyteller needs to run (character.h)
   StoryCue story;  // wishes of the story's text to face, eyes and hands
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Holds the mouth of a speaker over time: fifteen weights (the MPEG-4 set in Oculus' naming) that
-// glide from one held shape to the next. visemes.h makes it from sounds.
+// glide from one held shape to the next, which gives coarticulation. visemes.h makes it from
+// sounds.
 //
 // At every time, each weight is in [0, 1]; their sum is 1, `sil` being the rest; a closure (p b m)
 // holds PP = 1 from the beginning of its sound until it opens. Evaluation keeps no state, so it

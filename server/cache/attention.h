@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How of high priority a new sample is at every pixel (Walter 1999, section 4 and 4.1).
+// Computes the priority image: how urgent a new sample is at every pixel (Walter 1999, sections 4
+// and 4.1). A disocclusion, on which no point falls, comes first.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pixels are asked for next: error diffusion over the priorities (Walter 1999, section 4), in
-// blocks of scanlines that are dithered independently, each with its share of the budget.
+// Chooses the pixels that are asked for next: error diffusion over the priorities (Walter 1999,
+// section 4), in blocks of scanlines that are dithered independently, each with its share of the
+// budget.
 #pragma once
 #include <vector>
 

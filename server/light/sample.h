@@ -33,7 +33,7 @@ enum SampleFlags : uint8_t {
 // them, `albedo` tinted by the panes, and `rest` carries their mirror image. Mirrors and solid
 // glass are described where they are, with everything in `rest`.
 struct Sample {
-  vec3 position{0};
+  vec3 position{0};    // hit point
   vec3 normal{0};      // shading normal, unit
   float distance = 0;  // along the ray; infinity: nothing was hit
   uint32_t object = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A quarter-resolution picture of surfaces and their light. Smooth light is filtered here,
-// edge-aware and guided by its variance (a-trous: Dammertz et al. 2010; variance: Schied et al.
-// 2017), and holes of every size are filled from it. A cell stands for one surface: the object most
-// of its pixels see.
+// A Cells is a quarter-resolution picture of surfaces and their light. Smooth light is filtered
+// here, edge-aware and guided by its variance (a-trous: Dammertz et al. 2010; variance: Schied et
+// al. 2017), and holes of every size are filled from it by push and pull. A cell stands for one
+// surface: the object most of its pixels see.
 #pragma once
 #include <array>
 #include <span>

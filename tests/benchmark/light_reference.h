@@ -10,7 +10,7 @@ struct Reference {
   Frame frame;
   double seconds = 0;
   int spp = 0;  // samples a pixel of both halves together
-  // Standard error of the frame, as the measures of frame/compare.h and frame/flip.h say it.
+  // Standard error of the frame, as the measures of judge/compare.h and judge/flip.h say it.
   double rmse = 0, relative_mse = 0;
   double flip = 0;  // between the halves over sqrt(2): an upper bound, FLIP grows less than noise
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A benchmark's report as a page of Markdown: a few tables of the figures that answer one question.
-// A page is declared (report_pages.h) and made from a report's JSON (report.h): the same JSON
+// A page is declared and made from a report's JSON (report.h): the same JSON
 // gives the same page. A page has most_page_lines lines at most: what a table has no room for is
 // counted and stays in the JSON.
 #pragma once

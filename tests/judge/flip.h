@@ -11,20 +11,20 @@
 namespace wellspring::test {
 
 struct FlipSettings {
-  // Of the viewer's visual angle: the paper's default, a 0.7 m wide screen of 3840 pixels seen from
-  // 0.7 m. Larger: finer detail is lost on the eye.
+  // Pixels a degree of the viewer's visual angle: the paper's default, a 0.7 m wide screen of 3840
+  // pixels seen from 0.7 m. Larger: finer detail is lost on the eye.
   float pixels_per_degree = 67;
 };
 
 struct FlipMap {
   int width = 0, height = 0;
-  std::vector<float> error;  // of each pixel, 0 to 1, top row first
+  std::vector<float> error;  // 0 to 1 for each pixel, top row first
   double mean = 0;           // the paper's pooling (section 5): one number for the pair
 };
 
 FlipMap eval_flip(const Image8& test, const Image8& reference, const FlipSettings& settings = {});
 
-// Of pictures in linear radiance as a visitor would see them: both go through our own display
+// Compares pictures in linear radiance as a visitor would see them: both go through our own display
 // mapping (frame/tonemap.h: exposure, shoulder, sRGB, 8 bits) first, so that what the screen cannot
 // show does not count and the numbers belong to our pictures, not to another tone mapper's. For
 // HDR-FLIP's sweep over exposures, call it with several.

@@ -51,7 +51,7 @@ class WsClient {
 
   void close(double timeout = 2);  // with the closing handshake
   bool connected() const;
-  std::string subprotocol() const;  // that the server chose
+  std::string subprotocol() const;  // the one that the server chose
   int close_code() const;           // 0: none was received
   std::string close_reason() const;
 

@@ -89,7 +89,8 @@ test('every file that a comment names exists', () => {
   for (const { name, text } of sources)
     for (const [, comment] of text.matchAll(/(?:^|\s)\/\/ (.*)/g))
       for (const [file] of comment.matchAll(/(?<![\w/.*])[\w/]+\.(?:h|cpp)\b/g))
-        if (!(file.includes('/') ? is_place(file) : names.has(file))) wrong.push(`${name}: ${file}`);
+        if (!(file.includes('/') ? is_place(file) : names.has(file)))
+          wrong.push(`${name}: ${file}`);
   assert.deepEqual(wrong, []);
 });
 
@@ -98,7 +99,8 @@ test('a term stands in the header that docs/terms.md names', () => {
       .replace(/[-_]/g, ' ').toLowerCase();
   const wrong = [];
   let found = 0;
-  for (const row of read('docs/terms.md').split('\n').filter((line) => /^\| (?!-|term)/.test(line))) {
+  const rows = read('docs/terms.md').split('\n').filter((line) => /^\| (?!-|term)/.test(line));
+  for (const row of rows) {
     const [term, , from] = row.slice(1).split('|').map((cell) => cell.trim());
     const headers = [...from.matchAll(/`([\w/]+)\.h`/g)].map(([, stem]) => `${stem}.h`);
     if (headers.length === 0) continue;

@@ -46,10 +46,10 @@ struct Bake {
   float tile = 0;                // metres, as given to make_charts()
   std::vector<uint8_t> direct_sight, gather_sight;  // NodeSight (light/bake/filter_nodes.h), as far
                                                     // as it was asked for; not kept on disk
-  int refined = 0;      // rounds of finer direct nodes so far
-  uint64_t passes = 0;  // complete passes over all tiles
-  uint32_t cursor = 0;  // the next tile of the pass under way
-  bool pilot() const;   // whether refinement goes on; it samples all tiles, whatever the shard
+  int refined = 0;                                  // rounds of finer direct nodes so far
+  uint64_t passes = 0;                              // complete passes over all tiles
+  uint32_t cursor = 0;                              // the next tile of the pass under way
+  bool pilot() const;  // whether refinement goes on; it samples all tiles, whatever the shard
 };
 size_t memory_bytes(const Bake& bake);
 

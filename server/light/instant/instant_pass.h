@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Holds what instant radiosity draws for one pass over a picture: sets of point lights, the lights
-// that each region asks, and photons.
+// that each region asks, and the photon map of caustics.
 #pragma once
 #include <cmath>
 #include <cstdint>

@@ -3,10 +3,10 @@
 // "Interactive Global Illumination using Fast Ray Tracing" (2002), section 4, after Keller,
 // "Instant Radiosity" (1997).
 //
-// Light is made into point lights by quasi-random walks; a pixel asks those of its set, one of
-// columns x rows (section 4.2), and finish_pass averages neighbours of all sets (section 4.3).
-// Every path of light is found in one way, which depends on its scatterings counted from the eye,
-// sharp or rough (light_walk.h):
+// Quasi-random walks make light into virtual point lights (VPLs); a pixel asks those of its set,
+// one of columns x rows (section 4.2), and finish_pass averages neighbours of all sets
+// (section 4.3). Every path of light is found in one way, which depends on its scatterings counted
+// from the eye, sharp or rough (light_walk.h):
 //   eye, sharp ...                  followed by rays
 //   rough, then a light or rough    point lights, clipped if they are nearer than `clip`; a ray
 //                                   gathers what clipping took, or it is missing

@@ -17,8 +17,8 @@ struct InstantPass;      // light/instant/instant_pass.h
 struct LampsSeen;        // light/sample/lamps_seen.h
 struct LightTables;      // light/sample/light_tables.h
 struct SplatPass;        // light/splat/splatter.h
-struct EmittingSources;  // light/sample/emitting.h
-struct TransportPlan;    // light/transport_plan.h
+struct EmittingSources;
+struct TransportPlan;  // light/transport_plan.h
 
 struct Lights {
   std::shared_ptr<const LightTables> tables;

@@ -105,7 +105,7 @@ namespace {
 
 constexpr std::string_view files = "/files/";
 
-// Names are of characters that stand in an address as they are (exhibit/exhibit_files.cpp).
+// Names are of characters that stand in an address as they are (show/exhibit/exhibit_files.cpp).
 std::string address_of(const Exhibit& exhibit, const std::string& file) {
   return "/api/v1/exhibits/" + exhibit.id + std::string(files) + file;
 }

@@ -15,8 +15,8 @@ namespace wellspring::show {
 // show.lights. Ends early, with costs.given_up and all samples traced by then, once
 // renderer.given_up is set.
 void draw_picture(Show& show, const PictureJob& job, Visitor& visitor);
-// The same step by step, between which the world may move and nothing but still_pass.h may be drawn.
-// Returns the next one; DrawingStep::done: none.
+// The same step by step, between which the world may move and nothing but still_pass.h may be
+// drawn. Returns the next one; DrawingStep::done: none.
 DrawingStep draw_step(Show& show, const PictureJob& job, DrawingStep step, Visitor& visitor);
 void finish_picture(Show& show, const PictureJob& job, Visitor& visitor);
 // Before that, where the job has something around: it is shown as soon as it is there.

@@ -153,7 +153,7 @@ struct Show {
   std::list<Visitor> visitors;
   std::list<KeptVisit> kept;                   // who left first comes first
   std::shared_ptr<const Seal> seal;            // of what pages keep of visits
-  std::vector<std::shared_ptr<Link>> resting;  // to be taken by who keeps them: answer/idle.h
+  std::vector<std::shared_ptr<Link>> resting;  // to be taken by who keeps them: show/answer/idle.h
   std::shared_ptr<Capacity> capacity = std::make_shared<Capacity>();  // of all exhibits together
   std::vector<Eye> eyes;
   std::vector<Kiosk> kiosks;             // show/answer/orders.h

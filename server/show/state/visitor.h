@@ -145,14 +145,14 @@ struct Visitor {
   double came_at = 0;  // show time
   bool kiosk = false;
   std::string lang = "en";
-  std::string name;                    // of a kiosk, as its page says it; may be empty
-  std::string id;                      // of the visit, over all its links; empty: not told yet
-  std::string told;                    // of the visit, that its page keeps (answer/come_back.h)
-  double told_at = -1e9;               // show time of that
-  KioskTouch screen;                   // of a kiosk's; touched: since the last step of the kiosk
-  int64_t loaded_night = 0;            // of a kiosk's: HouseState::night when its page was loaded
-  double state_sent_at = -1e9;         // show time of the last state message
-  VisitorSound hearing;                // show/answer/sound.h
+  std::string name;             // of a kiosk, as its page says it; may be empty
+  std::string id;               // of the visit, over all its links; empty: not told yet
+  std::string told;             // of the visit, that its page keeps (show/answer/come_back.h)
+  double told_at = -1e9;        // show time of that
+  KioskTouch screen;            // of a kiosk's; touched: since the last step of the kiosk
+  int64_t loaded_night = 0;     // of a kiosk's: HouseState::night when its page was loaded
+  double state_sent_at = -1e9;  // show time of the last state message
+  VisitorSound hearing;         // show/answer/sound.h
   std::unique_ptr<Teller> own_teller;  // since they called her; null: the house's
   VisitorLamps lamps;
   DynamicLights dynamic;    // lights that move or change, as they are now

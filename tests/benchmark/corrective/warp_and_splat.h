@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows remembered samples in a new view (Haber, Myszkowski, Yamauchi, Seidel 2001, sections 4.1
-// and 4.3): each is warped to where the view sees it and splatted as a square over pixels of its
-// own object. Finer levels cover coarser ones; within a level the nearest counts, and of samples
-// equally near the newest.
+// Shows remembered samples in a new view by corrective splatting (Haber, Myszkowski, Yamauchi,
+// Seidel 2001, sections 4.1 and 4.3): each is warped to where the view sees it and splatted as a
+// square over pixels of its own object. Finer levels cover coarser ones; within a level the nearest
+// counts, and of samples equally near the newest.
 #pragma once
 #include <cstdint>
 #include <span>
