@@ -136,7 +136,8 @@ std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewPro
   double total = 0, number = double(effect.size());
   for (double e : effect) total += e;
   for (double& e : effect)  // from here on, how often a light is wanted
-    e = double(wanted) * (total > 0 ? (1 - blind) * e / total + blind / number : 1 / number);
+    e = double(wanted) *
+        (total > 0 ? (1 - unseen_share) * e / total + unseen_share / number : 1 / number);
   // Systematic sampling: neighbours in the sequence of candidates complement each other, and so do
   // those kept.
   uint32_t slot = 0, first_set = std::min(uint32_t(deal_u * float(sets)), uint32_t(sets - 1));
