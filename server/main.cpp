@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring run: options -> load -> threads. The only place that knows both `museum` and `stream`.
+// Runs `wellspring run`: options -> load -> threads. No other file knows both `museum` and
+// `stream`.
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -25,21 +26,21 @@ namespace {
 using namespace wellspring;
 using namespace wellspring::program;
 
-// Until it is serving there is nothing to be written before the end; sums are all that may be lost.
+// Before `serving` nothing has to be written at the end; sums are the only thing that may be lost.
 enum Phase : int { loading, serving, written };
-// Signals are handled on any thread, and read on others.
+// Signals set these on any thread; others read them.
 std::atomic<bool> asked_to_stop = false, asked_to_reload = false, asked_to_reopen = false;
 std::atomic<int> phase = loading;
 std::atomic<unsigned> seconds_to_drain = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 constexpr unsigned seconds_to_end = 4;
-#else  // all is slower, and what is lost is looked for at the end
+#else  // everything is slower, and memory leaks are looked for at the end
 constexpr unsigned seconds_to_end = 60;
 #endif
-constexpr int most_weight = 256;  // that HAProxy knows
+constexpr int most_weight = 256;  // largest weight, percent, that HAProxy takes
 
-// The first time it ends in order, the second time at once.
+// Ends the program: the first signal in order, the second at once.
 void stop(int signal) {
   if (asked_to_stop.exchange(true)) _exit(128 + signal);
   if (phase == loading) _exit(0);
@@ -52,14 +53,15 @@ void end_late(int) {
   _exit(phase == written ? 0 : 1);
 }
 
-// Programs that are started here get no more rights than this one has (set-user-ID).
+// Takes care that programs that are started here get no more rights than this one has
+// (set-user-ID).
 void renounce_rights() {
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   if (geteuid() == 0)
     log::warn("runs as root, which it needs for nothing: an ordinary user is safer");
 }
 
-// To whoever has started the program.
+// Prints the address on stdout, and returns the text.
 std::string say_address(const AnswerSources& sources, const StreamSettings& stream) {
   std::string names;
   for (const ServedExhibit& one : sources.exhibits)
@@ -71,7 +73,8 @@ std::string say_address(const AnswerSources& sources, const StreamSettings& stre
   return said;
 }
 
-// `reread`: takes from the configuration what needs no restart.
+// Serves until the program is asked to stop. `reread`: takes those settings from the configuration
+// that need no restart.
 int serve(const ServerOptions& options, const std::function<void()>& reread) {
   ServiceManager manager;
   const auto pages = load_pages(options.web);
@@ -91,8 +94,8 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   };
   StreamSettings stream = options.stream;
   auto server = std::make_unique<Server>(stream, doors);
-  std::atomic<const Server*> counted = server.get();  // asked for by threads of its own
-  stream.port = server->port();                       // the same, when it comes back
+  std::atomic<const Server*> counted = server.get();  // read by the server's own threads
+  stream.port = server->port();                       // the same port for the next server
   Museum museum(options.museum);
   AnswerSources& sources = museum.sources();
   sources.pages = &pages;
@@ -114,7 +117,7 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   };
   sources.drains = [] { return asked_to_stop.load(); };
   std::string said;
-  double ends_at = 0;  // when it is drained
+  double ends_at = 0;  // seconds; time at which draining ends
   const auto ended = [&] {
     const bool reload = asked_to_reload.exchange(false);
     if (asked_to_reopen.exchange(false) || reload) log::reopen();
@@ -167,7 +170,8 @@ int main(int argc, char** argv) {
   std::signal(SIGALRM, end_late);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGUSR1, [](int) { asked_to_reopen = true; });
-  // A service is told to reload, a program in a terminal that the terminal is gone.
+  // SIGHUP asks a service to reload; for a program in a terminal it means that the terminal is
+  // gone.
   if (isatty(STDERR_FILENO)) std::signal(SIGHUP, stop);
   else std::signal(SIGHUP, [](int) { asked_to_reload = true; });
   try {

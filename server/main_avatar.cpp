@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring avatar FILE: inspects an H-Anim figure, and takes a picture of it as it stands there
-// and breathes.
+// Runs `wellspring avatar FILE`: inspects an H-Anim figure, and takes a picture of it as it stands
+// there and breathes.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
@@ -44,8 +44,8 @@ bool read_size(const std::string& text, PortraitShot& shot) {
          shot.width >= 16 && shot.height >= 16 && shot.width <= 8192 && shot.height <= 8192;
 }
 
-// The figure after `time` seconds of standing there, alone or before a guest, and what it holds of
-// that exhibit's props.
+// Returns the pose of the figure after `time` seconds of standing there, alone or before a guest;
+// `held`: what it holds of that exhibit's props.
 Pose pose_at(const Character& character, const Options& options, const Exhibit& exhibit,
              HeldProp& held) {
   Pose pose = make_rest_pose(character);
@@ -65,7 +65,7 @@ Pose pose_at(const Character& character, const Options& options, const Exhibit& 
   input.story.look = place(options.appearance);
   input.story.held = find_held_thing(exhibit, options.hold);
   input.story.gesture = options.gesture;
-  input.story.gesture_lead = 60;  // from its beginning
+  input.story.gesture_lead = 60;  // seconds; the gesture starts from its beginning
   if (int clip = find_gesture(options.gesture); clip >= 0)
     input.story.gesture_lead = default_gestures().clips[size_t(clip)].stroke;
   constexpr double step = 1.0 / 30;
@@ -93,7 +93,7 @@ std::vector<std::string> expression_names() {
   return names;
 }
 
-// What stories and the options below may name.
+// Prints the names that stories and the options below may use.
 void print_gestures() {
   std::cout << "gestures\n";
   for (const GestureClip& clip : default_gestures().clips)
@@ -104,7 +104,8 @@ void print_gestures() {
   std::cout << "\nexpressions\n  " << list_names(expression_names(), 200) << "\n";
 }
 
-// The motion of that name in the figure's file, else the first one of the file `wanted` names.
+// Returns the motion of that name in the figure's file, else the first motion of the file that
+// `wanted` names, or the one named after '#'.
 Motion find_motion(const Character& character, const std::string& wanted) {
   for (const Motion& motion : character.motions)
     if (motion.name == wanted) return motion;
@@ -119,7 +120,7 @@ Motion find_motion(const Character& character, const std::string& wanted) {
   throw LoadError(file, "", name.empty() ? "has no motion" : "has no motion '" + name + "'");
 }
 
-// Named expressions instead of the face that the pose has. Throws std::invalid_argument for unknown
+// Shows named expressions instead of the pose's own face. Throws std::invalid_argument for unknown
 // names.
 void show_expressions(const Character& character, const std::vector<std::string>& settings,
                       Pose& pose) {
@@ -144,7 +145,7 @@ void show_expressions(const Character& character, const std::vector<std::string>
   apply_controls(sum, rig, pose);
 }
 
-// Every expression, or every mouth shape, over the same pose.
+// Returns a cell for every expression of an emotion, or every mouth shape, over the same pose.
 std::vector<SheetCell> sheet_cells(const Character& character, const std::string& sheet,
                                    const Pose& pose) {
   const ExpressionSet& set = default_expressions();
@@ -206,7 +207,7 @@ int run(Options options) {
   if (options.json) std::cout << describe_json(character);
   else if (options.info || options.out.empty()) std::cout << describe_text(character);
   if (options.out.empty()) return 0;
-  bool is_motion = character.parts.empty();  // then what it shows is its motion
+  bool is_motion = character.parts.empty();  // a file without a surface is shown by its motion
   add_bone_surface(character);
 
   if (options.motion.empty() && is_motion && !character.motions.empty())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring bake content/ID: illumination maps of an exhibit, kept where its server finds them.
-// Exit status: 0 done, 1 the input is wrong, 2 the command line is wrong.
+// Runs `wellspring bake content/ID`: bakes illumination maps of an exhibit, and keeps them for its
+// server. Exit status: 0 done, 1 the input is wrong, 2 the command line is wrong.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cmath>
@@ -36,7 +36,7 @@ struct Options {
   bool resume = false;
 };
 
-// "90", "90s", "10m", "2h"; below 0: it is none.
+// Reads seconds from "90", "90s", "10m", "2h"; below 0: the text is no duration.
 double parse_duration(const std::string& text) {
   double value = 0;
   auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -50,19 +50,19 @@ bool parse_shard(const std::string& text, BakeSettings& settings) {
   if (std::sscanf(text.c_str(), "%d/%d%n", &shard, &shards, &used) != 2 ||
       size_t(used) != text.size() || shards < 1 || shards > 4096 || shard < 0 || shard > shards)
     return false;
-  settings.shard = (shard + shards - 1) % shards;  // counted from 1, or from 0
+  settings.shard = (shard + shards - 1) % shards;  // i counts from 1, or from 0
   settings.shards = shards;
   return true;
 }
 
-using Failure = std::runtime_error;  // the input is wrong: said on stderr, exit status 1
+using Failure = std::runtime_error;  // The input is wrong: printed on stderr, exit status 1
 
-// What is baked, and where it is kept.
+// Holds the exhibit that is baked, and the files that keep the result.
 struct Bakery {
   Exhibit exhibit;
   uint64_t key;
   World world;
-  std::string file, light;  // what it can go on with, and the map that comes of it
+  std::string file, light;  // state of the bake, to go on with; finished map
 
   Bakery(const Options& options, const BakeSettings& settings)
       : exhibit(load_exhibit(options.package)),
@@ -82,7 +82,7 @@ struct Bakery {
   void keep(const Bake& bake) const {
     if (!save_bake(bake, file, key)) throw Failure(file + ": cannot be written");
   }
-  // And unless it is a shard the map that comes of it.
+  // Keeps the bake, and unless it is a shard its map, too.
   void finish(Bake& bake) const {
     keep(bake);
     std::cout << file << ": " << bake.passes << " passes, error " << 100 * bake_error(bake)
@@ -118,7 +118,7 @@ Bake merge(const Bakery& bakery, const Options& options) {
   return whole;
 }
 
-// Where the last one ended, if that is wanted and possible.
+// Returns the last bake's state, if it is wanted and can be used, else a new bake.
 Bake begin(const Bakery& bakery, const Options& options, const BakeSettings& settings) {
   Bake bake;
   KeyedFile found =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring check content/ID: lists every problem of an exhibit package with file and place.
+// Runs `wellspring check content/ID`: lists every problem of an exhibit package with file and
+// place.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
@@ -49,7 +50,8 @@ int main(int argc, char** argv) {
       check_ground(exhibit, world, problems);
       make_tour_roads(exhibit, world, problems);
     }
-    if (usable) {  // light is known by what stands still, as servers and bakes have it
+    // Maps of light are for what stands still, so movers are taken out as servers and bakes do.
+    if (usable) {
       take_movers(exhibit);
       take_lights(exhibit);
       check_shipped_light(exhibit, problems);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring clip FIGURE STORY: a figure acts a story. Writes pictures, the sound and subtitles
-// into a folder, with a sheet of some moments to look at; and a film, where ffmpeg is installed.
+// Runs `wellspring clip FIGURE STORY`: a figure acts a story. Writes pictures, the sound and
+// subtitles into a folder, with a sheet of some moments to look at; and a film, if ffmpeg is
+// installed.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -34,7 +35,7 @@ struct Options {
   bool close = false, calm = false;
 };
 
-// Copies a picture into a sheet, left out where it does not fit.
+// Copies a picture into a sheet, as far as it fits.
 void paste(const Image8& picture, Image8& sheet, int left, int top) {
   for (int y = 0; y < picture.height && top + y < sheet.height; y++)
     for (int x = 0; x < 3 * picture.width && 3 * left + x < 3 * sheet.width; x++)
@@ -42,7 +43,7 @@ void paste(const Image8& picture, Image8& sheet, int left, int top) {
           picture.rgb[size_t(y * picture.width) * 3 + size_t(x)];
 }
 
-// Pictures and sound into one file. False where there is no ffmpeg.
+// Puts pictures and sound into one file. False: there is no ffmpeg, or it failed.
 bool make_film(const std::string& folder, double fps) {
   std::string rate = fmt::format("{}", fps), pictures = folder + "/%04d.png",
               sound = folder + "/sound.wav", film = folder + "/clip.mp4";
@@ -93,7 +94,7 @@ int run(Options& options) {
                 [&](const StoryMoment& moment) { return moment.time < options.from - 1e-9; });
   if (moments.empty()) throw LoadError(options.story, "", "ends before --from");
 
-  // The sound as it goes with the pictures.
+  // Sound follows the pictures.
   int rate = spoken.front()->rate;
   std::vector<int16_t> sound(size_t(double(moments.size()) / options.clip.fps * rate));
   for (size_t i = 0; i < moments.size(); i++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring new ID MODEL: an exhibit of a glTF file, with viewpoints and light, that can be shown
-// at once. Exit status: 0 done, 1 the input is wrong, 2 the command line is wrong.
+// Runs `wellspring new ID MODEL`: makes an exhibit of a glTF file, with viewpoints and light, that
+// can be shown at once. Exit status: 0 done, 1 the input is wrong, 2 the command line is wrong.
 #include <CLI/CLI.hpp>
 #include <iostream>
 

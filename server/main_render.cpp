@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring render: a still picture of a scene. Exit status: 0 done, 1 the input is wrong, 2 the
-// command line is wrong.
+// Runs `wellspring render`: renders a still picture of a scene. Exit status: 0 done, 1 the input is
+// wrong, 2 the command line is wrong.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -39,7 +39,7 @@ namespace {
 
 constexpr int largest_side = 16384;
 
-// The command line is wrong: said on stderr, exit status 2.
+// Reports a wrong command line: printed on stderr, exit status 2.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -47,16 +47,16 @@ struct UsageError : std::runtime_error {
 struct Options {
   std::string scene, technique = "path", camera, eye, target, up = "0,1,0", size = "1280x720", out,
                      environment, sky, replay;
-  std::string denoise, albedo, normal;  // a network's name, and files of guides; empty: none
+  std::string denoise, albedo, normal;  // network's name; files of guides; empty: none
   double fov = 0, time = 0;
-  std::optional<double> exposure, hour;  // else the exhibit's
+  std::optional<double> exposure, hour;  // without them the exhibit's
   int spp = 16, max_depth = 8, threads = 0;
   uint64_t seed = 1;
   std::vector<std::string> lamps;  // NAME=on, NAME=off
   bool list_techniques = false, explain = false, draw_back_faces = false;
 };
 
-// Exactly `count` finite numbers with commas between.
+// Reads exactly `count` finite numbers with commas between.
 std::vector<double> parse_numbers(const std::string& text, size_t count, const char* option) {
   std::vector<double> values;
   const char* p = text.data();
@@ -128,7 +128,7 @@ void check_options(const Options& o) {
     throw UsageError("--denoise " + o.denoise + ": small, base or large expected");
 }
 
-// Before minutes of work: can the picture be written, and does it fit?
+// Checks before minutes of work whether the picture can be written, and fits into memory.
 void check_resources(const Options& o, ivec2 size) {
   if (o.out.empty()) return;
   std::filesystem::path folder = std::filesystem::path(o.out).parent_path();
@@ -138,7 +138,7 @@ void check_resources(const Options& o, ivec2 size) {
     throw LoadError(o.out, "", "cannot be written: no such folder");
   if (access(folder.c_str(), W_OK) != 0)
     throw LoadError(o.out, "", "cannot be written: the folder is not writable");
-  // Colour, depth and object planes, and the encoded picture beside them.
+  // The picture has colour, depth and object planes, and is encoded beside them.
   double needed = double(size.x) * double(size.y) * 36;
   std::ifstream meminfo("/proc/meminfo");
   std::string key;
@@ -151,12 +151,13 @@ void check_resources(const Options& o, ivec2 size) {
 
 struct LoadedScene {
   Scene scene;
-  std::vector<char> lamps;  // of each of the exhibit's: is it on?
+  std::vector<char> lamps;  // 1: the exhibit's lamp is on
   std::optional<Day> day;
   float exposure = 1;
 };
 
-// SCENE by its kind, the first that knows it. More kinds of scene: one more line.
+// Loads one kind of scene; the first kind that knows the path is used. A new kind of scene needs
+// one more line in the table.
 struct SceneKind {
   const char* what;
   bool (*knows)(const std::string& path);
@@ -191,7 +192,7 @@ LoadedScene load_any_scene(const std::string& path, double time) {
   throw LoadError(path, "", "not a scene this program knows (" + kinds + ")");
 }
 
-// --lamp changes what the exhibit begins with.
+// Applies --lamp, which changes the lamps' first states.
 void apply_lamps(const std::vector<std::string>& orders, const Scene& scene,
                  std::vector<char>& lamps) {
   for (const std::string& order : orders) {
@@ -211,8 +212,8 @@ void apply_lamps(const std::vector<std::string>& orders, const Scene& scene,
   }
 }
 
-// --hour, if it is another than the exhibit's own: the sun of the scene goes to where it stands
-// then.
+// Applies --hour, if it is another hour than the exhibit's own: the sun of the scene moves to its
+// place at that hour.
 LampLevels apply_hour(const Options& o, LoadedScene& loaded) {
   std::optional<double> hour;
   if (o.hour && !loaded.day) throw UsageError("--hour: the scene is no exhibit with a \"day\"");
@@ -224,7 +225,7 @@ LampLevels apply_hour(const Options& o, LoadedScene& loaded) {
   return levels;
 }
 
-// Lights that were made, and are prepared, while all lamps were full.
+// Sets the lamps' levels; `lights` were made, and prepared, while all lamps were full.
 void light_lamps(const LampLevels& levels, World& world, Lights& lights) {
   if (levels.empty()) return;
   for (size_t i = 0; i < levels.size(); i++) world.set_lamp(int(i), levels[i]);
@@ -261,7 +262,7 @@ void apply_environment(const std::string& text, Scene& scene) {
   }
 }
 
-// From the front, a little to the right and above, as near as the whole scene fits.
+// Returns a view from the front, a little to the right and above, as near as the whole scene fits.
 View frame_scene(const Scene& scene, float fov, ivec2 size) {
   Bounds bounds = scene_bounds(scene);
   if (!is_finite(bounds.low) || !is_finite(bounds.high)) bounds = {vec3(-1), vec3(1)};
@@ -303,7 +304,7 @@ View choose_view(const Options& o, const Scene& scene, ivec2 size) {
   return make_view(scene, at, size.x, size.y);
 }
 
-// What is in the scene, and which parts of light transport it needs.
+// Prints the size of the scene, and which parts of light transport it needs.
 void print_plan(const Options& o, const Scene& scene) {
   TransportPlan plan = make_transport_plan(scene);
   size_t in_use = 0;
@@ -379,7 +380,7 @@ void add_options(CLI::App& app, Options& o) {
                  "x,y,i: print the radiance of sample i of pixel x,y instead");
 }
 
-// The guides of `frame`, as a picture of its own.
+// Saves guides of `frame` as a picture of their own.
 void save_guide(const std::string& path, const Frame& frame, const std::vector<vec3>& plane,
                 bool is_normal) {
   if (path.empty()) return;
@@ -394,7 +395,8 @@ void save_guide(const std::string& path, const Frame& frame, const std::vector<v
   save_image8(path, image);
 }
 
-// Writes the guides that are wanted, and denoises `frame` if that is. Returns how it was done.
+// Writes the guides that the options ask for, and denoises `frame` if they ask for that. Returns a
+// text that says how it was denoised.
 std::string use_guides(const Options& o, Denoiser* denoiser, const World& world,
                        const Lights& lights, const View& view, Frame& frame) {
   if (!denoiser && o.albedo.empty() && o.normal.empty()) return "not denoised";

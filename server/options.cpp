@@ -12,7 +12,7 @@
 namespace wellspring::program {
 namespace {
 
-// What is no setting yet when it is read.
+// Holds values that are no settings yet when they are read.
 struct Words {
   int port = 8080, agent_port = 0;
   double visitors_memory = 0;  // MiB
@@ -25,7 +25,7 @@ std::vector<std::string> technique_names() {
   return names;
 }
 
-// Every option of the server; each is a key of the configuration file, too.
+// Declares every option of the server; each is a key of the configuration file, too.
 void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   ShowSettings& show = options.museum.show;
   app.option_defaults()->always_capture_default();
@@ -141,7 +141,7 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
       ->check(CLI::Range(1, 64));
 }
 
-// Throws CLI::ParseError, ConfigError or std::runtime_error.
+// Reads the command line and the file. Throws CLI::ParseError, ConfigError or std::runtime_error.
 void parse_options(CLI::App& app, ServerOptions& options, Words& words, int argc, char** argv) {
   declare_options(app, options, words);
   add_config(app, installed_config("server.conf"));

@@ -20,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Names and paths as libraries have them: nothing that a shell would take for more.
+// Returns whether the name or path has only characters of libraries' names, nothing that means more
+// to a shell.
 bool is_plain(const std::string& name) {
   return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
     return std::isalnum(c) || std::strchr("/._+-:", c);
@@ -35,7 +36,7 @@ std::string output_of(const std::string& command) {
   return text;
 }
 
-// Paths of what the loader has, by the names of their files.
+// Returns the paths of all loaded libraries by the names of their files.
 std::map<std::string, std::string> loaded_files() {
   std::map<std::string, std::string> files;
   dl_iterate_phdr(
@@ -49,12 +50,13 @@ std::map<std::string, std::string> loaded_files() {
   return files;
 }
 
-// "/usr/lib" is where "/lib" leads; packages name either.
+// Returns a path without "/usr": "/lib" is a link to "/usr/lib", and packages name either.
 std::string below_usr(const std::string& path) {
   return path.starts_with("/usr/") ? path.substr(4) : path;
 }
 
-// Packages, and their versions, of files by their names; empty where there is no dpkg.
+// Returns the packages of files, and their versions, by the files' names; empty if there is no
+// dpkg.
 std::map<std::string, std::pair<std::string, std::string>> packages_of(
     const std::map<std::string, std::string>& files) {
   std::string paths, names;
@@ -86,7 +88,7 @@ std::map<std::string, std::pair<std::string, std::string>> packages_of(
   return packages;
 }
 
-// "3.13.5" of libembree3.so.3.13.5, to which libembree3.so.3 leads.
+// Returns "3.13.5" for libembree3.so.3, a link to libembree3.so.3.13.5.
 std::string version_of_file(const std::string& path) {
   std::error_code ec;
   const std::string name = fs::canonical(path, ec).filename().string();
@@ -104,7 +106,8 @@ void describe(const std::string& begins, Component& component) {
     }
 }
 
-// As the build found it: "NAME|version|package", parted by commas (cmake/about.cmake).
+// Reads a library's entry as the build found it: "NAME|version|package", parted by commas
+// (cmake/about.cmake).
 Component compiled_in_component(const std::string& name) {
   Component component;
   describe(name, component);
@@ -120,7 +123,7 @@ Component compiled_in_component(const std::string& name) {
   return component;
 }
 
-// As a package URL has it.
+// Writes the text as it stands in a package URL.
 std::string encode(const std::string& text) {
   std::string out;
   for (unsigned char c : text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which version a program is, and what it is made of.
+// Tells a program's version and which libraries it is made of.
 #pragma once
 #include <initializer_list>
 #include <string>
@@ -7,34 +7,35 @@
 
 namespace wellspring::about {
 
-// What is compiled into a program, or loaded with it.
+// A component is compiled into a program, or loaded with it.
 struct Component {
   std::string name;     // "Embree"
   std::string file;     // "libembree3.so.3"; empty: compiled in
-  std::string version;  // as its package has it, else as its file or header has it; may be empty
-  std::string package;  // Debian's; empty: it is of none
+  std::string version;  // by its package, else by its file or header; may be empty
+  std::string package;  // Debian's package; empty: it comes from none
   std::string licence;  // SPDX expression; empty: unknown here, /usr/share/doc/PACKAGE/copyright
   std::string purpose;  // empty: another library needs it
 };
 
-// Of this process: its shared libraries as the loader lists them, and `compiled_in`, headers alone.
-// Asks dpkg-query where there is one.
+// Lists the components of this process: its shared libraries as the loader lists them, and
+// `compiled_in`, libraries of headers alone. Asks dpkg-query if there is one.
 std::vector<Component> list_components(std::initializer_list<const char*> compiled_in);
 
-// "NAME VERSION"; with `components` what it is made of, a line each, or as CycloneDX 1.5.
+// These write "NAME VERSION"; that with the components, one a line; or these as CycloneDX 1.5.
 std::string describe_version(const std::string& program);
 std::string describe_components(const std::string& program,
                                 const std::vector<Component>& components);
 std::string write_bill(const std::string& program, const std::vector<Component>& components);
 
-// Where an argument is --version: prints it, with --verbose also what the program is made of, with
-// --json that as CycloneDX; true, and the program is to end.
+// If an argument is --version, prints the version, with --verbose also the components, with --json
+// these as CycloneDX; true: the program is to end.
 bool answer_version(int argc, char** argv,
                     std::initializer_list<const char*> compiled_in = {"CLI11", "GLM",
                                                                       "nlohmann-json", "stb"});
 
-// Libraries that our programs use, by the beginning of their files' names: name, licence (SPDX) and
-// what for. One that is linked and not here fails tests/scripted/version.test.mjs.
+// Lists the libraries that our programs use, by the beginning of their files' names: name, licence
+// (SPDX) and purpose. A library that is linked and missing here fails
+// tests/scripted/version.test.mjs.
 
 struct KnownLibrary {
   const char *begins, *name, *licence, *purpose;
@@ -87,7 +88,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libwebp.", "WebP", "BSD-3-Clause", "WebP pictures"},
     {"libz.", "zlib", "Zlib", "compression"},
     {"libzstd.", "Zstandard", "BSD-3-Clause", "light that packages carry"},
-    // Headers that are compiled in.
+    // The rest are headers that are compiled in.
     {"Boost", "Boost (Asio, Beast)", "BSL-1.0", "HTTP and WebSocket"},
     {"CLI11", "CLI11", "BSD-3-Clause", "options"},
     {"GLM", "GLM", "MIT", "vectors"},

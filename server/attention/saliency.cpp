@@ -11,10 +11,10 @@
 namespace wellspring::attention {
 namespace {
 
-// Rows of which a thread takes no fewer: less than that is done before another thread wakes up.
+// Returns the least number of rows for a thread: fewer are done before another thread wakes up.
 int row_grain(int width) { return 1 + (1 << 14) / (width + 1); }
 
-// Six taps of even sides, five of odd ones. Symmetric pairs are added first: the mirrored taps give
+// Even sides have six taps, odd ones five. Symmetric pairs are added first: the mirrored taps give
 // the same bits.
 struct EvenTaps {
   static float eval(float a, float b, float c, float d, float e, float f) {
@@ -55,7 +55,7 @@ void reduce_row(const float* fine, int width, float* coarse) {
   }
 }
 
-// Two coarser pixels and the second one's share, for a pixel of a side of that many.
+// Holds two coarser pixels and the second one's share, for a pixel of a finer side.
 struct Between {
   int a, b;
   float share;
@@ -128,13 +128,13 @@ namespace {
 
 // --- Channels --------------------------------------------------------------------------------
 
-// Hue is seen where intensity exceeds this share of the picture's largest (Itti et al., section 2).
+// Hue is seen if intensity exceeds this share of the picture's largest (Itti et al., section 2).
 constexpr float dark_share = 0.1f;
 
 struct Codes {
   Lanes r, g, b;
 };
-// Eight pixels of three bytes; 28 bytes are read.
+// Loads eight pixels of three bytes; 28 bytes are read.
 Codes load_codes(const uint8_t* rgb) {
   using Bytes = uint8_t __attribute__((vector_size(16)));
   auto four = [](const uint8_t* from) {
@@ -146,7 +146,7 @@ Codes load_codes(const uint8_t* rgb) {
   return {to_float(pixel & 255u), to_float(pixel >> 8 & 255u), to_float(pixel >> 16 & 255u)};
 }
 
-// Channels of `count` pixels; `limit` is the end of what may be read.
+// Fills the channels of `count` pixels; `limit` is the end of the bytes that may be read.
 void fill_channels(const uint8_t* rgb, const uint8_t* limit, int count, float dark,
                    float* const (&to)[channel_count]) {
   auto least = [](Lanes a, Lanes b) { return lanes_min(a, b); };
@@ -169,7 +169,7 @@ void fill_channels(const uint8_t* rgb, const uint8_t* limit, int count, float da
   }
 }
 
-// The largest r + g + b.
+// Returns the largest r + g + b.
 int find_brightest(const Image8& picture) {
   std::atomic<int> brightest = 0;
   parallel_ranges(picture.height, 1 + (1 << 16) / (picture.width + 1), [&](int begin, int end) {
@@ -184,7 +184,7 @@ int find_brightest(const Image8& picture) {
   return brightest;
 }
 
-// Scale 1 of all channels. Scale 0 exists only a piece of a row at a time.
+// Computes scale 1 of all channels. Scale 0 exists only a piece of a row at a time.
 void begin_pyramids(const Image8& picture, SaliencyWork& work) {
   float dark = dark_share * float(find_brightest(picture));
   int width = picture.width;
@@ -213,7 +213,7 @@ void begin_pyramids(const Image8& picture, SaliencyWork& work) {
 
 // --- Maps ------------------------------------------------------------------------------------
 
-// What rounding leaves of the differences within an even picture.
+// Differences that rounding leaves within an even picture.
 constexpr float rounding = 1e-5f;
 
 void add_plane(const Plane& from, Plane& to) {
@@ -224,8 +224,8 @@ void add_plane(const Plane& from, Plane& to) {
 // (as in the authors' own toolkit).
 constexpr float least_peak = 0.1f;
 
-// Whether the value at x is a local maximum among its eight neighbours. Of equal neighbours the
-// first in reading order is.
+// Returns whether the value at x is a local maximum among its eight neighbours. If neighbours are
+// equal, the first in reading order is one.
 bool is_peak(const float* above, const float* row, const float* below, int x, int width) {
   float value = row[x];
   bool left = x > 0, right = x + 1 < width;
@@ -238,7 +238,7 @@ bool is_peak(const float* above, const float* row, const float* below, int x, in
          !(below[x] > value || (left && below[x - 1] > value) || (right && below[x + 1] > value));
 }
 
-// The mean of a map's local maxima but the largest, 0 where there is none.
+// Returns the mean of a map's local maxima except the largest, 0 if there is none.
 float mean_of_lesser_peaks(const Plane& map, float largest) {
   double sum = 0;
   int count = 0;
@@ -262,15 +262,16 @@ void scale_plane(float by, Plane& map) {
   for (float& value : map.value) value *= by;
 }
 
-// Times (M - m)^2, where M is the largest value and m the mean of the other local maxima.
+// Multiplies the map by (M - m)^2, where M is the largest value and m the mean of the other local
+// maxima.
 void weigh_by_peaks(Plane& map) {
   float largest = largest_of(map), apart = largest - mean_of_lesser_peaks(map, largest);
   scale_plane(apart * apart, map);
 }
 
-// Centre minus surround. Of colours this is the double-opponent cell: R-G in the centre against G-R
-// in the surround answers (R-G)(c) + (G-R)(s), which is 0 where the colour does not change.
-// Leaves the map, promoted, at scale 4 in feature.sum.
+// Subtracts the surround from the centre. For colours this is the double-opponent cell: R-G in the
+// centre against G-R in the surround answers (R-G)(c) + (G-R)(s), which is 0 if the colour does not
+// change. Leaves the map, promoted, at scale 4 in feature.sum.
 void eval_feature(const std::array<Plane, scale_count>& pyramid, int centre, int surround,
                   SaliencyWork::Feature& feature) {
   const Plane* far = &pyramid[size_t(surround)];

@@ -24,7 +24,8 @@ void clear(Band& band) {
   std::fill(band.slot.begin(), band.slot.end(), -1);
 }
 
-// The slot of the object, or the free one that waits for it. Their number is a power of two.
+// Returns the slot of the object, or the free one that waits for it. The number of slots is a power
+// of two.
 size_t find_slot(const Band& band, uint32_t object) {
   size_t mask = band.slot.size() - 1, at = size_t(mix64(object)) & mask;
   while (band.slot[at] >= 0 && band.sums[size_t(band.slot[at])].object != object)
@@ -32,7 +33,7 @@ size_t find_slot(const Band& band, uint32_t object) {
   return at;
 }
 
-// The object's place in band.sums.
+// Returns the object's place in band.sums, which is added if there is none.
 size_t find_sums(Band& band, uint32_t object, size_t hints) {
   size_t at = find_slot(band, object);
   if (band.slot[at] >= 0) return size_t(band.slot[at]);
@@ -60,7 +61,7 @@ float finite_weight(const AttentionHint& hint) {
   return good ? std::clamp(hint.weight, 0.0f, 1.0f) : 0;
 }
 
-// How near a hint is to pixels [begin, end) of row y: 1 inside of them, 0 at its radius.
+// Returns how near a hint is to pixels [begin, end) of row y: 1 inside of them, 0 at its radius.
 float eval_nearness(const AttentionHint& hint, int begin, int end, int y) {
   vec2 nearest =
       glm::clamp(hint.place, vec2(float(begin), float(y)), vec2(float(end), float(y + 1)));
@@ -69,7 +70,7 @@ float eval_nearness(const AttentionHint& hint, int begin, int end, int y) {
   return hint.radius > distance ? 1 - distance / hint.radius : 0;
 }
 
-// For each pixel of a row the saliency of those to its left together.
+// Sums, for each pixel of a row, the saliency of the pixels to its left.
 void sum_saliency(const SaliencyMap& saliency, int y, int width, const TaskWork& work,
                   std::vector<uint32_t>& sums) {
   sums.resize(size_t(width) + 1);
@@ -189,7 +190,7 @@ double largest_of(std::span<const float> attention) {
   return largest;
 }
 
-// Over the largest, least_attention to 1; 1 where nobody has any.
+// Returns attention over the largest, least_attention to 1; 1 if no object has any.
 double relative(float attention, double largest) {
   return largest > 0 ? std::max(usable(attention) / largest, double(least_attention)) : 1;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which objects of a view matter to what its visitor is doing: people bring what interests them to
-// the middle of the picture and close to the eye (Haber et al. 2001, section 3), and point at it.
+// Estimates which objects of a view matter to what its visitor is doing: people bring what
+// interests them to the middle of the picture and close to the eye (Haber et al. 2001, section 3),
+// and point at it.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -12,12 +13,12 @@
 
 namespace wellspring::attention {
 
-// Somebody points there: a visitor's pointer or finger, where a head at a kiosk is turned to, what
-// the storyteller shows. Pixels count from the picture's upper left corner: the first pixel's
-// middle is (0.5, 0.5).
+// A place that somebody points at: a visitor with a pointer or finger, a turned head at a kiosk, or
+// the storyteller. Pixels count from the picture's upper left corner: the first pixel's middle is
+// (0.5, 0.5).
 struct AttentionHint {
   vec2 place{0};
-  float radius = 0;  // pixels: beyond it the hint says nothing; 0: only the pixel at the place
+  float radius = 0;  // pixels; beyond it the hint says nothing; 0: only the pixel at the place
   float weight = 1;  // 0 (nothing) to 1 (surely meant)
   bool operator==(const AttentionHint&) const = default;
 };
@@ -28,20 +29,21 @@ struct SeenObject {
   int pixels = 0;
   ivec2 low{0}, high{0};  // bounding box: its first pixel and its last
   float coverage = 0;     // share of the picture's pixels
-  float distance = 0;     // of the box's middle from the picture's, over half the diagonal: 0 to 1
-  float importance = 0;   // what the task tells, 0 to 1
-  // Mean of the saliency over the object's own pixels. Not the largest: a pixel of the map is 16
-  // wide, so a wall would be as salient as the brightest thing before it.
+  // Distance of the box's middle from the picture's, over half the diagonal: 0 to 1.
+  float distance = 0;
+  float importance = 0;  // importance for the task, 0 to 1
+  // Mean of the saliency over the object's own pixels. The largest would not do: a pixel of the map
+  // is 16 wide, so a wall would be as salient as the brightest thing before it.
   float saliency = 0;
 };
 
-// Mean of nearness to the middle, 1 - distance, and of the root of the coverage: how wide and high
-// the object is beside the picture. Hints close part of the gap to 1, each for itself:
-// 1 - importance is multiplied by 1 - weight * nearness, where nearness falls from 1 at an object's
-// own pixels to 0 at the hint's radius. `hint_gap` is the product of these.
+// Returns the mean of nearness to the middle, 1 - distance, and of the root of the coverage: how
+// wide and high the object is beside the picture. Hints close part of the gap to 1, each for
+// itself: 1 - importance is multiplied by 1 - weight * nearness, where nearness falls from 1 at an
+// object's own pixels to 0 at the hint's radius. `hint_gap` is the product of these.
 float eval_importance(float distance, float coverage, float hint_gap = 1);
 
-// What the computation keeps from picture to picture.
+// Holds memory that is kept from picture to picture.
 struct TaskWork {
   struct Sums {
     uint32_t object = 0;
@@ -49,7 +51,7 @@ struct TaskWork {
     ivec2 low{0}, high{0};
     uint64_t saliency = 0;  // fixed point, so that the order of addition does not count
   };
-  // Objects of some rows, by a hash of their number.
+  // Holds objects of some rows, by a hash of their number.
   struct Band {
     std::vector<int> slot;  // index into sums, -1: free
     std::vector<Sums> sums;
@@ -58,8 +60,8 @@ struct TaskWork {
   };
   std::vector<Band> bands;
   Band all;
-  std::vector<int> column;      // of a pixel in the saliency map
-  std::vector<float> fraction;  // of the way to the next column
+  std::vector<int> column;      // column of each pixel in the saliency map
+  std::vector<float> fraction;  // share of the way to the next column
 };
 
 // Overwrites `seen` with the objects of the view, sorted by number. `object` holds width * height
@@ -70,55 +72,57 @@ void eval_objects(std::span<const uint32_t> object, int width, int height,
                   const SaliencyMap& saliency, std::span<const AttentionHint> hints, TaskWork& work,
                   std::vector<SeenObject>& seen);
 
-// How much each object of a view is attended to, and in which order objects get what there is not
-// enough of, such as corrections of their light (Haber et al. 2001, section 3).
+// Computes how much each object of a view is attended to, and in which order objects get what there
+// is not enough of, such as corrections of their light (Haber et al. 2001, section 3).
 
-// (1 - task_weight) * saliency + task_weight * importance of every object. The weight is the
-// visitor's slider: 0 listens to the picture alone, 1 to the task alone.
+// Sets the attention of every object to (1 - task_weight) * saliency + task_weight * importance.
+// The weight is the visitor's slider: with 0 the picture alone counts, with 1 the task alone.
 void eval_attention(std::span<const SeenObject> seen, float task_weight,
                     std::vector<float>& attention);
 
-// Who wins loses a tenth of its attention (the paper's 10 %).
+// A winner keeps this share of its attention: it loses the paper's 10 %.
 inline constexpr float attention_kept = 0.9f;
 // Attention counts at least this share of the largest: 18 losses lead from that down to it. So
-// everybody wins once before anybody wins 20 times, and nobody is forgotten.
+// every object wins once before any wins 20 times, and none is forgotten.
 inline constexpr float least_attention = 0.15f;
 
-// The order of corrections: the object of the most attention gets a share, loses a tenth of its
-// attention, and the next is chosen. Attention that is not finite or negative counts as 0; of equal
-// ones the first wins. After a while all take turns, since all have lost what set them apart.
+// Finds the order of corrections: the object of the most attention gets a share, loses a tenth of
+// its attention, and the next is chosen. Attention that is not finite or negative counts as 0; if
+// objects are equal the first one wins. After a while all take turns, since all have lost what set
+// them apart.
 class AttentionOrder {
  public:
-  // Forgets what was before.
+  // Begins anew with this attention.
   void start(std::span<const float> attention);
-  // The index of the next winner; -1 where there are no objects. Takes O(log objects).
+  // Returns the index of the next winner; -1 if there are no objects. Takes O(log objects).
   int next();
 
  private:
-  // Losses that lead from the largest attention to what is left, and the index. Counting losses
-  // instead of multiplying never becomes 0.
+  // Number of losses that lead from the largest attention to an object's present one, and its
+  // index. Counting losses instead of multiplying never becomes 0.
   std::vector<std::pair<double, int>> heap_;
 };
 
-// The next winners into `order`, which is overwritten.
+// Writes the next winners into `order`, which is overwritten.
 void plan_order(std::span<const float> attention, int shares, AttentionOrder& work,
                 std::vector<int>& order);
 
 struct SampleShare {
-  float share = 0;   // of all samples for objects; the shares' sum is 1
+  float share = 0;   // share of all samples for objects; the shares' sum is 1
   float factor = 0;  // the object's samples a pixel over those of all objects on average
 };
-// Samples a pixel in proportion to attention. No objects, or none with pixels: no shares.
+// Gives objects samples a pixel in proportion to attention. Without objects, or if none has pixels,
+// the shares are 0.
 void eval_sample_shares(std::span<const SeenObject> seen, std::span<const float> attention,
                         std::vector<SampleShare>& shares);
 
-// The same, told sharper, as a factor of how urgently an object's pixels want samples. Attention
-// tells whom the eye prefers, but what is looked at is one object at a time: shares are those of
-// attention to this power.
+// Weights are sharper than shares: they say how urgently an object's pixels want samples. Attention
+// says which objects the eye prefers, but it looks at one object at a time: weights follow the
+// shares of attention to this power.
 inline constexpr float attention_contrast = 3;
-// Pixels that are sampled often want samples less: n times as many take n^2 times the urgency.
-// Overwrites `weights`: of each object by its number the square of SampleShare::factor. 1: not
-// seen.
+// Overwrites `weights`: for each object, by its number, the square of SampleShare::factor; 1 if it
+// is not seen. Pixels that are sampled often want samples less: n times as many take n^2 times the
+// urgency.
 void eval_weights(std::span<const SeenObject> seen, std::span<const float> attention,
                   std::vector<float>& weights);
 

@@ -12,7 +12,7 @@ namespace wellspring {
 namespace {
 
 constexpr int bar_width = 30;
-constexpr double no_guess = 2;  // seconds
+constexpr double no_guess = 2;  // seconds in which the time left is not guessed
 constexpr double least_pause = 0.1;
 
 }  // namespace

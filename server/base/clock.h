@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clocks: of the day, since the start, and of processors. Ticks take the time as an argument, so
-// that tests can set it.
+// Reads clocks: the time of day, the time since the start, and processor time. Ticks take the time
+// as an argument, so that tests can set it.
 #pragma once
 #include <algorithm>
 #include <chrono>
@@ -32,23 +32,23 @@ inline double seconds_of(clockid_t clock) {
   return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
-// Returns the seconds of a processor that the calling thread has had so far.
+// Returns the processor seconds that the calling thread has used so far.
 inline double thread_seconds_now() { return seconds_of(CLOCK_THREAD_CPUTIME_ID); }
 
-// Returns the core-seconds that all threads of this process have had so far. It tells what a loop
-// over cores costs: each of its threads has a clock of its own, and oneTBB says which take part.
-// What the process does beside is counted, too; what other programs do is not, so that on a busy
-// machine the cost stays what it was.
+// Returns the core-seconds that all threads of this process have used so far. The difference over a
+// loop over cores is its cost: each of its threads has a clock of its own, and oneTBB decides which
+// take part. Other work of the process meanwhile is counted, too; other programs are not, so that
+// on a busy machine the cost stays the same.
 inline double process_seconds_now() { return seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
 
-// A bound on how much a peer may say: `rate` a second on average, in bursts of up to `burst`.
+// Bounds how much a peer may say: `rate` a second on average, in bursts of up to `burst`.
 
 struct RateBound {
   double rate = 1, burst = 1;
-  double spent = 0;      // of the burst
+  double spent = 0;      // amount, part of the burst
   double last_time = 0;  // seconds, any clock that does not run backwards
 
-  // False when this is too much; it is then not counted.
+  // Takes an amount. False: it is too much, and is not counted.
   bool take(double amount, double now) {
     spent = std::max(0.0, spent - rate * std::max(0.0, now - last_time));
     last_time = now;
@@ -56,37 +56,38 @@ struct RateBound {
     spent += amount;
     return true;
   }
-  // Of what was taken; a negative amount is taken besides, whatever there is.
+  // Gives back an amount that was taken; a negative amount is taken in any case, whatever is left.
   void give_back(double amount) { spent = std::max(0.0, spent - amount); }
-  // Seconds after the last take() until one of `amount` is not too much.
+  // Returns the seconds after the last take() until `amount` is not too much.
   double wait_for(double amount) const { return std::max(0.0, (spent + amount - burst) / rate); }
 };
 
-// How far long work of the command line has come, on one line of a terminal: each takes the place
-// of the last. Where stderr is no terminal nothing is written, unless somebody wants lines there.
+// Shows how far long work of the command line has come, on one line of a terminal: each line takes
+// the place of the last. If stderr is no terminal, nothing is written, unless the caller wants
+// lines there.
 
-// "render [##########....................] 33 %, 0:40 left". `done`: 0 to 1; `seconds`: that this
-// took. What is left is not guessed in the first seconds. `more` follows a comma.
+// Returns "render [##########....................] 33 %, 0:40 left". `done`: 0 to 1; `seconds`:
+// time that this took. The time left is not guessed in the first seconds. `more` follows a comma.
 std::string progress_line(std::string_view what, double done, double seconds,
                           std::string_view more = {});
 
 class Progress {
  public:
-  // `seconds_elsewhere`: from one line to the next where stderr is no terminal; 0: none are
+  // `seconds_elsewhere`: time from one line to the next if stderr is no terminal; 0: none are
   // written.
   explicit Progress(std::string what, double seconds_elsewhere = 0);
   ~Progress() { clear(); }
-  // Any thread, as often as it likes: a line is written at most ten times a second.
+  // Writes a line, at most ten times a second. Any thread, as often as it likes.
   void tell(double done, std::string_view more = {});
-  void clear();  // before anything else is written
+  void clear();  // removes the line, before anything else is written
 
  private:
   const std::string what_;
   const bool terminal_;
   const double pause_, began_;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the next fields
   double told_ = -1e9;
-  bool stands_ = false;  // a line, on the terminal
+  bool stands_ = false;  // a line stands on the terminal
 };
 
 }  // namespace wellspring

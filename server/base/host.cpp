@@ -52,7 +52,8 @@ std::string take_variable(const char* name) {
   return text;
 }
 
-// A path, or a name of the abstract namespace, which begins with '@'. -1 where it cannot be had.
+// Connects to a path, or to a name of the abstract namespace, which begins with '@'. -1: no
+// connection.
 int connect_to(const std::string& name) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each layer has a namespace of its own, which sees the names of the layers that it may include
-// (tests/structure/includes.test.mjs); what is of `base` lies in wellspring itself. A name that two
-// layers define is written with its layer by whoever sees both.
+// Gives each layer a namespace of its own, which sees the names of the layers that it may include
+// (tests/structure/includes.test.mjs); names of `base` lie in wellspring itself. A file that sees
+// the same name in two layers writes it with its layer.
 #pragma once
 
 namespace wellspring {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every load_ function throws when its input is wrong: which file, where in it, and what.
+// Defines the error that every load_ function throws for wrong input: which file, which place in
+// it, and the reason.
 #pragma once
 #include <stdexcept>
 #include <string>

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* pattern = "%Y-%m-%dT%H:%M:%S.%e %n %^%l%$ %v";
 
-// A file that can be opened anew while others write.
+// Writes to a file that can be opened anew while other threads write.
 class FileSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit FileSink(std::string file) : file_(std::move(file)), fd_(open_file()) {
@@ -55,7 +55,7 @@ class FileSink final : public spdlog::sinks::base_sink<std::mutex> {
   size_t lost_ = 0;
 };
 
-// How urgent a line is for the journal: sd-daemon(3).
+// Writes how urgent a line is for the journal: sd-daemon(3).
 class Urgency final : public spdlog::custom_flag_formatter {
   void format(const spdlog::details::log_msg& message, const std::tm&,
               spdlog::memory_buf_t& to) override {
@@ -70,7 +70,7 @@ class Urgency final : public spdlog::custom_flag_formatter {
   }
 };
 
-// systemd says which stream is the journal's by device and inode.
+// Returns whether the descriptor is the journal's: systemd names that stream by device and inode.
 bool is_journal(int fd) {
   const char* named = std::getenv("JOURNAL_STREAM");
   struct stat is {};
@@ -90,7 +90,7 @@ void write(Level level, fmt::string_view format, fmt::format_args arguments) {
 void start(const char* program) {
   auto logger = std::make_shared<spdlog::logger>(
       program, std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-  if (is_journal(STDERR_FILENO)) {  // which adds time and name
+  if (is_journal(STDERR_FILENO)) {  // the journal adds time and name
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
     formatter->add_flag<Urgency>('*').set_pattern("%*%v");
     logger->set_formatter(std::move(formatter));

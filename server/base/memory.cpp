@@ -13,7 +13,7 @@ double memory_bound(const std::string& membership, const std::string& root) {
   double least = 0;
   std::istringstream lines(membership);
   for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("0::/")) continue;  // another line is of cgroup v1
+    if (!line.starts_with("0::/")) continue;  // other lines are of cgroup v1
     for (std::filesystem::path group = line.substr(3);; group = group.parent_path()) {
       std::ifstream file(root + group.string() + "/memory.max");
       double bytes = 0;  // "max" is no number

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory arrays hold, whether they use it or not.
+// Counts the memory that arrays hold, whether they use it or not.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -25,25 +25,26 @@ size_t bytes_of(const Vectors&... vectors) {
 
 namespace wellspring {
 
-// How much memory this process may use, and giving back what it does not.
+// Finds how much memory this process may use, and gives unused memory back.
 
-// Bytes: of the machine, or less where a control group bounds it (cgroup v2).
+// Returns the machine's memory in bytes, or less if a control group bounds it (cgroup v2).
 double usable_memory();
-// The least bound of the groups that `membership` (as /proc/self/cgroup) names below `root` (as
-// /sys/fs/cgroup), from the process's own up to the root; 0: none bounds it.
+// Returns the least bound of the groups that `membership` (as /proc/self/cgroup) names below `root`
+// (as /sys/fs/cgroup), from the process's own up to the root; 0: none bounds it.
 double memory_bound(const std::string& membership, const std::string& root);
 
-// Gives freed memory back to the system. glibc keeps it for the next who asks, in an arena for each
-// of many threads: after a crowd has left that is hundreds of MiB. Takes milliseconds, in which
-// other threads wait for memory; does nothing where there is no glibc.
+// Gives freed memory back to the system. glibc keeps it for later requests, in an arena for each of
+// many threads: after many visitors have left, these are hundreds of MiB. Takes milliseconds, in
+// which other threads wait for memory; does nothing if there is no glibc.
 inline void return_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);
 #endif
 }
 
-// A std::vector whose new items hold anything: for large arrays that many threads fill at once.
-// Memory is first touched by who fills it, and nobody waits while one thread writes zeros.
+// Defines a std::vector whose new items hold anything: for large arrays that many threads fill at
+// once. Memory is first touched by the thread that fills it, and nobody waits while one thread
+// writes zeros.
 
 template <class T>
 struct RawAllocator : std::allocator<T> {
@@ -55,7 +56,8 @@ struct RawAllocator : std::allocator<T> {
   struct rebind {
     using other = RawAllocator<U>;
   };
-  // What resize() calls. T comes into being when it is assigned to, as trivially copied types do.
+  // Does nothing: resize() calls it. T comes into being when it is assigned to, as trivially copied
+  // types do.
   template <class U>
   void construct(U*) noexcept {}
   template <class U, class... Arguments>
@@ -64,7 +66,7 @@ struct RawAllocator : std::allocator<T> {
   }
 };
 
-// Read no item before it is written.
+// A vector of such items; read no item before it is written.
 template <class T>
 using RawVector = std::vector<T, RawAllocator<T>>;
 

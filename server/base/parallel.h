@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over cores (oneTBB). Bodies must not throw and must not depend on the order of their calls.
-// Between pieces, threads work on what is of high priority (base/worker.h).
+// Runs loops over cores (oneTBB). Bodies must not throw and must not depend on the order of their
+// calls. Between pieces, threads work on loops of high priority (base/worker.h).
 #pragma once
 #include <atomic>
 #include <oneapi/tbb/blocked_range.h>
@@ -15,8 +15,8 @@
 
 namespace wellspring {
 
-// oneTBB is not built with the thread sanitizer, which therefore is told that pieces come after
-// what was before the loop, and what is after it comes after the pieces.
+// Orders a loop for the thread sanitizer, with which oneTBB is not built: pieces come after the
+// code before the loop, and the code after the loop comes after the pieces.
 class LoopOrder {
  public:
 #ifdef __SANITIZE_THREAD__
@@ -28,13 +28,14 @@ class LoopOrder {
 #endif
 };
 
-extern std::atomic<bool> loop_has_priority;  // perhaps: who looks once too often finds nothing
+// May stay true too long: then a thread looks for a loop and finds none.
+extern std::atomic<bool> loop_has_priority;
 void help_priority_loop();
 inline void help_priority() {
   if (loop_has_priority.load(std::memory_order_relaxed)) help_priority_loop();
 }
 
-// body(begin, end) over disjoint pieces of [0, count), each of at least `grain` items where
+// Calls body(begin, end) over disjoint pieces of [0, count), each of at least `grain` items if
 // possible.
 template <class Body>
 void parallel_ranges(int count, int grain, const Body& body) {
@@ -51,7 +52,7 @@ void parallel_ranges(int count, int grain, const Body& body) {
   order.passed();
 }
 
-// body(i) for every i in [0, count), each a piece of its own: for bodies of a tenth of a
+// Calls body(i) for every i in [0, count), each as a piece of its own: for bodies of a tenth of a
 // millisecond and more. Pieces of several would leave cores without work at the end.
 template <class Body>
 void parallel_each(int count, const Body& body) {
@@ -72,7 +73,7 @@ void parallel_each(int count, const Body& body) {
   order.passed();
 }
 
-// body(i) for every i in [0, count).
+// Calls body(i) for every i in [0, count).
 template <class Body>
 void parallel_for(int count, const Body& body) {
   parallel_ranges(count, 1, [&](int begin, int end) {

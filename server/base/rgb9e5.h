@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of light in 32 bits: 9 bits a channel and a common exponent of 5.
+// Packs colours of light into 32 bits: 9 bits a channel and a common exponent of 5.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -10,17 +10,17 @@
 
 namespace wellspring {
 
-// The largest value the shared exponent format holds.
+// The largest value that the format holds.
 inline constexpr float rgb9e5_max = 65408.0f;
 
-// Radiance, 9 bits a channel and a common exponent of 5. NaN and negative become 0. `random`
-// decides the rounding: its three bytes are the dither of the channels; 0x808080 rounds to nearest.
+// Packs radiance. NaN and negative values become 0. `random` decides the rounding: its three bytes
+// are the dither of the channels; 0x808080 rounds to nearest.
 inline uint32_t pack_rgb9e5(vec3 c, uint32_t random = 0x808080u) {
   float r = c.x > 0 ? std::min(c.x, rgb9e5_max) : 0.0f;
   float g = c.y > 0 ? std::min(c.y, rgb9e5_max) : 0.0f;
   float b = c.z > 0 ? std::min(c.z, rgb9e5_max) : 0.0f;
   float largest = std::max(r, std::max(g, b));
-  // Exponent such that largest * 2^-(exponent-15-9) stays below 511 after rounding up.
+  // The exponent is chosen so that largest * 2^-(exponent-15-9) stays below 511 after rounding up.
   int exponent =
       std::max(0, int(std::bit_cast<uint32_t>(largest * (512.0f / 511.0f)) >> 23) - 127 + 16);
   exponent = std::min(exponent, 31);
@@ -37,7 +37,7 @@ inline vec3 unpack_rgb9e5(uint32_t p) {
   return vec3(float(p & 511), float((p >> 9) & 511), float((p >> 18) & 511)) * scale;
 }
 
-// unpack_rgb9e5() of base/rgb9e5.h, of eight at a time.
+// Unpacks as unpack_rgb9e5() of base/rgb9e5.h does, eight colours at a time.
 
 inline void unpack_rgb9e5(const LaneBits& p, Lanes& r, Lanes& g, Lanes& b) {
   Lanes unit = lanes_as<Lanes>(((p >> 27) + (127 - 24)) << 23);

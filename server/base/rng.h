@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers that can be replayed: a sample's stream is a function of (seed, x, y, index)
+// Makes random numbers that can be replayed: a sample's stream is a function of (seed, x, y, index)
 // alone, never of the thread that drew it. Generator: PCG-XSH-RR 64/32, O'Neill 2014, sections 6.3
 // and 7.1.
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace wellspring {
 
-// A good 64-bit mixer (SplitMix64's finaliser; Steele, Lea, Flood 2014).
+// Mixes 64 bits well (SplitMix64's finaliser; Steele, Lea, Flood 2014).
 inline uint64_t mix64(uint64_t z) {
   z += 0x9e3779b97f4a7c15ull;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -20,8 +20,8 @@ inline uint64_t mix64(uint64_t z) {
   return z ^ (z >> 31);
 }
 
-// The address of one pixel sample as a seed. Neighbouring seeds are hashed apart first, so that
-// none draws what another drew a row further.
+// Returns the address of one pixel sample as a seed. Neighbouring seeds are hashed apart first, so
+// that none draws the numbers of another pixel a row further.
 inline uint64_t sample_seed(uint64_t seed, uint32_t x, uint32_t y, uint32_t index) {
   return mix64(mix64(mix64(seed) ^ (uint64_t(x) << 32 | y)) ^ index);
 }
@@ -39,22 +39,22 @@ struct Rng {
     uint32_t shifted = uint32_t(((old >> 18) ^ old) >> 27), rotation = uint32_t(old >> 59);
     return (shifted >> rotation) | (shifted << ((32 - rotation) & 31));
   }
-  // Uniform in [0, 1): 24 bits, never 1.
+  // Returns a number, uniform in [0, 1): 24 bits, never 1.
   float uniform() { return float(next() >> 8) * 0x1p-24f; }
 };
 
-// Sequences of which any number in a row is spread evenly.
+// Makes sequences of which any part, of any length, is spread evenly.
 
-// The i-th place within a pixel, 0 to 1: the additive recurrence of the plastic number's powers
-// (Roberts 2018). They repeat after 1024.
+// Returns the i-th place within a pixel, 0 to 1: the additive recurrence of the plastic number's
+// powers (Roberts 2018). Places repeat after 1024.
 inline vec2 spread_in_pixel(int i) {
   uint32_t n = uint32_t(i % 1024);
   auto part = [n](uint32_t step) { return float((0x80000000u + step * n) >> 8) * 0x1p-24f; };
   return {part(3242174889u), part(2447445414u)};
 }
 
-// Steps of about the golden ratio, round and round, reach all of `count` places once: neighbours in
-// time lie far apart.
+// Returns a step of about the golden ratio that, taken round and round, reaches each of `count`
+// places once: neighbours in time lie far apart.
 inline uint64_t golden_step(uint64_t count) {
   uint64_t step = std::max<uint64_t>(uint64_t(0.6180339887 * double(count)), 1);
   while (std::gcd(step, count) != 1) step++;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight numbers side by side, as vector units compute them, written once for every processor:
+// Computes eight numbers side by side, as vector units do, written once for every processor:
 // arithmetic and comparisons are the compiler's (GCC and Clang vector extensions). Comparisons give
 // lanes of all bits or none; `mask ? a : b` chooses lane by lane.
 #pragma once
@@ -28,7 +28,7 @@ inline Lanes all_lanes(float x) { return Lanes{x, x, x, x, x, x, x, x}; }
 inline LaneBits all_lane_bits(uint32_t x) { return LaneBits{x, x, x, x, x, x, x, x}; }
 inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes lanes_min(Lanes a, Lanes b) { return a < b ? a : b; }
-// The same bits in other lanes of the same size.
+// Returns the same bits as other lanes of the same size.
 template <class To, class From>
 inline To lanes_as(const From& v) {
   static_assert(sizeof(To) == sizeof(From));
@@ -36,7 +36,7 @@ inline To lanes_as(const From& v) {
 }
 inline Lanes lanes_abs(Lanes a) { return lanes_as<Lanes>(lanes_as<LaneBits>(a) & 0x7fffffffu); }
 inline Lanes positive_lanes(Lanes a) { return lanes_max(a, Lanes{}); }
-// 0 where the mask has no bits.
+// Returns `a`, 0 in lanes in which the mask has no bits.
 inline Lanes keep_lanes(LaneMask mask, Lanes a) {
   return lanes_as<Lanes>(lanes_as<LaneMask>(a) & mask);
 }
@@ -48,7 +48,7 @@ inline Lanes lanes_sqrt(Lanes a) {
   return a;
 #endif
 }
-// Neighbours in memory, aligned or not.
+// Loads neighbours in memory, aligned or not.
 template <class V = Lanes, class T>
 inline V load_lanes(const T* from) {
   V v;
@@ -59,13 +59,13 @@ template <class T, class V>
 inline void store_lanes(T* to, const V& v) {
   std::memcpy(to, &v, sizeof v);
 }
-// Two halves side by side.
+// Puts two halves side by side.
 inline LaneBits join_halves(HalfLaneBits low, HalfLaneBits high) {
   return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 inline HalfLaneBits low_half(LaneBits a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
 inline HalfLaneBits high_half(LaneBits a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
-// Eight rows become eight columns.
+// Turns eight rows into eight columns.
 inline void transpose_lanes(Lanes (&row)[lane_count]) {
   Lanes pair[lane_count], four[lane_count];
   for (int i = 0; i < lane_count; i += 2) {
@@ -83,7 +83,7 @@ inline void transpose_lanes(Lanes (&row)[lane_count]) {
     row[i + 4] = __builtin_shufflevector(four[i], four[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
-// Eight records of four words each, `record(0)` to `record(7)`, become four times eight lanes.
+// Turns eight records of four words each, `record(0)` to `record(7)`, into four times eight lanes.
 template <class Record>
 inline void transpose_records(const Record& record, LaneBits& a, LaneBits& b, LaneBits& c,
                               LaneBits& d) {
@@ -102,11 +102,11 @@ inline void transpose_records(const Record& record, LaneBits& a, LaneBits& b, La
   d = __builtin_shufflevector(cd01, cd23, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 inline Lanes to_float(LaneBits a) { return __builtin_convertvector(lanes_as<LaneMask>(a), Lanes); }
-// Cut off towards 0.
+// Cuts off towards 0.
 inline LaneBits to_whole(Lanes a) {
   return lanes_as<LaneBits>(__builtin_convertvector(a, LaneMask));
 }
-// To the nearest whole number, as std::lrint does.
+// Rounds to the nearest whole number, as std::lrint does.
 inline LaneMask round_lanes(Lanes a) {
 #ifdef __AVX__
   return LaneMask(_mm256_cvtps_epi32(__m256(a)));
@@ -116,7 +116,8 @@ inline LaneMask round_lanes(Lanes a) {
   return whole;
 #endif
 }
-// Bit i: lane i is negative, so set in a comparison's answer.
+// Returns the lanes that are negative, lane i as bit i; lanes of a comparison that holds are
+// negative.
 inline unsigned negative_lanes(LaneMask a) {
 #ifdef __AVX__
   return unsigned(_mm256_movemask_ps(__m256(a)));
@@ -126,7 +127,7 @@ inline unsigned negative_lanes(LaneMask a) {
   return bits;
 #endif
 }
-// Whether any bit is set.
+// Returns whether any bit is set.
 template <class V>
 inline bool any_lane(const V& v) {
   static_assert(sizeof v == 32);
@@ -139,7 +140,7 @@ inline bool any_lane(const V& v) {
   return sum != 0;
 #endif
 }
-// The comparison's answer that has these bits.
+// Returns the comparison's answer that has these bits.
 inline LaneMask lanes_of_bits(unsigned bits) {
   constexpr LaneMask bit{1, 2, 4, 8, 16, 32, 64, 128};
   return ((LaneMask{} + int(bits)) & bit) != 0;
@@ -148,7 +149,7 @@ inline float lanes_sum(Lanes a) {
   return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
 }
 
-// Eight vectors of three side by side.
+// Computes eight vectors of three side by side.
 
 struct Lanes3 {
   Lanes x{}, y{}, z{};

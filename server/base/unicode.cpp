@@ -24,7 +24,7 @@ std::string nfc(std::string_view text) {
 
 namespace {
 
-constexpr int edit = 4, other_case = 1;  // what they cost
+constexpr int edit = 4, other_case = 1;  // costs of edits
 constexpr size_t longest = 100;          // names of more letters are not compared
 
 int cost_of(char a, char b) {
@@ -33,7 +33,8 @@ int cost_of(char a, char b) {
   return small(a) == small(b) ? other_case : edit;
 }
 
-// Damerau 1964, each letter swapped at most once ("optimal string alignment").
+// Returns the distance of Damerau 1964, each letter swapped at most once ("optimal string
+// alignment").
 int distance(std::string_view a, std::string_view b) {
   std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (size_t j = 0; j <= b.size(); j++) last[j] = int(j) * edit;

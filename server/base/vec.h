@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors, matrices and quaternions for everybody: GLM's, under short names.
-// Column vectors, right-handed, +Y up, cameras look down -Z. Metres and radians unless a name says
-// otherwise.
+// Gives GLM's vectors, matrices and quaternions short names. Column vectors, right-handed, +Y up,
+// cameras look down -Z. Metres and radians unless a name says otherwise.
 #pragma once
 #ifndef GLM_FORCE_XYZW_ONLY
 #define GLM_FORCE_XYZW_ONLY  // only .x .y .z .w: smaller types, clearer debugger views
@@ -34,7 +33,7 @@ using glm::vec4;
 inline constexpr float pi = 3.14159265358979323846f;
 
 inline float max_component(vec3 v) { return glm::max(v.x, glm::max(v.y, v.z)); }
-// Rec. 709 relative luminance of a linear colour.
+// Returns the Rec. 709 relative luminance of a linear colour.
 inline float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 inline bool is_finite(vec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

@@ -72,7 +72,7 @@ void Worker::live() {
 
 namespace {
 std::atomic<PriorityLoop*> high_priority{nullptr};
-std::atomic<int> helpers{0};  // threads that have looked at it
+std::atomic<int> helpers{0};  // threads that look at or work on the loop
 }  // namespace
 
 std::atomic<bool> loop_has_priority{false};
@@ -93,7 +93,7 @@ void run_with_priority(PriorityLoop& loop) {
   PriorityLoop* none = nullptr;
   bool first = pieces > 1 && high_priority.compare_exchange_strong(none, &loop);
   if (first) loop_has_priority.store(true, std::memory_order_relaxed);
-  // Threads without work come this way.
+  // Threads without work take part through an ordinary loop.
   int threads = std::min(oneapi::tbb::this_task_arena::max_concurrency(), pieces);
   if (threads > 1) parallel_for(threads, [&](int) { loop.work(); });
   loop.work();

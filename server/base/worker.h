@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One thread of its own that does one thing at a time, for work that goes on while its owner does
-// others: scheduled by the system, so that it neither waits for cores that are busy with parallel
-// loops nor is waited for by them. All calls come from the owner's thread.
+// Runs one thing at a time on a thread of its own, for work that goes on while its owner does other
+// things: the system schedules the thread, so that it neither waits for cores that are busy with
+// parallel loops nor is waited for by these loops. All calls come from the owner's thread.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -17,14 +17,14 @@
 
 namespace wellspring {
 
-// Long work that may be cancelled, such as loading an exhibit. Who begins it opens a CancelScope;
-// what is done within, however deep, asks check_cancelled() between steps of at most some tenths of
-// a second, and so ends with the exception Cancelled.
+// Cancels long work such as loading an exhibit. Whoever begins it opens a CancelScope; the code
+// within, however deep, calls check_cancelled() between steps of at most some tenths of a second,
+// and so ends with the exception Cancelled.
 
-// No std::exception: nobody takes it for something that is wrong with the work.
+// Is no std::exception, so that nobody takes it for an error of the work.
 struct Cancelled {};
 
-// What the calling thread does until the scope ends may be cancelled by `token`.
+// Lets `token` cancel the calling thread's work until the scope ends.
 class CancelScope {
  public:
   explicit CancelScope(std::stop_token token);
@@ -36,9 +36,10 @@ class CancelScope {
   std::stop_token before_;
 };
 
-// The innermost scope's, for other threads that help; without a scope one that never says stop.
+// Returns the innermost scope's token, for other threads that help; without a scope one that never
+// says stop.
 std::stop_token cancel_token();
-// Throws Cancelled where the calling thread's work is to end. Not from within loops over cores,
+// Throws Cancelled if the calling thread's work is to end. Do not call it within loops over cores,
 // whose bodies must not throw.
 void check_cancelled();
 
@@ -49,13 +50,14 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // Begins when the work before is done. `work` must not throw. The first call starts the thread.
+  // Begins `work` when the work before is done. `work` must not throw. The first call starts the
+  // thread.
   void run(std::function<void()> work);
-  uint64_t runs() const { return runs_; }  // how many there have been
-  // What the work wrote may be read after any of these has said that it is done.
+  uint64_t runs() const { return runs_; }  // number of works begun so far
+  // After any of these has said that the work is done, its results may be read.
   bool busy() const;
   void wait() const;
-  bool wait_for(double seconds) const;  // false: it is still going on
+  bool wait_for(double seconds) const;  // false: the work is still going on
 
  private:
   void live();
@@ -67,10 +69,10 @@ class Worker {
   std::thread thread_;
 };
 
-// Loops that somebody waits for while all cores are at work on others. oneTBB sends its threads to
-// them when their loop is done, which is too late for a picture that is due: threads within loops
-// of base/parallel.h take pieces of an of high priority one as soon as they have finished one of
-// their own.
+// Runs loops of high priority, that somebody waits for while all cores are at work on others.
+// oneTBB sends its threads to them only when their own loop is done, which is too late for a
+// picture that is due: so threads within loops of base/parallel.h take pieces of a loop of high
+// priority as soon as they have finished a piece of their own.
 
 struct PriorityLoop {
   void (*run)(const void* body, int begin, int end) = nullptr;
@@ -78,15 +80,15 @@ struct PriorityLoop {
   int count = 0, grain = 1;
   std::atomic<int> next{0};
 
-  void work();  // until no piece is left
+  void work();  // runs pieces until none is left
 };
-// Whoever asks for the loop's end afterwards waits for all threads that are at work on it.
+// Runs the loop, and returns when all threads that work on it have ended.
 void run_with_priority(PriorityLoop& loop);
 
-// As parallel_ranges, but before all other loops. Pieces are of `grain` items: of a twentieth to
-// a tenth of a millisecond, say. Bodies may be called on any thread, within any other loop, so they
-// must not take locks, nor begin loops of their own. Of of high priority loops the first alone
-// comes first.
+// Does the same as parallel_ranges, but before all other loops. Pieces have `grain` items, which
+// should take a twentieth to a tenth of a millisecond. Bodies may be called on any thread, within
+// any other loop, so they must not take locks, nor begin loops of their own. If there are several
+// loops of high priority, only the first runs before others.
 template <class Body>
 void priority_ranges(int count, int grain, const Body& body) {
   if (count <= 0) return;
@@ -100,13 +102,13 @@ void priority_ranges(int count, int grain, const Body& body) {
   run_with_priority(loop);
 }
 
-// A one-slot mailbox between two threads: the newest value wins, an unread older one is dropped.
-// put() and take() never block for longer than a pointer swap.
+// Passes values between two threads through one slot: the newest value wins, an unread older one is
+// dropped. put() and take() never block for longer than a pointer swap.
 
 template <class T>
 class Latest {
  public:
-  // Returns true when it replaced a value nobody had taken.
+  // Returns true if it replaced a value that nobody had taken.
   bool put(T value) {
     std::lock_guard lock(mutex_);
     bool dropped = slot_.has_value();

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* mark = ".part";  // then the process and a number
+constexpr const char* mark = ".part";  // followed by process id, '-' and a number
 constexpr auto just_begun = std::chrono::minutes(1);
 
 bool is_unfinished(const std::string& name) {
@@ -37,7 +37,7 @@ bool is_unfinished(const std::string& name) {
   return dash != rest.npos && is_number(rest.substr(0, dash)) && is_number(rest.substr(dash + 1));
 }
 
-// Whoever writes a file holds a lock on it.
+// Returns whether somebody writes the file: writers hold a lock on it.
 bool is_written(const fs::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return true;
@@ -118,7 +118,7 @@ KeyedFile read_keyed(const std::string& file, uint64_t format, uint64_t key, std
   Head head;
   if (!in || size < sizeof head || size > (uint64_t(1) << 34)) return note_damage(file);
   in.read(reinterpret_cast<char*>(&head), sizeof head);
-  if (head.format != format) {  // of another version, or of nobody
+  if (head.format != format) {  // the file is of another version, or of another program
     log::info("{}: is of another format; what it kept is computed anew", file);
     return KeyedFile::damaged;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that others may read at any time.
+// Writes files that others may read at any time.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -11,22 +11,23 @@
 
 namespace wellspring {
 
-// The whole file or none of it: written beside its place, then renamed over it. Throws LoadError.
+// Writes the whole file or none of it: beside its place, then renamed over it. Throws LoadError.
 void write_file(const std::string& path, std::span<const char> bytes);
 
-// Files that killed programs had half written, in a folder and those below it. They are taken away,
-// unless somebody writes them or has begun them within a minute; this says how much that was.
+// Counts the files that killed programs had half written, in a folder and those below it.
+// remove_unfinished() removes them, unless somebody writes them or has changed them within a
+// minute.
 struct Unfinished {
   size_t files = 0;
   uint64_t bytes = 0;
 };
 Unfinished remove_unfinished(const std::string& folder);
 
-// Values kept on disk from one start to the next: a file says of what format it is and what it was
-// made of (its key), and is read as a whole or not at all. One processor's files: numbers lie as in
-// memory.
+// Keeps values on disk from one start to the next: a file names its format and its key (from what
+// it was made), and is read as a whole or not at all. Files are for one processor: numbers lie as
+// in memory.
 
-// The same list of fields for both directions: PutBytes appends, TakeBytes reads.
+// Both take the same list of fields: PutBytes appends them, TakeBytes reads them.
 struct PutBytes {
   std::string bytes;
   template <class T>
@@ -42,7 +43,7 @@ struct PutBytes {
   }
 };
 struct TakeBytes {
-  static constexpr uint64_t most_items = 1 << 28;  // of an array
+  static constexpr uint64_t most_items = 1 << 28;  // most items of one array
   const std::string& bytes;
   size_t at = 0;
   bool good = true;
@@ -68,13 +69,13 @@ struct TakeBytes {
   bool complete() const { return good && at == bytes.size(); }
 };
 
-// What became of reading a file.
+// The result of reading a file.
 enum class KeyedFile : uint8_t { read, missing, damaged, another_key };
 inline constexpr uint64_t any_key = 0;
-// Never throws. `bytes` is set where it was read. A damaged file is named in the log.
+// Reads a file and never throws. Sets `bytes` if it was read. Names a damaged file in the log.
 KeyedFile read_keyed(const std::string& file, uint64_t format, uint64_t key, std::string& bytes);
-std::vector<std::string> damaged_files();  // that this process has met since it began
-// Replaces the file as a whole, and makes its folder. False: it cannot be written.
+std::vector<std::string> damaged_files();  // those that this process has met since it began
+// Replaces the file as a whole, and makes its folder. False: the file cannot be written.
 bool write_keyed(const std::string& file, uint64_t format, uint64_t key, const std::string& bytes);
 
 }  // namespace wellspring

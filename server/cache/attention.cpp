@@ -13,24 +13,26 @@
 namespace wellspring::cache {
 namespace {
 
-constexpr float darkest_lit = 0.01f;  // reflectance that can tell of light, or show it
+constexpr float darkest_lit = 0.01f;  // least reflectance that light is lent from or to
 constexpr float same_facing = 0.9f;   // cosine
-// Little enough that places nobody has told of yet are asked, too.
-constexpr int change_ageing = 32;  // of points near places where the light seems to have changed
-// Light has changed in a tile where the change samples of 3x3 tiles agree that it did: by how many
-// standard deviations their sum is off, each taken by its own size or by the noise known of it,
-// whichever is more (a self-normalised sum: rare bright samples neither make a change nor hide one
-// for long; Pena, Lai, Shao 2009), and by how much on average.
+// Age that is added to points near places where the light seems to have changed: little enough that
+// places without change samples are asked for, too.
+constexpr int change_ageing = 32;
+// Light has changed in a tile if the change samples of 3x3 tiles agree that it did: their sum is
+// off by this many standard deviations, and by this much on average. Each sample counts its own
+// size or its known noise, whichever is more (a self-normalised sum: rare bright samples neither
+// make a change nor hide one for long; Pena, Lai, Shao 2009).
 struct ChangeTest {
   float deviations, least_change;
 };
 constexpr ChangeTest beyond_doubt{5, 0.15f};
-// Where one thing has changed, another may well have: for so many pictures less will do, of more
-// change samples.
+// If one thing has changed, another may well have: for this many pictures a smaller change
+// suffices, over more change samples.
 constexpr ChangeTest likely{3, 0.05f};
 constexpr int alarm_pictures = 45;
 
-// A point where the light has changed. What was sampled just now has seen the new light already.
+// Forgets the light of a point at which it has changed, unless the point is new: then it has seen
+// the new light already.
 void invalidate_old_light(PointCache& points, uint32_t i) {
   if ((points.flags[i] & point_relit) || (points.age[i] == 0 && points.count[i] == 1)) return;
   invalidate_light_of(points, i, change_ageing);
@@ -48,8 +50,8 @@ void age_tile(PointCache& points, PointImage& image, int tx, int ty) {
     }
 }
 
-// The tile where a change sample lies now, or -1: answers may be frames late, and the view has
-// moved on.
+// Returns the tile where a change sample lies now, or -1: answers may be frames late, and the view
+// has moved on.
 int tile_of(const PointCache& points, const View& view, const PointImage& image, uint32_t i) {
   if (i >= uint32_t(points.capacity()) || !is_alive(points, i)) return -1;
   vec3 place(points.x[i], points.y[i], points.z[i]);
@@ -61,7 +63,8 @@ int tile_of(const PointCache& points, const View& view, const PointImage& image,
   return int(at.y) / change_tile * image.changed_width + int(at.x) / change_tile;
 }
 
-// Points that share a pixel with a nearer one, and may be the nearer one in the next picture.
+// Forgets the light of hidden points in tiles that have changed, since they may be the nearest ones
+// in the next picture.
 void age_hidden(PointCache& points, const View& view, const PointImage& image,
                 const std::vector<uint8_t>& verdict) {
   parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
@@ -108,8 +111,8 @@ bool has_changed(const PointImage& image, int tx, int ty, const ChangeTest& chan
   return proves(sum, change_test);
 }
 
-// Is a change beyond prior variance in any square of 2, 4, 8 ... tiles a side? Where samples are
-// noisy or the change is small, it takes many tiles to tell.
+// Returns whether a change is beyond doubt in any square of 2, 4, 8 ... tiles a side. If samples
+// are noisy or the change is small, it takes many tiles to prove it.
 bool has_changed_widely(const PointImage& image) {
   std::vector<TileChange> tiles = image.changed, wider;
   for (int width = image.changed_width, height = image.changed_height; width > 1 || height > 1;) {
@@ -133,8 +136,8 @@ struct PixelPoint {
   int x = 0, y = 0;
 };
 
-// The light of the nearest of `newer` on the same surface. What depends on the view is taken to be
-// as bright for its reflectance as there.
+// Gives a point the light of the nearest of `newer` on the same surface. Light that depends on the
+// view is scaled with the luminance of the reflectance.
 void borrow_light(PointCache& points, const PixelPoint& to, std::span<const PixelPoint> newer) {
   PointColor& mine = points.color[to.point];
   vec3 albedo = unpack_albedo(mine.albedo), normal = unpack_normal(mine.normal);
@@ -161,19 +164,19 @@ void borrow_light(PointCache& points, const PixelPoint& to, std::span<const Pixe
 
 using Levels = std::array<uint8_t, 256>;
 
-// Not inlined: only as parameters of a real call do the pointers keep their promise not to overlap,
-// and bytes might overlap anything. `around`: scratch of width + 2, its ends 0.
+// This is not inlined: only as parameters of a real call do the pointers keep their promise not to
+// overlap, and bytes might overlap anything. `around`: scratch of width + 2, its ends 0.
 [[gnu::noinline]] void prioritise_empty(const uint32_t* __restrict above,
                                         const uint32_t* __restrict row,
                                         const uint32_t* __restrict below, int width,
                                         uint8_t* __restrict around, uint8_t* __restrict priority) {
-  // Points in this column of the three rows.
+  // `around` counts the points in this column of the three rows.
   for (int x = 0; x < width; x++)
     around[x + 1] = uint8_t((above[x] != no_point) + (row[x] != no_point) + (below[x] != no_point));
   for (int x = 0; x < width; x++)
     priority[x] = uint8_t(255 - 14 * (around[x] + around[x + 1] + around[x + 2]));
 }
-// No branch: where there is no point, the first one is asked and its answer thrown away.
+// There is no branch: a pixel without a point looks up point 0, and the answer is thrown away.
 [[gnu::noinline]] void prioritise_points(const uint32_t* __restrict row,
                                          const uint8_t* __restrict ages,
                                          const uint8_t* __restrict counts, const Levels& by_age,
@@ -186,7 +189,8 @@ using Levels = std::array<uint8_t, 256>;
   }
 }
 
-// Of the first pixel with a point from the one on whose turn it is.
+// Returns the weight of the object at the first pixel with a point, counted from pixel `turn` of
+// the cell.
 uint8_t weight_of_cell(const PointCache& points, std::span<const uint8_t> of_object, uint32_t turn,
                        const PointImage& image, int x, int y) {
   const int width = std::min(weight_cell, image.width - x),
@@ -218,15 +222,14 @@ bool age_changed(PointCache& points, const View& view, PointImage& image) {
         age_tile(points, image, tx, ty);
       }
   });
-  // Their change is not to be told twice, and what is not seen now may have changed back when it
-  // is.
+  // A change counts only once, and one that is not in view now may be undone when it is again.
   size_t kept = 0;
   for (size_t i = 0; i < tiles.size(); i++)
     if (tiles[i] >= 0 && !verdict[size_t(tiles[i])])
       image.change_samples[kept++] = image.change_samples[i];
   image.change_samples.resize(kept);
   if (image.change_samples.capacity() > 2 * kept + 4096)
-    image.change_samples.shrink_to_fit();  // many at once
+    image.change_samples.shrink_to_fit();  // after many at once
   bool changed =
       std::any_of(verdict.begin(), verdict.end(), [](uint8_t aged) { return aged != 0; });
   if (changed) age_hidden(points, view, image, verdict);

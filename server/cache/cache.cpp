@@ -21,17 +21,18 @@ namespace wellspring::cache {
 namespace {
 
 constexpr int largest_side = 16384;
-// Times the pixels of a picture: what lies around is no more to remember.
+// Views of up to this many times the pixels there is room for show the same points with what lies
+// around: there is no more to remember.
 constexpr size_t most_around = 2;
-constexpr int still_project_period = 8;                // frames
+constexpr int still_project_period = 8;  // frames between projections of a view at rest
 constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
-constexpr uint8_t moving_specular = 4;                 // of what moves with the view
+constexpr uint8_t moving_specular = 4;  // likewise, for light that moves with the view
 
 }  // namespace
 
 struct CacheWork {
   Scratch scratch;
-  std::vector<uint8_t> priority;  // PointImage's, between frames
+  std::vector<uint8_t> priority;  // PointImage's priorities, between frames
   std::vector<uint32_t> targets;
   std::vector<uint8_t> occupied;  // cells of the view ahead
 };
@@ -47,24 +48,25 @@ struct RenderCache::Impl {
   PointImage image;
   std::shared_ptr<CacheWork> work;
   bool shares = false;
-  int width = 0, height = 0;  // of the largest picture there is room for, but for its surroundings
-  View view;                  // of the last projection
+  // Pixels of the largest picture there is room for, without its surroundings.
+  int width = 0, height = 0;
+  View view;  // view of the last projection
   bool projected = false;
   uint64_t projection = 0;
   int still_frames = 0;          // projections of the same view before the last
-  bool reference = false;        // set_reference()
+  bool reference = false;        // as set_reference() says
   bool relit = false;            // points may wait for a sample of their new light
-  bool image_stale = true;       // points have changed since, and the image was not told
-  float new_points = 0;          // a frame, smoothed
+  bool image_stale = true;       // points have changed since the image was made
+  float new_points = 0;          // new points a frame, smoothed
   int fresh = 0;                 // samples of this frame that show
-  std::vector<uint8_t> weights;  // of objects, times weight_one; empty: all are 1
-  uint32_t turn = 0;             // of the pixels of weight cells
+  std::vector<uint8_t> weights;  // each object's weight, times weight_one; empty: all are 1
+  uint32_t turn = 0;             // decides which pixel of a weight cell counts
   CacheStats stats;
   uint64_t paints = 0;  // World::paints() and those of each instance, when last looked at
   std::vector<uint32_t> paints_of;
   std::vector<char> repainted;
 
-  // Points of what was repainted since are forgotten.
+  // Forgets points of instances that were repainted since.
   void notice_paint(const World& world);
   void borrow_priority() {
     if (image.priority.empty()) image.priority.swap(work->priority);
@@ -75,7 +77,7 @@ struct RenderCache::Impl {
     still_frames = 0;
   }
   void count(const ShownPoints& shown);
-  // The image has room for what lies around a picture, as long as that is projected.
+  // Makes room in the image for what lies around a picture, as long as that is projected.
   void fit_image(int across, int down);
 };
 
@@ -170,8 +172,8 @@ void RenderCache::project(const View& view) {
   c.view = view;
   c.projected = true;
   c.fresh = 0;
-  // At rest remember() keeps the image up to date. Only a point that was hidden by one since
-  // overwritten has to wait until all are projected again.
+  // At rest remember() keeps the image up to date. Only a point that was hidden by another one,
+  // which has been overwritten since, has to wait until all are projected again.
   if (same && !c.image_stale && c.still_frames % still_project_period != 0) return;
   project_points(c.points, view, same, c.work->scratch, c.image);
   depth_cull(c.points, c.settings.depth_threshold, c.image);
@@ -224,7 +226,8 @@ std::span<const uint32_t> RenderCache::remember(const View& view, std::span<cons
   settings.reference = c.reference;
   Remembered result =
       remember_samples(c.points, view, requests, samples, settings, c.image, c.work->targets);
-  // What moves may have been seen elsewhere than it is now, and what had no pixel may have one.
+  // Moving points may have been seen elsewhere than they are now, and samples without a pixel may
+  // have one.
   c.image_stale |= !c.points.anchors.empty() || result.unplaced > 0;
   c.new_points += (float(result.kept) - c.new_points) * 0.1f;
   if (settings.current) c.fresh += result.kept - result.unplaced;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours and normals in few bits, so that a visitor's whole cache stays below 64 MB at 1280x720.
-// Light is stored with a shared exponent and rounded stochastically: a running mean of many samples
-// then stays unbiased although each step is smaller than the least bit.
+// Packs colours and normals in few bits, so that a visitor's whole cache stays below 64 MB at
+// 1280x720. Light is stored with a shared exponent and rounded stochastically: a running mean of
+// many samples then stays unbiased although each step is smaller than the least bit.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -14,7 +14,7 @@
 
 namespace wellspring::cache {
 
-// Reflectance in [0, 1], 11:11:10 bits of its square root.
+// Packs a reflectance in [0, 1] as 11:11:10 bits of its square root.
 inline uint32_t pack_albedo(vec3 c) {
   auto level = [](float v, float steps) {
     float root = std::sqrt(v > 0 ? std::min(v, 1.0f) : 0.0f);
@@ -28,7 +28,7 @@ inline vec3 unpack_albedo(uint32_t p) {
   return vec3(r * r, g * g, b * b);
 }
 
-// Unit vectors on an octahedron (Meyer et al. 2010), 8 bits an axis: within one degree.
+// Packs a unit vector on an octahedron (Meyer et al. 2010) with 8 bits an axis, within one degree.
 inline uint16_t pack_normal(vec3 n) {
   float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   if (!(sum > 0) || !std::isfinite(sum)) return 127 | 127 << 8;
@@ -41,7 +41,8 @@ inline uint16_t pack_normal(vec3 n) {
   auto level = [](float v) { return uint16_t(std::clamp(v * 127.0f + 127.5f, 0.0f, 254.0f)); };
   return uint16_t(level(x) | level(y) << 8);
 }
-// Not normalised: the point on the octahedron (length 0.57 to 1), enough for signs of dot products.
+// Returns the point on the octahedron, not normalised (length 0.57 to 1): enough for signs of dot
+// products.
 inline vec3 unpack_octahedron(uint16_t p) {
   float x = float(p & 255) * (1.0f / 127) - 1, y = float(p >> 8) * (1.0f / 127) - 1;
   float z = 1 - std::abs(x) - std::abs(y);
@@ -55,9 +56,10 @@ inline vec3 unpack_normal(uint16_t p) {
   return n * (1 / std::sqrt(dot(n, n)));
 }
 
-// A standard deviation with 4 bits of exponent and 4 of mantissa, steps of 3 to 6 %: 2^-11 to 2^5;
-// 0 is exactly 0. It is the rounded top of the number's own bits, so both ways take a few
-// instructions. `random`: as of pack_rgb9e5(), 19 bits of it; without it to the nearest.
+// Packs a standard deviation with 4 bits of exponent and 4 of mantissa, steps of 3 to 6 %: 2^-11 to
+// 2^5; 0 is exactly 0. The result is the rounded top of the number's own bits, so both ways take a
+// few instructions. `random`: as for pack_rgb9e5(), 19 bits count; the default rounds to the
+// nearest.
 inline uint8_t pack_deviation(float s, uint32_t random = 1u << 18) {
   constexpr int least = (127 - 11) << 4;
   if (!(s > 0x1p-12f)) return 0;
@@ -69,8 +71,8 @@ inline float unpack_deviation(uint8_t p) {
   return p ? std::bit_cast<float>((uint32_t(p) + least) << 19) : 0.0f;
 }
 
-// A standard deviation over its mean with 6 bits: 2^-5 to 2^5 in steps of 12 %; 0 is unknown or
-// next to nothing. `random`: in [0, 65536), dithers what is cut.
+// Packs a standard deviation over its mean with 6 bits: 2^-5 to 2^5 in steps of 12 %; 0 is unknown
+// or next to nothing. `random`: in [0, 65536), dithers the bits that are cut.
 inline uint8_t pack_relative(float s, uint32_t random = 0x8000) {
   if (!(s > 0x1p-5f)) return 0;
   float step =
@@ -79,7 +81,8 @@ inline uint8_t pack_relative(float s, uint32_t random = 0x8000) {
 }
 inline float unpack_relative(uint8_t p) { return p ? std::exp2((float(p) - 31.5f) / 6) : 0.0f; }
 
-// IEEE half floats for positive numbers; `random` in [0, 65536) dithers the bits that are cut.
+// Packs a positive number as an IEEE half float; `random` in [0, 65536) dithers the bits that are
+// cut.
 inline uint16_t pack_half(float v, uint32_t random = 0x1000) {
   v = v > 0 ? std::min(v, 65000.0f) : 0.0f;
   uint32_t bits = std::bit_cast<uint32_t>(v * 0x1p-112f) + (random & 0x1fff);
@@ -87,7 +90,7 @@ inline uint16_t pack_half(float v, uint32_t random = 0x1000) {
 }
 inline float unpack_half(uint16_t h) { return std::bit_cast<float>(uint32_t(h) << 13) * 0x1p112f; }
 
-// What cache/packing.h packs and unpacks, of eight points at a time.
+// Packs and unpacks as cache/packing.h does, for eight points at a time.
 
 inline void unpack_albedo(const LaneBits& p, Lanes& r, Lanes& g, Lanes& b) {
   r = to_float(p & 2047u) * (1.0f / 2047);
@@ -106,7 +109,7 @@ inline void unpack_octahedron(const LaneBits& p, Lanes& x, Lanes& y, Lanes& z) {
 inline Lanes unpack_deviation(const LaneBits& p) {
   return keep_lanes(p != 0u, lanes_as<Lanes>((p + ((127 - 11) << 4)) << 19));
 }
-// Packing likewise, of what is finite.
+// Packs likewise; values have to be finite.
 inline LaneBits pack_albedo(const Lanes& r, const Lanes& g, const Lanes& b) {
   auto level = [](const Lanes& v, float steps) {
     return to_whole(lanes_sqrt(lanes_min(positive_lanes(v), all_lanes(1))) * steps + 0.5f);

@@ -12,8 +12,9 @@
 namespace wellspring::cache {
 namespace {
 
-constexpr int band_rows = 64;  // dithered by one thread
-constexpr int warm_rows = 12;  // dithered without effect before, to start with the usual remainders
+constexpr int band_rows = 64;  // rows dithered by one thread
+// Rows dithered before without effect, to start with the usual remainders.
+constexpr int warm_rows = 12;
 
 Request make_request(const PointCache& points, const View& view, const PlanSettings& settings,
                      const PointImage& image, size_t pixel) {
@@ -23,8 +24,8 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
   request.seed = sample_seed(settings.seed, x, y, 0);
   uint64_t random = mix64(request.seed ^ 0x706c616e);
   uint32_t point = image.point[pixel];
-  // Standing still, one in four is still resampled exactly: those can tell that the light has
-  // changed.
+  // In a view at rest, one request in four still resamples its point exactly: it can show that the
+  // light has changed.
   bool exact = point != no_point && (!settings.still || (random >> 62) == 0);
   if (exact) {
     vec3 position(points.x[point], points.y[point], points.z[point]);
@@ -42,14 +43,14 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
   return request;
 }
 
-// Priorities and what they add up to, in fixed point: a step of the dither then waits for an
-// addition and a shift only.
+// Priorities and their sums are in fixed point: a step of the dither then waits for an addition and
+// a shift only.
 constexpr int fraction_bits = 8;
 
-// Of the pixels of rows that start where cells do.
+// The weights of a row's pixels; cells start at multiples of weight_cell.
 struct RowWeights {
-  const uint8_t* cells = nullptr;  // of the row; null: all count as they are
-  // Times weight_one.
+  const uint8_t* cells = nullptr;  // the row's cells; null: all count as they are
+  // Returns the weight times weight_one.
   int64_t at(int x) const { return cells ? cells[x / weight_cell] : weight_one; }
 };
 constexpr int weight_bits = 4;
@@ -60,7 +61,7 @@ RowWeights weights_of_row(const PointImage& image, size_t y) {
   return {image.weight.data() + y / weight_cell * size_t(weight_cells(image.width))};
 }
 
-// What the priorities of a row add up to, times weight_one.
+// Returns the sum of a row's weighted priorities, times weight_one.
 uint64_t sum_of_row(const PointImage& image, size_t y) {
   const uint8_t* priority = image.priority.data() + y * size_t(image.width);
   const RowWeights weights = weights_of_row(image, y);
@@ -78,8 +79,8 @@ uint64_t sum_of_row(const PointImage& image, size_t y) {
 }
 
 // Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose. A
-// band whose first row started from nothing would starve there, so its first rows are dithered once
-// for practice.
+// band whose first row started from nothing would get too little there, so its first rows are
+// dithered once for practice.
 template <bool weighted>
 int dither_band(PointImage& image, int begin, int end, int share, int64_t threshold, uint64_t seed,
                 uint32_t* chosen) {
@@ -94,8 +95,7 @@ int dither_band(PointImage& image, int begin, int end, int share, int64_t thresh
     hash = hash * 6364136223846793005ull + 1442695040888963407ull;
     below[size_t(x)] = random_start(hash);
   }
-  bool upwards =
-      (seed >> 1) & 1;  // what a band runs short of at its end is not always the same rows
+  bool upwards = (seed >> 1) & 1;  // the rows that a band's share does not reach vary
   int64_t carry = random_start(mix64(hash));
   for (int i = -std::min(warm_rows, rows); i < rows; i++) {
     bool practice = i < 0;
@@ -162,7 +162,7 @@ void plan_requests(const PointCache& points, const View& view, const PlanSetting
   int bands = (height + band_rows - 1) / band_rows;
   if (budget == 0 || bands == 0) return;
 
-  // What each band's priorities add up to decides its share.
+  // The sum of a band's priorities decides its share.
   std::vector<uint64_t> sums(size_t(bands) + 1, 0);
   parallel_for(bands, [&](int band) {
     uint64_t sum = 0;
@@ -222,7 +222,7 @@ struct Grid {
         axis(axis_place(view) / float(cell_pixels)) {}
 };
 
-// The cell of each point, or the one behind the last: branch-free, so that it vectorises.
+// Finds the cell of each point, or the one behind the last: branch-free, so that it vectorises.
 void place_chunk(const PointCache& points, const View& view, const Grid& grid, int begin, int count,
                  int32_t* __restrict cell) {
   const float* px = points.x.data() + begin;
@@ -258,7 +258,7 @@ View extrapolate(const View& before, const View& now, float steps) {
   if (before.width != now.width || before.height != now.height ||
       before.tan_half_fov != now.tan_half_fov)
     return now;
-  // The rotation that carries the old axes to the new ones, as axis times angle.
+  // `turn` carries the old axes to the new ones; below, it becomes an axis and an angle.
   mat3 turn = mat3(now.right, now.up, now.forward) *
               glm::transpose(mat3(before.right, before.up, before.forward));
   vec3 axis(turn[1][2] - turn[2][1], turn[2][0] - turn[0][2], turn[0][1] - turn[1][0]);
@@ -304,7 +304,8 @@ void predict_requests(const PointCache& points, const View& ahead, int most, uin
   size_t empty = size_t(std::count(cells.begin(), cells.end(), uint8_t(0)));
   if (empty == 0) return;
   size_t chosen = std::min(empty, size_t(most)), columns = size_t(cells_across(ahead.width));
-  // Steps of `empty` over `chosen`, begun anywhere: every n-th, and others in the next picture.
+  // Every n-th empty cell is chosen (`empty` over `chosen`), begun anywhere, and others in the next
+  // picture.
   uint64_t random = mix64(seed ^ 0x70726564);
   size_t sum = size_t(random % empty);
   for (size_t cell = 0; cell < cells.size(); cell++) {

@@ -27,7 +27,7 @@ void age_some(uint8_t* age, const uint8_t* flags, uint8_t step) {
   Bytes seen = lanes_as<Bytes>((flag & uint8_t(point_visible)) != 0),
         fast = lanes_as<Bytes>((flag & uint8_t(point_specular | point_moving)) != 0);
   Bytes sum = old + (base + (uint8_t(2) * base & fast) + (base & ~seen));
-  sum |= lanes_as<Bytes>(sum < old);  // beyond 255 it wrapped around
+  sum |= lanes_as<Bytes>(sum < old);  // the sum wraps around beyond 255
   // A seen point stops one before eviction; one that was evicted meanwhile stays evicted.
   sum += seen & lanes_as<Bytes>(sum == evicted_age);
   store_lanes(age, sum | lanes_as<Bytes>(old == evicted_age));
@@ -129,7 +129,7 @@ bool invalidate_paint(PointCache& points, const World& world, const std::vector<
       bool known = surface.transmission == 0 && surface.anisotropy == 0 &&
                    !world.material_of(a.instance).unlit;
       if (!known) continue;
-      // As far as this place tells; the next sample knows.
+      // This place alone says here whether the material is metal; the next sample knows better.
       bool metal =
           surface.metallic >= all_metal && surface.roughness >= least_demodulated_roughness;
       points.color[i].albedo = pack_albedo(demodulated_albedo(
@@ -154,7 +154,7 @@ void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2
     n = world.normal_to_world(instance) * n;
   }
   place = p;
-  // Normals of samples face whoever saw them.
+  // Normals of samples face the eye that saw them.
   normal = dot(normal, n) < 0 ? -n : n;
 }
 

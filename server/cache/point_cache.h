@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The points of a render cache (Walter 1999, section 3 and figure 4): what was seen, where, how
-// long ago. Fixed capacity. What is walked every frame lies in arrays of its own; what is looked up
-// only for points that show (PointColor) lies together, one cache line fetch a point. 37 bytes a
-// point.
+// The points of a render cache (Walter 1999, section 3 and figure 4) hold what was seen, where, and
+// how long ago. The capacity is fixed. Data that is walked every frame lies in arrays of its own;
+// data that is looked up only for points that show (PointColor) lies together, one cache line fetch
+// a point. A point takes 37 bytes.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -31,39 +31,40 @@ struct PointColor {
   uint32_t rest = 0;    // pack_rgb9e5, mean likewise; without Sample::glow
   uint32_t object = 0;
   uint16_t normal = 0;  // as PointCache::normal
-  // Low 2 bits: samples in a row that differ from what was known well; else pack_relative: the
-  // standard deviation of one sample's `smooth` luminance over its mean.
+  // Low 2 bits: successive samples that differ from a well-known mean; the others, as
+  // pack_relative: the standard deviation of one sample's `smooth` luminance over its mean.
   uint8_t doubts = 0;
-  // pack_deviation: of one sample's `rest` luminance. Of a single sample: 0 unknown, else told by
-  // who answered (sure_noise).
+  // pack_deviation: the standard deviation of one sample's `rest` luminance. After a single sample:
+  // 0 if unknown, sure_noise if the technique was sure (sample_sure).
   uint8_t noise = 0;
 };
-inline constexpr uint8_t sure_noise = 1;  // the least but none
-// Of a point whose light was forgotten, in place of its noise. Its count is 0 as long as it shows
-// its old light, 1 when it is lent that of a newer point; see lend_light().
+inline constexpr uint8_t sure_noise = 1;  // smallest code above 0
+// The noise code of a point whose light was forgotten. Its count is 0 while it shows its old light,
+// 1 when it is lent that of a newer point; see lend_light().
 inline constexpr uint8_t forgotten_noise = 2;
 static_assert(sizeof(PointColor) == 20);
 
-// A point on a moving mesh, found again in later ticks.
+// A point on a moving mesh, to be found again in later ticks.
 struct Anchor {
   uint32_t point = 0, instance = 0, triangle = 0;
   uint16_t u = 0, v = 0;  // barycentric weights, 65535 = 1
 };
 
-inline constexpr uint32_t group_size = 8;    // replacement looks at this many (paper, section 4.3)
-inline constexpr uint8_t evicted_age = 255;  // such a point is never shown again
-inline constexpr int oldest_age = 254;       // of points that are shown
+// Points that replacement chooses from (paper, section 4.3).
+inline constexpr uint32_t group_size = 8;
+inline constexpr uint8_t evicted_age = 255;  // age of points that are never shown again
+inline constexpr int oldest_age = 254;       // oldest age of points that are shown
 inline constexpr int max_capacity = (1 << 24) - 8;
 
 struct PointCache {
   BigVector<float> x, y, z;
   std::vector<uint16_t> normal;  // pack_normal
   std::vector<uint8_t> flags;
-  std::vector<uint8_t> age;    // 0 new; see age_points()
+  std::vector<uint8_t> age;    // 0 is new; see age_points()
   std::vector<uint8_t> count;  // samples in the means, at most 255
   BigVector<PointColor> color;
   std::vector<Anchor> anchors;
-  std::vector<uint64_t> seen;  // scratch of move_points(): one bit a point
+  std::vector<uint64_t> seen;  // scratch of move_anchored_points(): one bit a point
   uint32_t next_group = 0;     // round robin of replacement
   float age_carry = 0;         // fraction of an age step not yet applied
   int capacity() const { return int(x.size()); }
@@ -72,30 +73,30 @@ struct PointCache {
 // Keeps the points that fit into `capacity` (rounded up to whole groups, at most max_capacity).
 void resize_points(PointCache& points, int capacity);
 void clear_points(PointCache& points);
-// One frame passes. Ages advance so that a point reaches about 128 by the time `new_points` a frame
+// Advances ages by one frame, so that a point reaches about 128 by the time `new_points` a frame
 // have replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones
 // twice. Unseen points that reach 255 are evicted; seen ones stop at `oldest_age`.
 void age_points(PointCache& points, float new_points);
-// The light of a point has changed, or seems to: of what it remembers nothing counts where anything
-// newer is known around, and its next sample is as good as its first. It grows older by `ageing`,
-// so that it is asked for the sooner the surer the change is; `oldest_age`: among the first.
+// Forgets the light of a point, as it has changed or seems to: its light does not count if any
+// newer light is around, and its next sample replaces it. The point grows older by `ageing`, so
+// that it is asked for the sooner the surer the change is; with `oldest_age` among the first.
 void invalidate_light_of(PointCache& points, uint32_t i, int ageing);
-// Points of which `forgotten` says so, on many threads, forget theirs. Of what they show `kept` is
-// left, 1 unless changed, and light `added` falls on them.
+// Forgets the light of the points for which `forgotten` returns true; it is called on many threads.
+// They show `kept` (1 unless changed) times their old light plus the light `added`.
 using Forgotten = std::function<bool(uint32_t point, vec3& kept, vec3& added)>;
 void invalidate_light(PointCache& points, const Forgotten& forgotten);
-// Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as
-// they are where the world has no such triangle.
+// Finds where a place on a mesh is now, and its normal on the side that `normal` faced; both stay
+// as they are if the world has no such triangle.
 void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,
                   vec3& place, vec3& normal);
-// Points with anchors follow their triangles; anchors of overwritten points are dropped.
+// Moves points with anchors with their triangles; anchors of overwritten points are dropped.
 void move_anchored_points(PointCache& points, const World& world);
-// What instances are made of looks different now: their points take the reflectance that it has
-// there and forget their light. Of those with anchors, so after move_anchored_points().
-// `repainted`: of each of the world's instances. Returns whether any point was found.
+// Gives points of repainted instances the reflectance that their surface has now, and forgets their
+// light. Reaches points with anchors, so call it after move_anchored_points(). `repainted`: one
+// value for each of the world's instances. Returns whether any point was found.
 bool invalidate_paint(PointCache& points, const World& world, const std::vector<char>& repainted);
-// Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one
-// frame.
+// Returns how many anchors a cache of this capacity may hold; moving points beyond are forgotten
+// after one frame.
 int max_anchors(int capacity);
 size_t points_bytes(const PointCache& points);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What projects where (Walter 1999, figure 4: the point image), the priorities of the pixels, and
-// where the light was seen to change.
+// Holds which point shows at each pixel (Walter 1999, figure 4: the point image), the priorities of
+// the pixels, and where the light was seen to change.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -17,10 +17,10 @@
 
 namespace wellspring::cache {
 
-// Memory for arrays that are read at random every frame: on pages of 2 MiB where the system has
-// them to give (Linux, "madvise" or "always"), because with small pages the look-up of the page
-// costs as much as that of the data. Elsewhere, for small arrays and for what does not fill the
-// last page, ordinary memory.
+// Holds arrays that are read at random every frame on pages of 2 MiB if the system has them to give
+// (Linux, "madvise" or "always"), because with small pages the look-up of the page costs as much as
+// that of the data. Other systems, small arrays and the rest beyond the last full page get ordinary
+// memory.
 
 template <class T>
 struct BigPages {
@@ -36,7 +36,7 @@ struct BigPages {
     void* memory = ::operator new(bytes, std::align_val_t(page));
 #if defined(__linux__)
     madvise(memory, bytes / page * page,
-            MADV_HUGEPAGE);  // a wish: that it may fail does not matter
+            MADV_HUGEPAGE);  // only a hint: it may fail
 #endif
     return static_cast<T*>(memory);
   }
@@ -50,43 +50,45 @@ template <class T>
 using BigVector = std::vector<T, BigPages<T>>;
 
 inline constexpr uint32_t no_point = 0xffffffffu;
-inline constexpr float infinite_depth = 1e18f;  // of points at infinity; Frame::depth says infinity
-inline constexpr int change_tile = 16;          // pixels a side of one cell of `changed`
-inline constexpr int weight_cell = 4;           // pixels a side of one cell of `weight`
-inline constexpr int weight_one = 16;           // `weight` of what counts as it is
+// Depth of points at infinity; Frame::depth has infinity.
+inline constexpr float infinite_depth = 1e18f;
+inline constexpr int change_tile = 16;  // pixels a side of one cell of `changed`
+inline constexpr int weight_cell = 4;   // pixels a side of one cell of `weight`
+inline constexpr int weight_one = 16;   // `weight` of a pixel that counts as it is
 
-// What one sample says of a change in the light of a point that was known before.
+// Holds how one sample differs from a known point's light.
 struct ChangeSample {
   uint32_t point = 0;
-  // Of its luminance, over the mean with the new sample in it: of no change that is 0 on average,
-  // whatever the samples' distribution, since any of them might as well have been the last.
+  // Change of the luminance over the mean that includes the new sample: 0 on average if nothing has
+  // changed, whatever the samples' distribution, since any of them might as well have been the
+  // last.
   float change = 0;
-  float noise =
-      0;  // standard deviation that such a change has where nothing has changed; 0: unknown
+  // Standard deviation of `change` if the light stays the same; 0: unknown.
+  float noise = 0;
 };
-// The sums of a tile's change samples.
+// Holds the sums of a tile's change samples.
 struct TileChange {
-  float change = 0, square = 0;  // square: of the change or of its noise, whichever is more
+  float change = 0, square = 0;  // square: sum of the squared change or noise, whichever is more
   int count = 0;
 };
 
 struct PointImage {
   int width = 0, height = 0;
-  BigVector<uint32_t> point;  // index into the cache, or no_point
-  BigVector<float> depth;     // along the viewing axis; 0 where there is no point
-  std::vector<uint8_t>
-      priority;  // 0: nothing to learn or already asked; 255: most of high priority
-  // Of cells, row after row: factor of their pixels' priorities, times weight_one. Empty: all count
-  // as they are.
+  BigVector<uint32_t> point;      // index into the cache, or no_point
+  BigVector<float> depth;         // metres along the viewing axis; 0 if there is no point
+  std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most urgent
+  // Factor of the priorities of each cell's pixels, times weight_one, row after row. If empty, all
+  // pixels count as they are.
   std::vector<uint8_t> weight;
-  std::vector<uint8_t> renewed;  // not 0: the light there is another than in the last picture
-  std::vector<ChangeSample> change_samples;  // the newest, oldest first; see age_changed()
+  std::vector<uint8_t> renewed;  // not 0: the light differs from that in the last picture
+  std::vector<ChangeSample> change_samples;  // newest ones, oldest first; see age_changed()
   std::vector<TileChange> changed;           // scratch of age_changed()
   int changed_width = 0, changed_height = 0;
-  int alarm = 0;  // pictures for which smaller changes are looked for, too
+  int alarm = 0;  // number of pictures in which smaller changes are looked for, too
 };
 
-// Memory for pictures of this size, but for priorities, which mean nothing between them.
+// Reserves memory for pictures of this size, except for priorities, which mean nothing between
+// them.
 inline void reserve_image(PointImage& image, int width, int height) {
   size_t pixels = size_t(width) * size_t(height);
   auto tiles = [](int side) { return size_t((side + change_tile - 1) / change_tile); };
@@ -98,12 +100,12 @@ inline void reserve_image(PointImage& image, int width, int height) {
 
 inline int weight_cells(int side) { return (side + weight_cell - 1) / weight_cell; }
 
-// Enough change samples of each tile to tell change from noise.
+// Returns the most change samples to keep: enough in each tile to tell change from noise.
 inline size_t most_change_samples(const PointImage& image) {
   const size_t each = image.alarm > 0 ? 48 : 12, most = image.alarm > 0 ? 1 << 17 : 1 << 15;
   return std::min(each * image.changed.size(), most);
 }
-// And room for so many more among them.
+// Drops the oldest change samples beyond that number, so that `more` new ones still fit.
 inline void keep_newest_change_samples(PointImage& image, size_t more = 0) {
   size_t count = image.change_samples.size(), most = most_change_samples(image),
          kept = std::min(count, most - std::min(more, most));
@@ -129,8 +131,8 @@ inline void resize_image(PointImage& image, int width, int height) {
   image.changed.assign(size_t(image.changed_width) * size_t(image.changed_height), TileChange{});
 }
 
-// Memory that one stage of a frame borrows and the next may overwrite: the bins of the projection
-// and the cells of a picture share it.
+// Holds memory that one stage of a frame borrows and the next may overwrite: the bins of the
+// projection and the cells of a picture share it.
 
 class Scratch {
  public:
@@ -143,7 +145,8 @@ class Scratch {
     }
     used_ = 0;
   }
-  // Contents are whatever was there before. `start` must have asked for enough.
+  // Returns an array whose contents are whatever was there before. `start` must have asked for
+  // enough.
   template <class T>
   std::span<T> take(size_t count) {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -13,11 +13,11 @@ namespace wellspring::cache {
 namespace {
 
 constexpr int tile_bits = 6, tile_size = 1 << tile_bits, tile_pixels = tile_size * tile_size;
-constexpr int chunk_points = 16384;   // transformed and sorted together; offsets fit 16 bits
+constexpr int chunk_points = 16384;   // points transformed and sorted together; offsets fit 16 bits
 constexpr float near_depth = 1e-4f;   // metres
 constexpr float facing_away = 0.15f;  // cosine by which a (shading) normal may point away
 
-// An entry of a bin: 28 bits of depth, 24 of the point, 12 of the pixel in its tile.
+// An entry of a bin has 28 bits of depth, 24 of the point, 12 of the pixel in its tile.
 constexpr int point_shift = 12, depth_shift = 36, depth_cut = 3;
 constexpr uint64_t point_mask = (1u << 24) - 1;
 
@@ -30,21 +30,23 @@ Tiles tiles_of(int width, int height) {
 }
 int chunks_of(int capacity) { return (capacity + chunk_points - 1) / chunk_points; }
 
-// Everything a point needs to find its pixel.
+// Holds everything a point needs to find its pixel.
 struct Transform {
   vec3 eye, right, up, forward;
   float focal, axis_x, axis_y, width, height, near;
   int tiles_x, no_tile;
 };
 
-// Where the points of one chunk fall: the tile (no_tile: nowhere), the pixel in it, the depth.
+// Holds where the points of one chunk fall: the tile (no_tile: nowhere), the pixel in it, the
+// depth.
 struct ChunkPlaces {
   alignas(64) int32_t tile[chunk_points];
   alignas(64) int32_t local[chunk_points];
   alignas(64) uint32_t depth[chunk_points];
 };
 
-// Branch-free so that it vectorises; every comparison with NaN is false and leads to no_tile.
+// Transforms points branch-free, so that it vectorises; every comparison with NaN is false and
+// leads to no_tile.
 void transform_chunk(const Transform& t, const PointCache& points, int begin, int count,
                      ChunkPlaces& places) {
   const float* px = points.x.data() + begin;
@@ -94,7 +96,8 @@ void count_tiles(const int32_t* __restrict tile, int count, uint32_t* __restrict
   for (int i = 0; i < count; i++) next[size_t(tile[i]) + 1]++;
 }
 
-// Sorts a chunk's points that fall somewhere by their tile; `next`: where each tile's begin.
+// Sorts a chunk's points that fall somewhere by their tile; `next`: index of each tile's first
+// entry.
 void sort_by_tile(const ChunkPlaces& places, int begin, int count, uint32_t* __restrict next,
                   uint64_t* __restrict entries) {
   for (int i = 0; i < count; i++) {
@@ -113,7 +116,7 @@ void keep_nearest(const uint64_t* __restrict entries, uint32_t count,
   }
 }
 
-// A row of a tile into the image; slots without a point are all bits.
+// Writes a row of a tile into the image; slots without a point have all bits set.
 void write_row(const uint64_t* __restrict nearest, int columns, uint32_t* __restrict point,
                float* __restrict depth) {
   for (int x = 0; x < columns; x++) {
@@ -123,8 +126,8 @@ void write_row(const uint64_t* __restrict nearest, int columns, uint32_t* __rest
     depth[x] = std::bit_cast<float>(bits & ~empty);
   }
 }
-// Every second pixel may be empty: the points of those that are not are listed first, since a
-// branch that nobody can predict costs more than all the rest.
+// Every second pixel may be empty: the points of the others are listed first, since a branch that
+// nobody can predict costs more than all the rest.
 void show_row(const uint32_t* __restrict point, int columns, uint8_t* __restrict flags) {
   uint32_t shown[tile_size + 1];
   size_t count = 0;
@@ -166,7 +169,7 @@ void project_points(PointCache& points, const WindowView& view, bool same_view, 
                       tile_count};
   uint8_t keep = uint8_t(~(point_visible | (same_view ? 0 : point_verified)));
 
-  // Pass 1: transform, then sort each chunk's points by tile into the chunk's part of `entries`.
+  // Pass 1 transforms, then sorts each chunk's points by tile into the chunk's part of `entries`.
   parallel_for(chunks, [&](int chunk) {
     thread_local ChunkPlaces places;
     thread_local std::vector<uint32_t> next;
@@ -186,7 +189,7 @@ void project_points(PointCache& points, const WindowView& view, bool same_view, 
     sort_by_tile(places, begin, count, next.data(), entries.data() + begin);
   });
 
-  // Pass 2: z-buffer tile by tile.
+  // Pass 2 does the z-buffer tile by tile.
   parallel_for(tile_count, [&](int tile) {
     alignas(64) uint64_t nearest[tile_pixels];
     std::memset(nearest, 0xff, sizeof nearest);
@@ -195,7 +198,7 @@ void project_points(PointCache& points, const WindowView& view, bool same_view, 
       return entries.subspan(size_t(chunk) * chunk_points + offset[0],
                              size_t(offset[1] - offset[0]));
     };
-    // The runs lie far apart: while one is looked at, the next ones are on their way.
+    // The runs lie far apart: while one is looked at, the next ones are fetched.
     constexpr int ahead = 2, line = 64 / sizeof(uint64_t);
     for (int chunk = 0; chunk < chunks; chunk++) {
       if (chunk + ahead < chunks) {
@@ -227,7 +230,7 @@ using ShortLanes = int16_t __attribute__((vector_size(2 * run)));
 
 // 1024 steps an octave from 2^-14 m to 2^50 m: fine enough for a threshold of some percent.
 constexpr int32_t least_depth = (127 - 14) << 23;
-constexpr int16_t nothing = 32767;  // an empty pixel: nearer than none
+constexpr int16_t nothing = 32767;  // code of an empty pixel: nearer than none
 constexpr int16_t nearest = -32768;
 
 int16_t code_of(float depth) {
@@ -236,10 +239,10 @@ int16_t code_of(float depth) {
   return int16_t((code < 65534 ? code : 65534) - 32768);
 }
 
-// The last rows of the picture as codes, each padded by `reach` and a run of empty pixels.
+// Holds the last rows of the picture as codes, each padded by `reach` and a run of empty pixels.
 struct Codes {
   size_t stride = 0;
-  std::vector<int16_t> rows, limit;  // limit: what is nearer than that hides the pixel
+  std::vector<int16_t> rows, limit;  // limit: codes below it hide the pixel
   int16_t* row(int y) { return rows.data() + size_t(y + reach) % window * stride + reach; }
   void start(int width) {
     stride = size_t(width) + 2 * reach + run;
@@ -261,7 +264,8 @@ struct Codes {
   }
 };
 
-// All bits where a pixel's point lies behind what surrounds it. `rows` point at the first pixel.
+// Returns all bits set for pixels whose point lies behind what surrounds it. `rows` point at the
+// first pixel.
 ShortLanes judge(const int16_t* const* rows, const int16_t* limits) {
   ShortLanes limit = load_lanes<ShortLanes>(limits), columns[window] = {}, lines[window] = {};
 #pragma GCC unroll 5
@@ -280,8 +284,8 @@ ShortLanes judge(const int16_t* const* rows, const int16_t* limits) {
   for (int dy = 0; dy < window; dy++)
     for (int dx = 0; dx < window; dx++)
       others -= load_lanes<ShortLanes>(rows[dy] + dx - reach) != nothing;
-  // Nearer neighbours on all sides have a short mean offset; those of a silhouette a long one. They
-  // hide only as the majority: through a lattice the background shows rightly.
+  // Nearer neighbours on all sides have a short mean offset; those of a silhouette have a long one.
+  // They hide only as the majority: through a lattice the background shows rightly.
   ShortLanes around =
       (nearer >= 4) & (2 * nearer >= others) & (sx * sx + sy * sy <= nearer * nearer);
   ShortLanes alone = several & (4 * nearer >= 3 * others);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of points alone as it was published (Walter, Drettakis, Parker 1999, section 3.1):
-// what others are compared with.
+// Makes the picture of points alone as it was published (Walter, Drettakis, Parker 1999, section
+// 3.1), for comparison with others.
 #pragma once
 #include <cstdint>
 
@@ -10,23 +10,23 @@
 
 namespace wellspring::cache {
 
-// What a picture of remembered points has shown, in numbers.
+// Figures of a picture of remembered points.
 
-// What the last frame looked like, in numbers (for /metrics, the status page and tests).
+// Holds figures of the last frame (for /metrics, the status page and tests).
 struct CacheStats {
-  int points = 0;                                           // in use
+  int points = 0;                                           // points in use
   float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
-  float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
+  float mean_age = 0;   // mean over the visible points, 0 (new) to 254; see age_points()
   float converged = 0;  // share of pixels whose point has reached its sample goal
 };
-// Of a picture's pixels: those with a point, and with one of `converged_samples` or more.
+// Counts a picture's pixels with a point, and those with one of `converged_samples` or more.
 inline constexpr uint32_t converged_samples = 32;
 struct ShownPoints {
   int64_t points = 0, converged = 0;
 };
 
-// Each pixel becomes the mean of the points in its 3x3 neighbourhood: weights 4 for its own, 2 for
-// those beside it and 1 for those diagonally; where there are none it stays as it was. Depth and
+// Sets each pixel to the mean of the points in its 3x3 neighbourhood: weights are 4 for its own, 2
+// for those beside it and 1 for those diagonally; a pixel without any stays as it was. Depth and
 // object are those of the point of most weight; confidence is 0 without a point of its own. Resizes
 // the frame.
 ShownPoints reconstruct_points(const PointCache& points, const PointImage& image, Frame& frame);

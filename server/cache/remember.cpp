@@ -12,16 +12,18 @@
 namespace wellspring::cache {
 namespace {
 
-constexpr float same_place = 0.01f;  // of the distance: farther off is another surface
+// Share of the distance; a point farther off is on another surface.
+constexpr float same_place = 0.01f;
 constexpr float same_normal = 0.8f;  // cosine
 constexpr float same_albedo = 0.03f;
-// Points whose samples repeat themselves begin anew when one does not: at once where all were
-// alike, at the second time where all were nearly so. Few samples may be alike by chance.
+// A point whose samples repeat themselves begins anew if one sample does not: at once if all were
+// alike, at the second time if all were nearly so. Few samples may be alike by chance.
 constexpr float no_noise = 0.01f, little_noise = 0.1f;  // standard deviation over the mean
 constexpr int few_samples = 2, many_samples = 8;
 constexpr int enough_surprises = 2;
-constexpr float unseen_bonus = 96;  // in age: unseen points are overwritten before seen ones
-constexpr int noise_memory = 64;    // samples the noise estimate looks back on
+// Age added to unseen points, so that they are overwritten before seen ones.
+constexpr float unseen_bonus = 96;
+constexpr int noise_memory = 64;  // samples the noise estimate looks back on
 
 bool is_usable(const Sample& sample) {
   return is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
@@ -34,15 +36,15 @@ vec3 position_of(const PointCache& points, uint32_t i) {
   return {points.x[i], points.y[i], points.z[i]};
 }
 
-// An answer, and what of it is kept.
+// An answer, and the part of its light that is kept.
 struct Found {
   const Sample& sample;
   bool reference;
-  vec3 rest;  // of the sample, but for its glow; not negative
+  vec3 rest;  // the sample's rest without its glow; not negative
 };
 
-// The sample saw the surface the point lies on, at the point (`exact`) or near it in the same
-// pixel.
+// Returns whether the sample saw the surface that the point lies on, at the point (`exact`) or near
+// it in the same pixel.
 bool is_same_surface(const PointCache& points, uint32_t i, const View& view, const Found& found,
                      bool exact) {
   const Sample& sample = found.sample;
@@ -70,7 +72,7 @@ uint8_t flags_of(const Found& found) {
 void place_point(PointCache& points, uint32_t i, const View& view, const Found& found) {
   const Sample& sample = found.sample;
   vec3 p = sample.position, n = sample.normal;
-  // At infinity, and where a technique gave no normal, the point faces the viewer.
+  // At infinity, and if a technique gave no normal, the point faces the viewer.
   if (is_infinite(sample)) n = -p;
   else if (!(dot(n, n) > 0)) n = view.position - p;
   points.x[i] = p.x;
@@ -94,14 +96,14 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Found& 
   points.color[i].object = sample.object;
 }
 
-// What a sample did to the point that it was given to.
+// Holds what a sample did to the point that it was given to.
 struct Effect {
-  bool restarted = false;  // the point began anew, as its light is another
-  bool tells = false;      // `change sample` is good
+  bool restarted = false;  // the point began anew, as its light has changed
+  bool tells = false;      // change_sample is valid
   ChangeSample change_sample;
 };
 
-// The standard deviation of one sample, after another that lies `step` off the mean of n.
+// Returns the standard deviation of one sample, after another that lies `step` off the mean of n.
 float improve_deviation(float deviation, float step, int n) {
   if (n == 1) return std::sqrt(0.5f) * step;
   float memory = float(std::min(n, noise_memory));
@@ -109,12 +111,13 @@ float improve_deviation(float deviation, float step, int n) {
                    memory);
 }
 
-// What was known and what a sample says.
+// Holds the value before a sample, and the sample's own.
 template <class T>
 struct Heard {
   T before, now;
 };
-// `deviations`: of one sample's smooth and rest. The change is no number where all is black.
+// Returns the change that a sample shows. `deviations`: standard deviations of one sample's smooth
+// and rest. The change is NaN if all is black.
 ChangeSample add_change_sample(uint32_t point, int n, vec3 reflectance, const Heard<vec3>& smooth,
                                const Heard<float>& rest, const vec2& deviations) {
   float before = luminance(reflectance * smooth.before) + rest.before,
@@ -143,19 +146,19 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   float level = std::max(before, now);
   vec3 reflectance = unpack_albedo(color.albedo);
   float whole = luminance(reflectance * smooth) + level;
-  // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light,
-  // and of what a mirror shows nobody knows it.
+  // Elsewhere in the pixel a texture may differ, too: a sample shows a change of light only if the
+  // reflectance is equal, and the reflectance of what a mirror shows is not known.
   effect.tells = !(points.flags[i] & point_specular) &&
                  (exact || max_component(abs(reflectance - sample.albedo)) <= same_albedo);
   float light = luminance(smooth), new_light = luminance(max(sample.smooth, vec3(0)));
   float varies = light * unpack_relative(color.doubts >> 2);
-  // Of two techniques one may be biased.
+  // If two techniques differ, one of them may be biased.
   bool comparable = bool(points.flags[i] & point_reference) == settings.reference;
   effect.change_sample =
       add_change_sample(i, n, reflectance, {smooth, comparable ? sample.smooth : smooth},
                         {before, now}, {comparable ? varies : 0.0f, deviation});
-  effect.tells &= std::isfinite(
-      effect.change_sample.change);  // of black that stays black there is nothing to say
+  effect.tells &=
+      std::isfinite(effect.change_sample.change);  // a point that stays black shows nothing
   int surprises = color.doubts & 3;
   bool alike = n >= few_samples && deviation <= no_noise * before;
   bool surprising = effect.tells && step > settings.color_change * whole && step > 4 * deviation &&
@@ -201,7 +204,7 @@ void fetch_point(const PointCache& points, uint32_t i) {
   __builtin_prefetch(&points.count[i], 1);
 }
 
-// The point of the group that is missed least.
+// Returns the point of the group that will be missed least.
 uint32_t choose_victim(const PointCache& points, uint32_t group) {
   uint32_t first = group * group_size, best = first;
   float best_score = -1;
@@ -253,7 +256,7 @@ void add_anchors(PointCache& points, std::span<const Sample> samples,
           {targets[i], s.instance, s.triangle, level(s.barycentric.x), level(s.barycentric.y)});
     else
       points.age[targets[i]] =
-          evicted_age;  // shows in this frame, then goes: better a gap than a ghost
+          evicted_age;  // it shows in this frame, then goes: better a gap than a ghost
   }
 }
 
@@ -271,8 +274,8 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   auto found = [&](size_t i) {
     return Found{samples[i], settings.reference, max(samples[i].rest - samples[i].glow, vec3(0))};
   };
-  // Sort out which samples have a point to join. Late answers find theirs only by its place.
-  constexpr uint32_t reject = no_point - 1;  // beyond every capacity
+  // This sorts out which samples have a point to join. Late answers find theirs only by its place.
+  constexpr uint32_t reject = no_point - 1;  // a number beyond every capacity
   parallel_ranges(int(count), 512, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {
       const Request& request = requests[i];
@@ -315,8 +318,8 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
         effects[i] = improve_point(points, point, view, found(i), exact, settings, random_of(i));
         merged_here++;
       } else {
-        // Another surface than was there: something has moved. At edges of what stands still,
-        // places are not exact enough to tell.
+        // The sample saw another surface than the point's: something has moved. At edges of things
+        // at rest, places are not exact enough to show this.
         bool moves = ((points.flags[point] & point_moving) || (samples[i].flags & sample_moving)) &&
                      exact && !(samples[i].flags & sample_specular);
         begin_point(points, point, view, found(i), random_of(i));
@@ -329,7 +332,8 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
     changed += changed_here;
   });
 
-  // New points: each looks at a group of its own; rounds, should there be more of them than groups.
+  // Each new point looks at a group of its own; if there are more points than groups, they take
+  // turns in rounds.
   for (size_t start = 0; start < additions.size(); start += groups) {
     size_t round = std::min(size_t(groups), additions.size() - start);
     parallel_ranges(int(round), 512, [&](int begin, int end) {
@@ -347,7 +351,8 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
     });
     points.next_group = uint32_t((points.next_group + round) % groups);
   }
-  // Never more than are kept, or memory would be as large as there are samples.
+  // No more change samples are added than are kept, or memory would be as large as there are
+  // samples.
   auto tell = size_t(std::count_if(effects.begin(), effects.begin() + ptrdiff_t(count),
                                    [](const auto& effect) { return effect.tells; }));
   size_t left_out = tell - std::min(tell, most_change_samples(image));

@@ -13,15 +13,15 @@
 namespace wellspring::config {
 namespace {
 
-constexpr size_t most_bytes = 1 << 20;  // of a file
-constexpr size_t line_width = 98;       // of comments
+constexpr size_t most_bytes = 1 << 20;  // most bytes of a file
+constexpr size_t line_width = 98;       // characters in a line of comments
 constexpr const char *config_option = "--config", *print_option = "--print-config";
 
 std::string key_of(const CLI::Option& option) { return option.get_lnames().at(0); }
 bool is_switch(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
 bool is_list(const CLI::Option& option) { return option.get_items_expected_max() > 1; }
 
-// Options that a file may set, in the order in which they were declared.
+// Returns the options that a file may set, in the order in which they were declared.
 std::vector<CLI::Option*> keys(CLI::App& app) {
   std::vector<CLI::Option*> found;
   for (CLI::Option* option : app.get_options())
@@ -38,7 +38,7 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(first, text.find_last_not_of(space) - first + 1);
 }
 
-// What an option's check says, without the option's name before it.
+// Returns the message of an option's check, without the option's name before it.
 std::string reason_of(const std::string& said) {
   const size_t at = said.starts_with("--") ? said.find(": ") : std::string::npos;
   return at == std::string::npos ? said : said.substr(at + 2);
@@ -50,8 +50,9 @@ struct Reader {
   std::vector<CLI::Option*> options;
   std::vector<std::string> names;
   std::vector<std::string> problems;
-  std::map<std::string, int> first_lines;                          // of keys
-  std::map<CLI::Option*, std::vector<std::string>> given, values;  // before, and by the file
+  std::map<std::string, int> first_lines;  // line in which each key stands first
+  // Values before the file, and by it.
+  std::map<CLI::Option*, std::vector<std::string>> given, values;
 
   Reader(CLI::App& app, std::string file) : app(app), file(std::move(file)), options(keys(app)) {
     for (CLI::Option* option : options) {
@@ -82,7 +83,8 @@ struct Reader {
     so_far.push_back(is_switch(option) ? option.get_flag_value(key, value) : value);
     try {
       set(option, so_far);
-      if (!given[&option].empty()) set(option, given[&option]);  // which wins
+      // The command line and the environment win.
+      if (!given[&option].empty()) set(option, given[&option]);
       return;
     } catch (const CLI::ConversionError&) {
       note(line, key + ": '" + value + "' is no value for it");

@@ -17,7 +17,7 @@ namespace wellspring::denoise {
 namespace {
 
 constexpr const char* net_names[] = {"small", "base", "large"};
-// Trained for guides without noise, which ours are: drawn, or means of many rays.
+// These were trained for guides without noise, which ours are: drawn, or means of many rays.
 constexpr const char* net_files[] = {"rt_hdr_calb_cnrm_small.tza", "rt_hdr_calb_cnrm.tza",
                                      "rt_hdr_calb_cnrm_large.tza"};
 constexpr float middle_grey = 0.18f, least_luminance = 1e-8f;
@@ -25,7 +25,7 @@ constexpr int block_side = 16;
 constexpr int rows_at_once = 8;
 
 uint16_t pack_share(float share) {
-  return uint16_t((share > 0 ? std::min(share, 1.0f) : 0.0f) * 65535.0f + 0.5f);  // NaN: 0
+  return uint16_t((share > 0 ? std::min(share, 1.0f) : 0.0f) * 65535.0f + 0.5f);  // NaN becomes 0
 }
 
 float finite_luminance(vec3 color) {

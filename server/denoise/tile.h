@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of a network's features, as tiles of it read and leave them (denoise/unet.h): planes of
-// `block` channels side by side, each rows of pixels.
+// Copies parts of a network's features, as tiles of it read and leave them (denoise/unet.h): planes
+// of `block` channels side by side, each rows of pixels.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -15,7 +15,7 @@ namespace wellspring::denoise {
 
 inline int round_up(int value, int step) { return (value + step - 1) / step * step; }
 
-// 32-bit floats, or the upper halves of them (bfloat16) where the processor multiplies these.
+// Features are 32-bit floats, or their upper halves (bfloat16) if the processor multiplies these.
 struct Format {
   int block = 8;  // channels side by side in memory
   bool bfloat16 = false;
@@ -57,7 +57,7 @@ struct Part {
   int left = 0, top = 0, width = 0, height = 0;
 };
 
-// Copies rows of pixels that lie within the level, zeros around.
+// Copies rows of pixels that lie within the level, with zeros around.
 template <class CopyPixels>
 void copy_part(const Part& part, int width, int height, size_t pixel_bytes, std::byte* to,
                const CopyPixels& copy) {
@@ -76,7 +76,8 @@ void copy_part(const Part& part, int width, int height, size_t pixel_bytes, std:
   }
 }
 
-// What a layer leaves beyond the level's border is no feature: the next one reads zeros there.
+// Clears what a layer leaves beyond the level's border: it is no feature, and the next layer reads
+// zeros there.
 inline void clear_beyond(const Part& part, int width, int height, int channels,
                          const Format& format, std::byte* data) {
   int first = std::clamp(-part.left, 0, part.width),
@@ -96,21 +97,22 @@ inline void clear_beyond(const Part& part, int width, int height, int channels,
     }
 }
 
-// A tile's side of about `wanted`, even, so that whole ones cover the extent.
+// Returns a tile's side of about `wanted` pixels, even, so that whole tiles cover the extent.
 inline int tile_extent(int extent, int wanted) {
   int count = std::max(1, (extent + wanted / 2) / wanted);
   return round_up((extent + count - 1) / count, 2);
 }
 
-// What the published networks see of radiance: the perceptually uniform curve of Open Image Denoise
-// (a fit of PU encoding, Aydin, Mantiuk, Seidel 2008, for luminances of 1e-6 to 65504), 0 to 1.
+// Encodes radiance as the published networks see it: by the perceptually uniform curve of Open
+// Image Denoise (a fit of PU encoding, Aydin, Mantiuk, Seidel 2008, for luminances of 1e-6 to
+// 65504), 0 to 1.
 
 namespace transfer {
 inline constexpr float a = 1412.83765f, b = 1.64593172f, c = 0.431384981f, d = -0.00294139609f,
                        e = 0.192653254f, f = 0.00626026094f, g = 0.998620152f;
-inline constexpr float y0 = 1.5794576e-6f, y1 = 0.0322087631f;  // where the pieces meet
+inline constexpr float y0 = 1.5794576e-6f, y1 = 0.0322087631f;  // values at which the pieces meet
 inline constexpr float x0 = 0.00223151711f, x1 = 0.370974749f;  // the same, encoded
-inline constexpr float most = 65504;                            // the largest half: is encoded as 1
+inline constexpr float most = 65504;  // the largest half, which is encoded as 1
 
 inline float piece(float y) {
   if (y <= y0) return a * y;
@@ -120,7 +122,7 @@ inline float piece(float y) {
 inline const float largest = piece(most);
 }  // namespace transfer
 
-// NaN and negative values become 0, larger ones than `most` that.
+// Encodes a value; NaN and negative ones count as 0, larger ones than `most` as that.
 inline float encode_radiance(float y) {
   return transfer::piece(y > 0 ? std::min(y, transfer::most) : 0.0f) / transfer::largest;
 }

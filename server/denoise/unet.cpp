@@ -21,7 +21,7 @@ namespace {
 
 constexpr int levels = 5;      // full resolution and four halvings
 constexpr int alignment = 16;  // sizes are padded to multiples of it, so that all halvings are even
-// Pixels a side of a tile of each level, about: larger ones repeat less, smaller ones fit caches
+// Pixels a side of a tile of each level, about: larger tiles repeat less, smaller ones fit caches
 // and leave no core without work.
 constexpr std::array<int, levels> tile_size = {192, 128, 96, 64, 48};
 
@@ -32,7 +32,7 @@ dnnl::memory::format_tag tag_of(const Format& format) {
   return format.block == 16 ? dnnl::memory::format_tag::nChw16c : dnnl::memory::format_tag::nChw8c;
 }
 
-// The features of one level: planes of `block` channels, rows, pixels.
+// Holds the features of one level: planes of `block` channels, rows, pixels.
 struct Features {
   int width = 0, height = 0, channels = 0;
   RawVector<std::byte> data;
@@ -40,31 +40,31 @@ struct Features {
 
 constexpr int no_features = -1, the_input = -2;
 
-// What a run of convolutions reads: features of its level, those of the level below enlarged, or
-// the input.
+// Says what a run of convolutions reads: features of its level, those of the level below enlarged,
+// or the input.
 struct Source {
   int features = no_features;
   bool enlarged = false;
-  int channels = 0;  // as stored: whole blocks
-  int used = 0;      // of them
+  int channels = 0;  // as stored, in whole blocks
+  int used = 0;      // channels that are in use
 };
 
 struct Layer {
   std::string name;
-  int inputs = 0, outputs = 0;  // as stored
+  int inputs = 0, outputs = 0;  // channels as stored
   dnnl::convolution_forward run;
   dnnl::memory::desc source, target, scratchpad;
   dnnl::memory weights, bias;
 };
 
-// Convolutions of one level whose features between them only exist as tiles.
+// Holds convolutions of one level whose features between them only exist as tiles.
 struct Stage {
   int level = 0;
   std::vector<Source> sources;
   std::vector<Layer> layers;
   bool pools = false;
   int target = no_features;  // no_features: the output
-  // Of the picture's size:
+  // These depend on the picture's size:
   int width = 0, height = 0, tile_width = 0, tile_height = 0, columns = 0, rows = 0;
 };
 
@@ -91,7 +91,7 @@ struct UNet::Impl {
   std::vector<Stage> stages;
   std::vector<Features> features;
   const InputPixels* input = nullptr;
-  int width = 0, height = 0;  // of the picture
+  int width = 0, height = 0;  // size of the picture, pixels
   RawVector<vec3> output;
   size_t stage = 0;
   int next_tile = 0;
@@ -130,7 +130,7 @@ void UNet::Impl::add_stages(const std::vector<StageForm>& form, const std::strin
       throw LoadError(path, layer + ".weight", "is missing");
     return found->second.sizes[0];
   };
-  int pooled[levels] = {};  // features by the level they belong to, and their used channels
+  int pooled[levels] = {};  // pooled features by the level they belong to, and their used channels
   int channels[levels] = {};
   int before = the_input, before_channels = input_channels;
   for (const StageForm& of : form) {
@@ -173,7 +173,7 @@ void UNet::Impl::add_stages(const std::vector<StageForm>& form, const std::strin
     if (!used.count(name)) throw LoadError(path, name, "belongs to no layer of the network");
 }
 
-// Creates the convolution of a tile, and brings its weights into the form it wants.
+// Creates the convolution of a tile, and brings its weights into the form that it needs.
 void UNet::Impl::prepare_layer(Layer& layer, const Stage& stage, int across, int down) {
   using dnnl::memory;
   const Tensor& from = weights.at(layer.name + ".weight");
@@ -297,8 +297,8 @@ void UNet::Impl::gather(const Stage& stage, const Part& part, std::byte* to) con
     }
 }
 
-// The larger of two vectors of features, which are not negative: as whole numbers, since the bits
-// of such floats have their order, also those of their upper halves.
+// Takes the largest of 2x2 pixels' features, which are not negative: upper halves of floats as
+// whole numbers, since the bits of such floats have their order.
 template <class Element>
 static void pool_row(const Element* upper, const Element* lower, int count, int block,
                      Element* to) {
@@ -358,7 +358,7 @@ void UNet::Impl::take_output(const Part& part, const std::byte* from) {
 }
 
 void UNet::Impl::compute_tile(const Stage& stage, int tile) {
-  omp_set_num_threads(1);  // of this thread's calls of oneDNN
+  omp_set_num_threads(1);  // for this thread's calls of oneDNN
   Scratch& own = scratch.local();
   for (auto& buffer : own.tile) buffer.resize(tile_bytes);
   own.pad.resize(pad_bytes);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The U-Net of Intel Open Image Denoise (Ronneberger, Fischer, Brox 2015 for the form): 3x3
-// convolutions with ReLU, four times 2x2 max pooling, four times nearest upsampling joined with the
-// features of that level. Which of the two published forms it is, and how many channels each layer
-// has, the weights' names and shapes tell.
+// Computes the U-Net of Intel Open Image Denoise (Ronneberger, Fischer, Brox 2015 for the form):
+// 3x3 convolutions with ReLU, four times 2x2 max pooling, four times nearest upsampling joined with
+// the features of that level. The weights' names and shapes say which of the two published forms it
+// is, and how many channels each layer has.
 //
 // It is computed tile by tile, level by level: a tile reads its surroundings and computes them
-// again, so that the features of full resolution never exist as a whole and pieces are
-// independent. The same bits whatever the number of threads. Convolutions are oneDNN's, each on one
+// again, so that the features of full resolution never exist as a whole and pieces are independent.
+// The bits are the same whatever the number of threads. Convolutions are oneDNN's, each on one
 // thread; the pieces are oneTBB's.
 #pragma once
 #include <atomic>
@@ -22,11 +22,11 @@
 
 namespace wellspring::denoise {
 
-// Nine numbers of a pixel, each a share of 65535: encoded colour, albedo, encoded normal.
+// A pixel has nine numbers, each a share of 65535: encoded colour, albedo, encoded normal.
 inline constexpr int input_channels = 9;
 using InputPixels = RawVector<uint16_t>;
 
-// Why networks cannot run on this processor; nullptr: they can.
+// Returns why networks cannot run on this processor; nullptr if they can.
 const char* unet_problem();
 
 class UNet {
@@ -38,20 +38,22 @@ class UNet {
   UNet(UNet&&) noexcept;
   UNet& operator=(UNet&&) noexcept;
 
-  // Sets out for a picture of this size (any from 1x1). Borrows `input` (input_channels a pixel)
-  // until the last advance().
+  // Begins a picture of this size (any from 1x1). Borrows `input` (input_channels a pixel) until
+  // the last advance().
   void start(int width, int height, const InputPixels& input);
   // Computes for about `seconds`, at least one piece a core. Returns whether there is more to do.
-  // Where `stop` becomes true it returns soon, and what was done is kept.
+  // If `stop` becomes true it returns soon, and what was done is kept.
   bool advance(double seconds, const std::atomic<bool>* stop = nullptr);
-  // After the last advance(): encoded colour, 3 numbers a pixel.
+  // Returns the encoded colour, 3 numbers a pixel, after the last advance().
   const RawVector<vec3>& output() const;
 
-  // Features, weights as oneDNN has them, and each thread's tiles.
+  // Counts features, weights as oneDNN has them, and each thread's tiles.
   size_t memory_bytes() const;
-  // Multiplications and additions for a picture of the size started, without what tiles repeat.
+  // Returns the multiplications and additions for a picture of the size started, without those that
+  // tiles repeat.
   double operations() const;
-  // What oneDNN runs, for the report: "jit:avx2" and the like, one name for all layers or several.
+  // Returns which implementation oneDNN runs, for the report: "jit:avx2" and the like, one name for
+  // all layers or several.
   std::string implementation() const;
 
  private:
@@ -59,9 +61,10 @@ class UNet {
   std::unique_ptr<Impl> impl_;
 };
 
-// Layers of the two published networks, by level: those of a stage read and leave one resolution.
+// Lists the layers of the two published networks, by level: those of a stage read and leave one
+// resolution.
 
-// Names of its layers in turn; 0: full resolution.
+// Names the layers of a stage in turn; level 0 is full resolution.
 struct StageForm {
   int level;
   std::vector<std::string> layers;

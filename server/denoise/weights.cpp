@@ -19,7 +19,7 @@ constexpr size_t most_file_bytes = 64 << 20;
 constexpr uint32_t most_tensors = 1024, most_size = 1 << 16;
 constexpr int most_dimensions = 4;
 
-// Sign, exponent 5 and mantissa 10 (IEEE 754-2008 binary16).
+// Converts a half float: sign, exponent 5 and mantissa 10 (IEEE 754-2008 binary16).
 float float_of_half(uint16_t half) {
   float magnitude = std::bit_cast<float>(uint32_t(half & 0x7fff) << 13) * 0x1p112f;
   if ((half & 0x7c00) == 0x7c00) magnitude = (half & 0x3ff) ? NAN : INFINITY;
@@ -39,7 +39,7 @@ struct Reader {
     at += bytes;
     return file.subspan(at - bytes, bytes);
   }
-  // Little-endian.
+  // Reads a little-endian number.
   template <class T>
   T number() {
     T value = 0;
@@ -108,7 +108,7 @@ Weights read_weights(std::span<const std::byte> file, const std::string& path) {
   uint32_t count = reader.number<uint32_t>();
   if (count > most_tensors) reader.fail(size_t(table), std::to_string(count) + " tensors");
   Weights weights;
-  // Tensors may share their data: bounded all the same.
+  // Tensors may share their data: the sum is bounded all the same.
   size_t values = 0;
   for (uint32_t i = 0; i < count; i++) {
     size_t began = reader.at;

@@ -12,12 +12,13 @@ namespace wellspring::frame {
 namespace {
 
 constexpr int tolerance = 2;  // units; rounding to whole ones is the rest of worst_units
-constexpr int fraction_bits = 8, steepest = 32767;  // of slopes
-constexpr int least_run = 3;                        // pixels that a new plane has to have
-constexpr int long_enough = 12;  // pixels: of a known plane, so that no new one is looked for
-constexpr int longest_fit = 64;  // pixels across and down from which slopes are found
+// Bits of a slope's fraction, and the steepest slope in these.
+constexpr int fraction_bits = 8, steepest = 32767;
+constexpr int least_run = 3;     // pixels that a new plane has to have
+constexpr int long_enough = 12;  // pixels of a known plane from which on no new one is looked for
+constexpr int longest_fit = 64;  // most pixels, across and down, from which slopes are found
 constexpr uint8_t long_length = 255;
-constexpr int level = 4;  // of deflate
+constexpr int level = 4;  // level of deflate
 constexpr size_t header_bytes = 16;
 
 enum Kind : uint8_t { above, after, earlier, begins, values };
@@ -38,13 +39,13 @@ struct Run {
   int begin = 0, end = 0;
   int plane = -1;  // -1: none
   Kind kind = values;
-  int end_above = 0;  // of the run whose plane it has, kinds `above` and `after`
+  int end_above = 0;  // end of the run above whose plane this one has, kinds `above` and `after`
   int length() const {
     return kind == above || kind == after ? zigzag(end - end_above) : end - begin - 1;
   }
 };
 
-// These are the arrays of the format, in its order.
+// Holds the arrays of the format, in its order.
 struct Parts {
   std::vector<uint8_t> kind, length;
   std::vector<uint16_t> long_length, value, across, down, single;
@@ -70,7 +71,7 @@ class RowCoder {
   bool fits(const Plane& plane, int x, int y) const {
     return std::abs(plane.at(x, y) - unit_at(x, y)) <= tolerance;
   }
-  // Returns the pixel after the last one that it fits.
+  // Returns the pixel after the last one that the plane fits.
   int reach(const Plane& plane, int x, int y) const {
     while (x < width_ && fits(plane, x, y)) x++;
     return x;
@@ -97,7 +98,7 @@ class RowCoder {
   const int width_, height_;
   std::vector<uint16_t> units_;
   std::vector<Plane> planes_;
-  std::vector<Run> before_, row_;  // of the row above, and of this one
+  std::vector<Run> before_, row_;  // runs of the row above, and of this one
   Parts parts_;
 };
 
@@ -151,7 +152,7 @@ void RowCoder::add_plane(const Plane& plane) {
 
 void RowCoder::encode_row(int y) {
   row_.clear();
-  size_t over = 0;  // the run of the row above
+  size_t over = 0;  // index of the run above in the row above
   for (int x = 0; x < width_; x = row_.back().end) {
     while (over < before_.size() && before_[over].end <= x) over++;
     auto run_above = [&](size_t i) { return i < before_.size() ? &before_[i] : nullptr; };
@@ -185,7 +186,7 @@ uint32_t get_number(const uint8_t* from) {
   return uint32_t(from[0] | from[1] << 8 | from[2] << 16) | uint32_t(from[3]) << 24;
 }
 
-// Arrays are taken from the bytes one after the other.
+// Hands out arrays from the bytes one after the other.
 struct Bytes {
   std::span<const uint8_t> left;
   std::span<const uint8_t> take(size_t count) {
@@ -204,7 +205,7 @@ struct Bytes {
 class RowReader {
  public:
   RowReader(const Parts& parts, int width) : parts_(parts), width_(width) {}
-  // Returns false where this is no row.
+  // Returns false if this is no row.
   bool read(int y, float unit, float* to);
   bool done() const { return run_ == parts_.kind.size(); }
 

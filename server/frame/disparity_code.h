@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Disparities (1 / depth) of a picture in few bytes, for who reprojects it. On a plane they are
-// linear in the picture, and rooms are made of planes: every row is cut into runs that lie on one
-// plane each, mostly those that the row above has, and mostly ending where they end there. What
-// little is then left to say is deflated. In whole units; what is decoded is off by at most
-// worst_units of them.
+// Codes the disparities (1 / depth) of a picture in few bytes, for displays that reproject it. On a
+// plane they are linear in the picture, and rooms are made of planes: every row is cut into runs
+// that lie on one plane each, mostly those that the row above has, and mostly ending where they end
+// there. The little that is then left to say is deflated. Disparities are in whole units; decoded
+// ones are off by at most worst_units of them.
 //
 // Numbers are little-endian. The bytes: u32 runs, u32 planes, u32 values, u32 long lengths, then a
 // zlib stream of arrays, one after the other, each of numbers of 16 bits as all their low bytes,
@@ -13,7 +13,7 @@
 // the run after it; 2 the plane of the run before the last one in this row; 3 the next plane, which
 // begins here; 4 no plane, its pixels are the next values. Length of kind 0 and 1: how much farther
 // it ends than that run above, zigzag (0, -1, 1, -2 ...), else pixels less one; 255: the next long
-// length says so. Where there is no such run, or it has no plane, kinds 0 to 2 are an error.
+// length says so. If there is no such run, or it has no plane, kinds 0 to 2 are an error.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -23,13 +23,13 @@
 namespace wellspring::frame {
 
 inline constexpr float worst_units = 2.5f;
-inline constexpr int most_disparity = 65535;  // units; what is nearer is as far away as that
+inline constexpr int most_disparity = 65535;  // units; nearer places count as that
 
-// Appends to `out`. `unit`: disparity of one, above 0.
+// Appends the code to `out`. `unit`: disparity of one unit, above 0.
 void encode_disparity(std::span<const float> disparity, int width, int height, float unit,
                       std::vector<uint8_t>& out);
-// False: the bytes are no picture of that size; `disparity` is then of no use. Takes no more memory
-// than such a picture needs, whatever the bytes say.
+// Returns false if the bytes are no picture of that size; `disparity` is then of no use. Takes no
+// more memory than such a picture needs, whatever the bytes say.
 bool decode_disparity(std::span<const uint8_t> bytes, int width, int height, float unit,
                       std::vector<float>& disparity);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture in linear light, as a technique or the render cache leaves it and the tone map takes
-// it.
+// A frame is a picture in linear light, as a technique or the render cache leaves it and the tone
+// map takes it.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -12,7 +12,8 @@
 
 namespace wellspring::frame {
 
-// Row-major, top row first; every plane is width*height long or empty where nobody needs it.
+// Holds planes in row-major order, top row first; each is width*height long, or empty if nobody
+// needs it.
 struct Frame {
   int width = 0, height = 0;
   std::vector<vec3> color;        // linear Rec. 709 radiance
@@ -20,7 +21,7 @@ struct Frame {
   std::vector<uint32_t> object;   // 0: nothing hit
   std::vector<float> confidence;  // 0 (guessed) to 1 (converged)
 };
-// All planes of that size; what they hold means nothing.
+// Gives all planes that size; their contents mean nothing.
 inline void fit_frame(int width, int height, Frame& frame) {
   size_t pixels = size_t(width) * size_t(height);
   frame.width = width;
@@ -34,15 +35,15 @@ inline size_t memory_bytes(const Frame& frame) {
   return bytes_of(frame.color, frame.depth, frame.object, frame.confidence);
 }
 
-// 8-bit sRGB, 3 bytes a pixel, top row first.
+// Holds 8-bit sRGB, 3 bytes a pixel, top row first.
 struct Image8 {
   int width = 0, height = 0;
   std::vector<uint8_t> rgb;
 };
 
-// Pixels of a frame from lanes, and back.
+// Writes lanes as pixels of a frame.
 
-// Four pixels' channels one after the other.
+// Writes four pixels' channels one after the other.
 inline void interleave(const HalfLanes& r, const HalfLanes& g, const HalfLanes& b, float* to) {
   HalfLanes low = __builtin_shufflevector(r, g, 0, 4, 1, 5),
             high = __builtin_shufflevector(r, g, 2, 6, 3, 7),

@@ -16,9 +16,10 @@
 namespace wellspring::frame {
 namespace {
 
-constexpr int cheap_tiles = 4;  // with a rectangle more costs about as many bytes in tables
+// Tiles that cost about as many bytes as the tables of one more rectangle.
+constexpr int cheap_tiles = 4;
 
-constexpr size_t most_boxes = 64;  // that are worth a search
+constexpr size_t most_boxes = 64;  // boxes that are worth a search
 
 struct TileBox {
   int left, top, right, bottom;  // tiles; right and bottom are outside
@@ -33,7 +34,7 @@ TileBox around(const TileBox& a, const TileBox& b) {
           std::max(a.bottom, b.bottom)};
 }
 
-// Runs of wanted tiles, each joined to one of the same columns above it.
+// Finds runs of wanted tiles, each joined to one of the same columns above it.
 std::vector<TileBox> find_runs(const TileGrid& grid, const std::vector<char>& wanted) {
   std::vector<TileBox> boxes;
   const int columns = grid.columns();
@@ -51,7 +52,7 @@ std::vector<TileBox> find_runs(const TileGrid& grid, const std::vector<char>& wa
   return boxes;
 }
 
-// Joins two, and whatever then lies under both.
+// Joins two boxes, and whatever then lies under both.
 void join(std::vector<TileBox>& boxes, size_t first, size_t second) {
   TileBox box = around(boxes[first], boxes[second]);
   boxes.erase(boxes.begin() + ptrdiff_t(std::max(first, second)));
@@ -104,7 +105,7 @@ std::vector<ImagePart> cover(const TileGrid& grid, const std::vector<char>& want
 
 std::vector<ImagePart> cover(const TileGrid& grid, const std::vector<char>& wanted, size_t most) {
   std::vector<TileBox> boxes = find_runs(grid, wanted);
-  // So scattered that nearly all has changed.
+  // Boxes are so scattered that nearly all has changed.
   while (boxes.size() > most_boxes) join(boxes, 0, boxes.size() - 1);
   while (boxes.size() > 1) {
     int least = std::numeric_limits<int>::max();
@@ -137,7 +138,8 @@ void copy_part(const Image8& from, const ImagePart& part, Image8& to) {
 
 namespace {
 
-// Of one target: the first source, and the weights of it and of those that follow, 256 in all.
+// Holds the first source pixel of one target pixel, and the weights of it and of those that follow,
+// 256 in all.
 struct Span {
   int first = 0;
   std::vector<uint32_t> weights;
@@ -213,7 +215,8 @@ void encode_jpeg(const Image8& image, const ImagePart& part, int quality, bool f
   thread_local Handle handle{tjInitCompress()};
   int chroma = full_chroma ? TJSAMP_444 : TJSAMP_420;
   unsigned long size = tjBufSize(part.width, part.height, chroma);
-  // Several times what most pictures need: of memory that is not written to, the system gives none.
+  // This is several times what most pictures need, but the system gives no memory until it is
+  // written.
   auto room = std::make_unique_for_overwrite<unsigned char[]>(size);
   unsigned char* bytes = room.get();
   const uint8_t* first = &image.rgb[(size_t(part.y) * size_t(image.width) + size_t(part.x)) * 3];
@@ -227,7 +230,7 @@ void encode_jpeg(const Image8& image, const ImagePart& part, int quality, bool f
 }
 
 void add_jpeg_comment(const std::string& comment, std::vector<uint8_t>& jpeg) {
-  constexpr size_t most = 65533, begin = 2;  // begin: of the file, SOI
+  constexpr size_t most = 65533, begin = 2;  // begin: length of the file's beginning, SOI
   const size_t size = std::min(comment.size(), most) + 2;
   std::vector<uint8_t> segment = {0xff, 0xfe, uint8_t(size >> 8), uint8_t(size)};
   segment.insert(segment.end(), comment.begin(), comment.begin() + ptrdiff_t(size - 2));

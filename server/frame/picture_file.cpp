@@ -86,8 +86,8 @@ namespace {
 constexpr int64_t most_exr_pixels = int64_t(1) << 26;
 constexpr int64_t farthest_window = 1 << 20;
 
-// The names of a file's red, green and blue: plain, a lone Y, or those of the first layer with all
-// three.
+// Returns the names of a file's red, green and blue: plain, a lone Y, or those of the first layer
+// with all three.
 std::array<std::string, 3> color_channels(const Imf::ChannelList& channels,
                                           const std::string& path) {
   if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B"))
@@ -103,15 +103,15 @@ std::array<std::string, 3> color_channels(const Imf::ChannelList& channels,
   throw LoadError(path, "channels", "no R, G and B, and no Y");
 }
 
-uint32_t read_word(std::string_view bytes, size_t at) {  // beyond the end: 0
+uint32_t read_word(std::string_view bytes, size_t at) {  // bytes beyond the end are 0
   uint32_t word = 0;
   for (size_t i = 0; i < 4 && at + i < bytes.size(); i++)
     word |= uint32_t(uint8_t(bytes[at + i])) << (8 * i);
   return word;
 }
 
-// How much OpenEXR reads of a value of this type whose size says `size`: some types by what stands
-// in the value. `rest`: from the value to the file's end.
+// Returns how many bytes OpenEXR reads of a value of this type whose size is said to be `size`: for
+// some types the value itself decides. `rest`: bytes from the value to the file's end.
 uint64_t bytes_read(const std::string& type, std::string_view rest, uint32_t size) {
   static const std::map<std::string, uint64_t> fixed = {
       {"box2f", 16},         {"box2i", 16},    {"chromaticities", 32},
@@ -135,10 +135,10 @@ uint64_t bytes_read(const std::string& type, std::string_view rest, uint32_t siz
   return at + 1;
 }
 
-// OpenEXR makes room for an attribute of any size before it looks for its bytes. Sizes beyond the
-// file's end, and those that are not what a value of the type takes, are refused here (OpenEXR File
-// Layout, "Header"): name, type, size, value; an empty name ends a header, of which files of
-// several parts have several.
+// Refuses attributes whose sizes reach beyond the file's end or are not what a value of the type
+// takes: OpenEXR makes room for an attribute of any size before it looks for its bytes. A header
+// (OpenEXR File Layout, "Header") has name, type, size, value; an empty name ends it; files of
+// several parts have several headers.
 void check_attributes(const std::string& bytes, const std::string& path) {
   if (bytes.size() < 8) return;  // OpenEXR says what is missing
   const bool parts = bytes[5] & 0x10;
@@ -269,7 +269,7 @@ bool is_8bit(const std::string& ending) {
   return ending == "png" || ending == "jpg" || ending == "jpeg";
 }
 
-// A tEXt chunk behind the header (PNG specification, section 11.3.4.3).
+// Inserts a tEXt chunk behind the header (PNG specification, section 11.3.4.3).
 void add_png_comment(const std::string& comment, std::vector<char>& png) {
   constexpr size_t header_end = 33;  // signature 8, IHDR 25
   std::string chunk = "tEXtComment";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures on disk. .png .jpg are tone-mapped 8-bit, .pfm .exr linear radiance (32-bit float).
+// Reads and writes pictures on disk. .png .jpg are tone-mapped 8-bit, .pfm .exr linear radiance
+// (32-bit float).
 #pragma once
 #include <istream>
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace wellspring::frame {
 
-// The two linear formats, to and from memory: PFM (netpbm,
+// Converts pictures of the two linear formats to and from memory: PFM (netpbm,
 // http://www.pauldebevec.com/Research/HDR/PFM/) and OpenEXR (32-bit float, ZIP). Readers take the
 // colour only and throw LoadError{path,...}.
 
@@ -22,20 +23,20 @@ std::vector<char> encode_exr(const Frame& frame, const std::string& path,
                              const std::string& comment = {});
 
 Frame decode_pfm(std::istream& in, const std::string& path);
-// Scan lines or tiles, half or float; channels R, G, B, or Y alone, or the first layer that has
-// them.
+// Reads scan lines or tiles, half or float; channels R, G, B, or Y alone, or the first layer that
+// has them.
 Frame decode_exr(std::istream& in, const std::string& path);
 
-// True for a file name whose ending we can write.
+// Returns whether the ending of a file name is one that we can write.
 bool is_picture_name(const std::string& path);
-bool is_linear_picture_name(const std::string& path);  // of radiance: .pfm .exr
+bool is_linear_picture_name(const std::string& path);  // radiance: .pfm .exr
 // Writes to a temporary name and renames, so a reader never sees half a file. Throws LoadError.
 // `comment`: kept in the file (PNG text "Comment", OpenEXR "comments", JPEG comment; PFM has none).
 void save_picture(const std::string& path, const Frame& frame, const Tonemap& settings,
                   const std::string& comment = {});
-// .png or .jpg
+// Writes .png or .jpg.
 void save_image8(const std::string& path, const Image8& image, const std::string& comment = {});
-// Linear pictures back (.pfm .exr): colour only. Throws LoadError.
+// Reads a linear picture back (.pfm .exr): colour only. Throws LoadError.
 Frame load_linear_picture(const std::string& path);
 
 }  // namespace wellspring::frame

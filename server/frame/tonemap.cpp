@@ -10,7 +10,7 @@
 namespace wellspring::frame {
 namespace {
 
-// Eight colours, a channel after the other in memory.
+// Loads eight colours, whose channels lie one after the other in memory.
 Lanes3 load_colors(const float* from) {
   Lanes a = load_lanes(from), b = load_lanes(from + lane_count),
         c = load_lanes(from + 2 * lane_count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear radiance to 8-bit sRGB for the eye. Called once a frame per visitor; never blocks, never
-// fails: NaN and negative values become black, infinity white.
+// Maps linear radiance to 8-bit sRGB for the eye. It is called once a frame per visitor; it never
+// blocks and never fails: NaN and negative values become black, infinity white.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,8 +11,9 @@
 
 namespace wellspring::frame {
 
-// The curve of frame/tonemap.h for eight pixels at a time: for those who make a picture for the eye
-// and need no picture of radiance in between. And back, for those who mix light of such a picture.
+// Computes the curve of frame/tonemap.h for eight pixels at a time, for code that makes a picture
+// for the eye and needs no picture of radiance in between; and its inverse, for code that mixes
+// light of such a picture.
 
 // The shoulder of the Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral):
 // colours up to 0.8 are shown as they are, brighter ones keep their hue while their peak approaches
@@ -23,8 +24,9 @@ inline constexpr float shoulder_height = 1 - shoulder_start;
 inline constexpr float shoulder_desaturation = 0.15f;
 inline constexpr float brightest_shown = 1e8f;  // stands for infinity, so that no inf/inf arises
 
-// The sRGB transfer function without pow: 1.055 x^(1/2.4) - 0.055 as a polynomial in sqrt(x),
-// fitted by Remez exchange on [0.0031308, 1]; it stays within 0.04 of a 255th of the exact curve.
+// Computes the sRGB transfer function without pow: 1.055 x^(1/2.4) - 0.055 as a polynomial in
+// sqrt(x), fitted by Remez exchange on [0.0031308, 1]; it stays within 0.04 of a 255th of the exact
+// curve.
 inline Lanes encode_srgb(Lanes x) {
   Lanes s = lanes_sqrt(x);
   Lanes curve =
@@ -35,8 +37,8 @@ inline Lanes encode_srgb(Lanes x) {
   return x < 0.0031308f ? 12.92f * x : curve;
 }
 
-// A channel is shown as channel * scale + offset where the largest is `above`, at least
-// shoulder_start.
+// Finds scale and offset: a channel is shown as channel * scale + offset if the largest one is
+// `above`, at least shoulder_start.
 template <class Number>
 void eval_shoulder(Number above, Number& scale, Number& offset) {
   Number squeezed =
@@ -45,9 +47,9 @@ void eval_shoulder(Number above, Number& scale, Number& offset) {
   scale = squeezed / above * keep, offset = squeezed * (1 - keep);
 }
 
-// What the codes of bright colours cannot tell any more, and of light beyond white not at all:
-// radiance times exposure of a colour's largest channel in a byte, 32 steps an octave (the first
-// bits of the float). 0: less than least_peak; 255: that of 255 or more.
+// A peak code holds the radiance times exposure of a colour's largest channel in a byte, 32 steps
+// an octave (the first bits of the float): the codes of bright colours hold it badly, and those of
+// light beyond white not at all. 0: less than least_peak; 255: that of 255 or more.
 inline constexpr float least_peak = 0.5f;
 inline constexpr int peak_shift = 18;
 inline LaneMask eval_peak_codes(Lanes peak) {
@@ -60,7 +62,7 @@ inline LaneMask eval_peak_codes(Lanes peak) {
   const LaneMask code = (bits(lanes_max(peak, least)) - bits(least)) >> peak_shift;
   return code < 255 ? code : LaneMask{} + 255;
 }
-// The least peak that has this code.
+// Returns the least peak that has this code.
 inline float peak_of(int code) {
   int32_t bits;
   std::memcpy(&bits, &least_peak, sizeof bits);
@@ -70,17 +72,18 @@ inline float peak_of(int code) {
   return peak;
 }
 
-// The largest channel that is shown as `squeezed`, from shoulder_start to below 1.
+// Returns the largest channel that is shown as `squeezed`, from shoulder_start to below 1.
 inline float invert_shoulder(float squeezed) {
   return shoulder_start - shoulder_height +
          shoulder_height * shoulder_height / std::max(1 - squeezed, 1e-6f);
 }
 inline constexpr float most_told = 1.1f;
-// Radiance times exposure from `shown`, the linear values of a pixel's codes, and its peak's code.
+// Returns radiance times exposure from `shown`, the linear values of a pixel's codes, and its
+// peak's code.
 inline vec3 invert_tone_curve(vec3 shown, uint8_t peak_code) {
   float squeezed = std::max(shown.x, std::max(shown.y, shown.z));
   if (squeezed <= shoulder_start) return shown;
-  // The codes tell the peak better than its own while there are many of them.
+  // As long as there are many colour codes, they hold the peak better than its own code does.
   float low = peak_of(peak_code), high = peak_of(peak_code + 1), above = 0.5f * (low + high);
   if (above < most_told)
     above = std::clamp(invert_shoulder(squeezed), std::max(low, shoulder_start),
@@ -91,7 +94,7 @@ inline vec3 invert_tone_curve(vec3 shown, uint8_t peak_code) {
           std::clamp(light.z, 0.0f, above)};
 }
 
-// Radiance times exposure to red | green << 8 | blue << 16 of the eye's picture.
+// Maps radiance times exposure to red | green << 8 | blue << 16 of the eye's picture.
 inline LaneMask eval_tone_curve(Lanes3 c) {
   auto usable = [](Lanes x) {
     x = x > 0 ? x : all_lanes(0);  // false for NaN
@@ -110,7 +113,7 @@ inline LaneMask eval_tone_curve(Lanes3 c) {
   return code(c.x) | code(c.y) << 8 | code(c.z) << 16;
 }
 
-// Eight pixels as 24 bytes.
+// Stores eight pixels as 24 bytes.
 inline void store_pixels(uint8_t* to, LaneMask codes) {
   using Bytes = uint8_t __attribute__((vector_size(4 * lane_count)));
   Bytes b;
@@ -124,7 +127,7 @@ struct Tonemap {
   float exposure = 1;  // multiplies radiance before the curve
 };
 
-// Overwrites `out` (resized to the frame). Deterministic; dithering is not applied.
+// Overwrites `out` (resized to the frame). The result is deterministic; dithering is not applied.
 void tonemap(const Frame& frame, const Tonemap& settings, Image8& out);
 
 }  // namespace wellspring::frame

@@ -9,7 +9,8 @@
 namespace wellspring::gltf {
 namespace {
 
-// Appendix C.3 to C.5. Cubic keys are laid out in-tangent, value, out-tangent.
+// Returns the track's value at a time, as appendix C.3 to C.5 says. Cubic keys are laid out
+// in-tangent, value, out-tangent.
 std::vector<double> eval_track(const Track& track, double time) {
   size_t width = track.width, keys = track.times.size();
   bool cubic = track.curve == Curve::cubic;
@@ -123,7 +124,7 @@ void read_track(File& file, const json& sampler, const std::string& where, Track
     if (!std::isfinite(value)) refuse(file, where + "/output", "holds a value that is not finite");
 }
 
-// The clip's tracks that have something to move; their data too if `with_data`.
+// Reads the clip's tracks that have something to move; their data too if `with_data`.
 Clip read_clip(File& file, const json& animation, const std::string& where,
                const std::vector<Node>& nodes, bool with_data) {
   Clip clip;
@@ -254,7 +255,8 @@ Node read_node(File& file, size_t index) {
   return node;
 }
 
-// One parent each and no cycles, so that walking down costs no more than the nodes there are.
+// Links nodes to their parents, one parent each and no cycles, so that walking down costs no more
+// than there are nodes.
 std::vector<uint32_t> link_parents(File& file, std::vector<Node>& nodes) {
   const json& list = items(file.root, "nodes");
   for (size_t i = 0; i < nodes.size(); i++) {

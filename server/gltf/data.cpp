@@ -11,7 +11,7 @@ namespace {
 
 struct NamedType {
   const char* name;
-  int components, rows;  // rows: of a matrix's column, 0 for the rest
+  int components, rows;  // rows: in a matrix's column, 0 for the rest
 };
 constexpr NamedType types[] = {{"SCALAR", 1, 0}, {"VEC2", 2, 0}, {"VEC3", 3, 0}, {"VEC4", 4, 0},
                                {"MAT2", 4, 2},   {"MAT3", 9, 3}, {"MAT4", 16, 4}};
@@ -46,7 +46,8 @@ const char* component_name(int component_type) {
   return "an unknown component type";
 }
 
-// Byte offsets of the components in an element; columns of matrices start at multiples of four.
+// Holds byte offsets of the components in an element; columns of matrices start at multiples of
+// four.
 struct ElementLayout {
   int components = 0, size = 0;
   int offset[16] = {};
@@ -70,7 +71,7 @@ float component(const uint8_t* p, bool normalized) {
   if constexpr (std::is_same_v<T, float>) return value;
   else {
     if (!normalized) return float(value);
-    // Section 3.11: signed ones reach -1 twice.
+    // Section 3.11: signed integers reach -1 twice.
     return std::max(float(double(value) / double(std::numeric_limits<T>::max())), -1.0f);
   }
 }
@@ -107,7 +108,7 @@ uint32_t unsigned_component(const uint8_t* p, int component_type) {
 
 std::string accessor_place(size_t accessor) { return at("/accessors", accessor); }
 
-// Tightly packed `count` elements at byteOffset of a view must fit: sections 3.6.2.4 and 3.6.2.3.
+// Checks that `count` elements at byteOffset of a view fit into it: sections 3.6.2.4 and 3.6.2.3.
 void check_fit(const File& file, const std::string& where, const json& reader, int64_t count,
                int64_t stride, int64_t size) {
   int64_t view = integer(reader, "bufferView", 0);
@@ -143,14 +144,14 @@ void check_accessor(File& file, size_t index) {
   int64_t component_type = integer(accessor, "componentType", 0);
   int bytes = component_type <= float_component ? component_size(int(component_type)) : 0;
   int64_t count = integer(accessor, "count", 0);
-  // Those with bytes are bounded by these: check_fit.
+  // Accessors with bytes are bounded by these: check_fit.
   if (const int64_t most = empty_numbers_limit / (type ? type->components : 1);
       !find(accessor, "bufferView") && count > most)
     refuse_beyond(file, where + "/count", most, "elements without bytes of their own",
                   "give it a bufferView");
   if (!type || bytes == 0) {
     warn(file, where, "an accessor of unknown type");
-    return;  // refused where it is used
+    return;  // the file is refused if something uses the accessor
   }
   ElementLayout layout = layout_of(*type, int(component_type));
   check_sparse(file, accessor, count, layout.size, where);
@@ -190,7 +191,8 @@ void check_view(File& file, size_t index) {
   if (stride > length) warn(file, where + "/byteStride", "a stride longer than its buffer view");
 }
 
-// Where an accessor's or a sparse part's bytes start. The layout was checked against the view.
+// Returns where an accessor's or a sparse part's bytes start. The layout was checked against the
+// view.
 const uint8_t* start_of(File& file, const json& reader) {
   std::span<const uint8_t> view = view_bytes(file, size_t(integer(reader, "bufferView", 0)));
   return view.data() + integer(reader, "byteOffset", 0);

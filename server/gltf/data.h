@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers out of a glTF file's buffers: every accessor form of section 3.6.2 - interleaved,
-// normalised, sparse, each component type, and none at all (zeros). Layouts were checked when the
+// Reads numbers out of a glTF file's buffers: every accessor form of section 3.6.2 - interleaved,
+// normalised, sparse, each component type, and without bytes (zeros). Layouts were checked when the
 // file was loaded.
 #pragma once
 #include <span>
@@ -9,20 +9,20 @@
 
 namespace wellspring::gltf {
 
-// Data that a file has compressed, brought to the form that all else reads: buffer views by
+// Unpacks a file's compressed data into the form that all other code reads: buffer views by
 // EXT_meshopt_compression (KHR_meshopt_compression as far as it is the same), meshes by
-// KHR_draco_mesh_compression. The decoders are given only what was checked, and no more than
+// KHR_draco_mesh_compression. The decoders get only checked data, and no more than
 // unpacked_bytes_limit comes out of a file.
 
-// A buffer view's extension; null: it is stored as it is.
+// Returns a buffer view's extension; null: it is stored as it is.
 const json* meshopt_of(const json& view);
-// Checks it against its buffer and the rules of its mode and filter.
+// Checks the view's extension against its buffer and the rules of its mode and filter.
 void check_meshopt(File& file, size_t view);
-// The view's bytes, decoded once.
+// Returns the view's bytes, decoded once.
 const Bytes& unpack_meshopt(File& file, size_t view);
 
-// Gives each primitive that is compressed a buffer of its own, to which its accessors then point.
-// To be called when buffer views are checked and accessors are not.
+// Gives each compressed primitive a buffer of its own, to which its accessors then point. To be
+// called when buffer views are checked and accessors are not.
 void unpack_draco(File& file);
 
 enum ComponentType {
@@ -34,29 +34,29 @@ enum ComponentType {
   float_component = 5126,
 };
 
-// What an accessor says about itself.
+// Holds an accessor's own description.
 struct Form {
   int64_t count = 0;
-  int components = 0;      // 1..16; 0: of a type unknown to glTF 2.0
+  int components = 0;      // 1..16; 0: the type is unknown to glTF 2.0
   int component_type = 0;  // 0: unknown
   bool normalized = false;
 };
 Form form_of(const File& file, size_t accessor);
 std::string describe(const File& file, size_t accessor);  // "VEC3 of FLOAT", for messages
 
-// Whether an accessor's bytes exist at all: glTF lets a buffer be declared without content.
+// Returns whether an accessor's bytes exist at all: glTF lets a buffer be declared without content.
 bool has_data(const File& file, size_t accessor);
 
-// All elements as floats, `components` after one another. Matrices lose their column padding.
-// Throws LoadError if the accessor's type is unknown or its bytes are missing.
+// Returns all elements as floats, `components` after one another. Matrices lose their column
+// padding. Throws LoadError if the accessor's type is unknown or its bytes are missing.
 std::shared_ptr<const std::vector<float>> read_floats(File& file, size_t accessor);
-// Elements of an unsigned integer accessor. Throws LoadError.
+// Returns the elements of an unsigned integer accessor. Throws LoadError.
 std::vector<uint32_t> read_integers(File& file, size_t accessor);
-// A buffer's bytes, at least as many as it says.
+// Returns a buffer's bytes, at least as many as it says.
 const Bytes& buffer_bytes(File& file, size_t buffer);
-// Counts what is unpacked towards the file's limit.
+// Counts unpacked bytes towards the file's limit.
 void charge_unpacked(File& file, const std::string& where, int64_t bytes);
-// The bytes of a buffer view, unpacked.
+// Returns the bytes of a buffer view, unpacked.
 std::span<const uint8_t> view_bytes(File& file, size_t view);
 
 }  // namespace wellspring::gltf

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From path to JSON and bytes: the GLB container (glTF 2.0 section 4), nesting limits, the package.
+// Reads a file from its path to JSON and bytes: the GLB container (glTF 2.0 section 4), nesting
+// limits, the package.
 #include "gltf/file.h"
 
 #include <algorithm>
@@ -17,13 +18,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr size_t most_entries = 20'000;  // of a folder, that are compared
+constexpr size_t most_entries = 20'000;  // most entries of a folder that are compared
 
 bool is_ascii(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return (c & 0x80) == 0; });
 }
 
-// The entry of a folder whose name is the same by Unicode; of several the first.
+// Finds the entry of a folder whose name is the same by Unicode; of several the first.
 std::optional<fs::path> find_alike(const fs::path& folder, const std::string& name) {
   if (is_ascii(name)) return {};
   const std::string wanted = nfc(name);
@@ -84,7 +85,7 @@ uint32_t word(const Bytes& bytes, size_t offset) {
          uint32_t(bytes[offset + 2]) << 16 | uint32_t(bytes[offset + 3]) << 24;
 }
 
-// The JSON library copies and prints by recursion, so depth is bounded before it sees the text.
+// Checks the depth of nesting, as the JSON library copies and prints by recursion.
 void check_depth(const File& file, const char* begin, const char* end) {
   int depth = 0;
   bool in_string = false;
@@ -125,7 +126,7 @@ void parse_json(File& file, const char* begin, const char* end) {
   }
 }
 
-// Takes the bytes: those of the binary chunk stay, without a copy.
+// Splits a GLB and takes its bytes: the binary chunk's bytes stay, without a copy.
 void split_glb(File& file, Bytes bytes) {
   if (bytes.size() < 20) refuse(file, "byte 0", "GLB header is cut short");
   if (word(bytes, 4) != 2)
@@ -164,7 +165,8 @@ void split_glb(File& file, Bytes bytes) {
   file.binary = std::move(bytes);
 }
 
-// Names are compared with those of other files: exhibit.json, stories (base/unicode.h).
+// Normalises names, which are compared with those of other files: exhibit.json, stories
+// (base/unicode.h).
 void normalise_names(File& file) {
   auto normalise = [](json& list) {
     for (json& object : list)
@@ -326,7 +328,7 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-// RFC 3986 section 3.1, in lower case; empty: a relative reference.
+// Returns the scheme (RFC 3986 section 3.1) in lower case; empty: a relative reference.
 std::string scheme_of(std::string_view uri) {
   const size_t colon = uri.find(':');
   if (colon == std::string_view::npos || uri.find_first_of("/?#") < colon) return "";
@@ -358,7 +360,7 @@ Bytes decode_base64(const File& file, const std::string& where, std::string_view
   return bytes;
 }
 
-// Without ";base64" the bytes are percent-encoded; base64 may be, too.
+// Decodes a data URI: without ";base64" the bytes are percent-encoded; base64 may be, too.
 Bytes decode_data_uri(const File& file, const std::string& where, std::string_view uri) {
   const size_t comma = uri.find(',');
   if (comma == std::string_view::npos) refuse(file, where, "data URI without a comma");
@@ -373,7 +375,7 @@ Bytes decode_data_uri(const File& file, const std::string& where, std::string_vi
 
 std::string quoted(const std::string& uri) { return "\"" + uri.substr(0, 200) + "\""; }
 
-// The path from the package's folder that a URI means, without "." and "..".
+// Returns the path from the package's folder that a URI means, without "." and "..".
 fs::path resolve(const File& file, const std::string& where, const std::string& uri) {
   auto refuse_it = [&](const std::string& why) { refuse(file, where, quoted(uri) + " " + why); };
   if (const std::string scheme = scheme_of(uri); !scheme.empty())
@@ -414,7 +416,7 @@ std::optional<fs::path> find_uri(const File& file, const std::string& where,
                                  const std::string& uri) {
   const std::optional<fs::path> found = find_file(file.package, resolve(file, where, uri));
   if (!found) return {};
-  // Links are followed and judged by where they lead.
+  // Links are followed and judged by the file to which they lead.
   std::error_code error;
   const fs::path canonical = fs::weakly_canonical(*found, error);
   if (error || !lies_in(canonical, file.package))

@@ -51,7 +51,8 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
   return triangles;
 }
 
-// Keeps only vertices that a triangle uses: exporters let many primitives share one long list.
+// Keeps only vertices that a triangle uses, since exporters let many primitives share one long
+// list.
 void choose_vertices(File& file, const std::string& where, size_t vertex_count, Corners& corners) {
   constexpr uint32_t unseen = 0xffffffffu;
   std::vector<uint32_t>& renamed = file.renamed;
@@ -82,7 +83,7 @@ Corners read_corners(File& file, const json& primitive, const std::string& where
 
 namespace {
 
-// "TEXCOORD_1" -> "TEXCOORD"
+// Turns "TEXCOORD_1" into "TEXCOORD".
 std::string family(const std::string& semantic) {
   size_t underscore = semantic.find('_', 1);
   return semantic.substr(0, underscore);
@@ -94,7 +95,8 @@ bool is_quantized(const File& file) {
   return false;
 }
 
-// Whether an attribute of this family may have this form. Strides and alignment never matter here.
+// Returns whether an attribute of this family may have this form. Strides and alignment never
+// matter here.
 bool is_allowed(const std::string& name, const Form& form, bool is_target, bool quantized) {
   if (form.component_type == 0 || form.component_type == unsigned_int) return false;
   bool is_float = form.component_type == float_component;
@@ -240,7 +242,7 @@ std::vector<vec4> read_vec4s(File& file, const json& attributes, const std::stri
 
 namespace {
 
-// Values of an attribute of all instances; an empty list: the node has none of it.
+// Reads values of an attribute of all instances; an empty list: the node does not have it.
 std::vector<float> read_instance_values(File& file, const json& attributes, const char* name,
                                         int components, const std::string& where, int64_t& count) {
   const json* accessor = find(attributes, name);

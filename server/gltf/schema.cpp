@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The glTF 2.0 schema (section 5) as one table, and a walker that holds a file's JSON against it.
-// The table also names what every index points into, so no reference survives unchecked.
+// Holds the glTF 2.0 schema (section 5) as one table, and checks a file's JSON against it. The
+// table also names the list into which every index points, so no reference survives unchecked.
 #include <cmath>
 #include <map>
 
@@ -14,9 +14,9 @@ enum class Kind {
   integer,
   number,
   text,
-  index,    // into the root list `target`
-  object,   // of type `target`
-  map,      // of names to indices into `target`
+  index,    // index into the root list `target`
+  object,   // object of type `target`
+  map,      // map of names to indices into `target`
   numbers,  // list of numbers
   texts,    // list of strings
   indices,  // list of indices into `target`
@@ -25,13 +25,13 @@ enum class Kind {
 };
 
 struct Rule {
-  const char* type;  // of the object that has the property
+  const char* type;  // type of the object that has the property
   const char* property;
   Kind kind;
   const char* target = "";
   bool required = false;
   double low = -1e300;            // least number allowed
-  int least = 0, most = 1 << 30;  // items of a list
+  int least = 0, most = 1 << 30;  // number of items of a list
 };
 
 constexpr bool must = true;
@@ -225,7 +225,7 @@ const Rule rules[] = {
 
 class Walker {
  public:
-  // One that has become another under its first name.
+  // Returns an extension's first name, if it has got another one since.
   static std::string renamed(const std::string& extension) {
     return extension == "KHR_meshopt_compression" ? "EXT_meshopt_compression" : extension;
   }
@@ -325,7 +325,7 @@ class Walker {
     }
   }
 
-  // Items in a root list; zero where it is missing or no list (which its own rule refuses).
+  // Counts the items in a root list; zero if it is missing or no list (which its own rule refuses).
   size_t list_size(const char* target) {
     auto [known, fresh] = sizes_.try_emplace(target, 0);
     if (fresh) {

@@ -11,11 +11,11 @@ namespace wellspring::gltf {
 namespace {
 
 constexpr const char* draco_name = "KHR_draco_mesh_compression";
-constexpr uint16_t least_version = 0x0202;   // of the bitstream, which the extension asks for
-constexpr uint32_t most_attributes = 16;     // sets of corners, each with memory of its own
+constexpr uint16_t least_version = 0x0202;   // bitstream version that the extension asks for
+constexpr uint32_t most_attributes = 16;     // each keeps a set of corners, with memory of its own
 constexpr uint64_t most_faces_a_byte = 256;  // no real mesh comes near
 
-// A stream says its size before anything is made of it.
+// Holds the size that a stream claims, before anything is made of it.
 struct DracoClaim {
   uint64_t faces = 0, points = 0;
 };
@@ -106,7 +106,7 @@ std::unique_ptr<draco::Mesh> decode(File& file, const std::string& where,
 
 struct DracoPrimitive {
   json& primitive;
-  const std::string where;  // of the extension
+  const std::string where;  // place of the extension in the file
 };
 
 void unpack_primitive(File& file, const DracoPrimitive& one) {
@@ -176,7 +176,7 @@ void unpack_primitive(File& file, const DracoPrimitive& one) {
 
 void unpack_draco(File& file) {
   if (!file.root.contains("meshes")) return;
-  // Primitives may share all of their data; accessors that have theirs keep it.
+  // Primitives may share all of their data; accessors of data that is unpacked already keep it.
   std::set<std::pair<json, json>> done;
   json& meshes = file.root["meshes"];
   for (size_t m = 0; m < meshes.size(); m++) {

@@ -16,13 +16,13 @@ static constexpr int64_t first_day = 18262;  // 2020-01-01
 
 struct Ledger::Impl {
   const LedgerSettings settings;
-  mutable std::mutex mutex;  // of what follows
+  mutable std::mutex mutex;  // guards the next fields
   std::condition_variable changed;
   Sums waiting, undated;
   std::string problem;
   int64_t last_day = 0;
   bool hurry = false, end = false;
-  mutable std::mutex file;  // is being used; taken before `mutex`
+  mutable std::mutex file;  // held while the file is used; taken before `mutex`
   std::thread thread;
 
   explicit Impl(LedgerSettings given) : settings(std::move(given)) {
@@ -44,7 +44,7 @@ struct Ledger::Impl {
     while (!end) {
       changed.wait_for(lock, std::chrono::duration<double>(settings.seconds),
                        [this] { return end || hurry; });
-      if (end) return;  // the rest is written by whoever ends it
+      if (end) return;  // the destructor writes the rest
       hurry = false;
       lock.unlock();
       write();
@@ -67,7 +67,7 @@ struct Ledger::Impl {
       wrong = error.what();
     }
     std::lock_guard lock(mutex);
-    if (!wrong.empty()) wellspring::ledger::add(waiting, sums);  // later
+    if (!wrong.empty()) wellspring::ledger::add(waiting, sums);  // they wait for the next write
     if (!wrong.empty() && problem.empty()) log::warn("sums cannot be written: {}", wrong);
     if (wrong.empty() && !problem.empty()) log::info("sums are written again");
     problem = wrong;
@@ -98,7 +98,7 @@ void Ledger::add(const Sums& sums) {
 bool Ledger::write() { return impl_->write(); }
 
 Sums Ledger::read(int64_t from, int64_t to) const {
-  std::lock_guard use(impl_->file);  // nothing is on its way from memory to the file
+  std::lock_guard use(impl_->file);  // now no sums are between memory and the file
   Sums sums = read_from_file(impl_->settings.file, from, to, impl_->settings.patience);
   std::lock_guard lock(impl_->mutex);
   for (const auto& [key, value] : impl_->waiting)

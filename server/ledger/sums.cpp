@@ -158,7 +158,7 @@ bool is_damage(const FileError& error) {
   return error.code == SQLITE_CORRUPT || error.code == SQLITE_NOTADB;
 }
 
-// Another server may have begun it anew meanwhile.
+// Returns whether the file is undamaged: another server may have begun it anew meanwhile.
 bool is_whole(const std::string& file, int patience) {
   try {
     Database database(file, false, patience);
@@ -177,7 +177,7 @@ void put_aside(const std::string& file) {
   std::strftime(when, sizeof when, ".damaged-%Y%m%d-%H%M%S", &local);
   const std::string aside = file + when;
   fs::rename(file, aside);
-  std::error_code error;  // there may be none
+  std::error_code error;  // ignored: these files may be missing
   for (const char* end : {"-wal", "-shm"}) fs::rename(file + end, aside + end, error);
   log::warn("{}: is damaged; it is now {}, and sums begin anew", file, aside);
 }

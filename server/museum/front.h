@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is there from the first moment, while exhibits are still being loaded: questions are told to
-// come back, peers wait, and are let in when the museum opens. Any thread.
+// Answers from the first moment, while exhibits are still being loaded: HTTP questions get "come
+// back later", links wait and join the museum when it opens. Any thread.
 #pragma once
 #include <map>
 #include <memory>
@@ -15,7 +15,7 @@ namespace wellspring::museum {
 class Front {
  public:
   explicit Front(const std::map<std::string, PageFile>& pages) : pages_(pages) {}
-  void open(Museum& museum);  // those who wait go in
+  void open(Museum& museum);  // waiting links join it
   void join(std::shared_ptr<Link> link);
   HttpReply answer(const HttpQuestion& question);
   bool answer_later(const HttpQuestion& question, const std::shared_ptr<HttpAsker>& asker);
@@ -23,7 +23,7 @@ class Front {
  private:
   Museum* museum();
   const std::map<std::string, PageFile>& pages_;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the next fields
   Museum* museum_ = nullptr;
   std::vector<std::shared_ptr<Link>> waiting_;
 };

@@ -43,8 +43,8 @@ void read_recordings_or_fail(Exhibit& exhibit, const RecordingOptions& options) 
   for (const Problem& problem : problems) log::warn("{}", to_string(problem));
 }
 
-// When visitors have left, and again when their visits cannot be gone on with any more, memory that
-// they had goes back to the system.
+// Gives memory back to the system when visitors have left, and again when their visits cannot be
+// gone on with any more.
 class MemoryReturn {
  public:
   void look(size_t visitors) {
@@ -61,7 +61,7 @@ class MemoryReturn {
   double due_ = never, last_due_ = never;
 };
 
-// One exhibit and what belongs to its show.
+// A room holds one exhibit and what belongs to its show.
 struct Room {
   explicit Room(std::unique_ptr<Show> begun)
       : show(std::move(begun)),
@@ -72,12 +72,12 @@ struct Room {
   ReportBoard board;
   StatusDesk status;
   Arrivals arrivals;
-  std::atomic<bool> draws = false;  // its visitors need the cores
+  std::atomic<bool> draws = false;  // the room's visitors need the cores
   Heartbeat heartbeat;
   Calendar calendar;
   std::unique_ptr<Rehearsal> rehearsal;
-  std::unique_ptr<Show> next;  // what has come of it, to be taken over
-  std::thread thread;          // of its ticks
+  std::unique_ptr<Show> next;  // result of the rehearsal, to be taken over
+  std::thread thread;          // thread that ticks the show
 };
 
 std::vector<std::string> kiosks_of(const Exhibit& exhibit) {
@@ -86,16 +86,16 @@ std::vector<std::string> kiosks_of(const Exhibit& exhibit) {
   return names;
 }
 
-// What all rooms use of the process.
+// Holds the parts of the process that all rooms use.
 struct SharedParts {
-  Ledger* ledger = nullptr;  // where there is one, it gets what is counted
+  Ledger* ledger = nullptr;  // gets all counts; null: there is none
   std::function<DoorCounts()> doors;
   const StillDesk* stills = nullptr;
   Disks disks;
 };
 
-// What others may know of it. `reception`: of the first room, for what is told once of all; else
-// null.
+// Publishes the room's report for other threads. `reception`: for the first room, which reports for
+// all rooms together; else null.
 void publish(Room& room, const SharedParts& shared, const Reception* reception = nullptr) {
   ShowReport report = make_report(*room.show);
   if (reception) {
@@ -120,14 +120,15 @@ void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
   if (room.next) return;
   auto outcome = room.rehearsal->take();
   if (!outcome) return;
-  // Only who works on an exhibit wants its pages to tell.
+  // Only people who work on an exhibit want its pages to show problems.
   if (room.show->settings.watched) set_problems(*room.show, std::move(outcome->problems));
   room.next = std::move(outcome->show);
   if (room.next) changed = true;
 }
 
-// While visitors of one need the cores, no other is baked; while one is made anew, or somebody
-// waits for a still picture, none is.
+// Decides which exhibits leave the cores to others: while visitors of one exhibit need the cores,
+// no other is baked; while an exhibit is loaded anew, or somebody waits for a still picture, none
+// is.
 void share_cores(Room& room, const std::list<Room>& rooms, const StillDesk& stills) {
   room.draws = draws(*room.show);
   room.show->others_draw =
@@ -180,14 +181,14 @@ std::vector<std::string> exhibits_in(const std::string& content) {
 
 struct Museum::Impl {
   const MuseumSettings settings;
-  std::shared_ptr<Speaker> speaker;    // one voice program for all
+  std::shared_ptr<Speaker> speaker;    // one voice program for all exhibits
   std::unique_ptr<Ledger> ledger;      // null: no sums are kept
-  mutable std::mutex house_mutex;      // of:
-  HouseSettings house;                 // of the first exhibit, and so of all
-  fs::file_time_type house_time;       // of its file
-  std::shared_ptr<Capacity> capacity;  // of all rooms together
-  std::list<Room> rooms;               // may be making exhibits anew, of all above, until they go
-  StillDesk stills;                    // is closed before its rooms go
+  mutable std::mutex house_mutex;      // guards `house`
+  HouseSettings house;                 // settings of the first exhibit, which all share
+  fs::file_time_type house_time;       // time of the house file's last change
+  std::shared_ptr<Capacity> capacity;  // capacity that all rooms share
+  std::list<Room> rooms;               // their rehearsals may use all fields above until they end
+  StillDesk stills;                    // is closed before rooms are destroyed
   AnswerSources sources;
   std::unique_ptr<Reception> reception;
   std::atomic<bool> stopping = false, changed = false;
@@ -219,14 +220,14 @@ struct Museum::Impl {
     return house;
   }
 
-  // The first exhibit's counts for all. Called while no show ticks.
+  // Gives all shows the house settings of the first exhibit. Called while no show ticks.
   void share_house() {
     std::lock_guard lock(house_mutex);
     house = rooms.front().show->settings.house;
     for (Room& room : rooms) room.show->settings.house = house;
   }
 
-  // Loads, checks and lights an exhibit, ready to be ticked. The first is told the house's day.
+  // Loads, checks and lights an exhibit, ready to be ticked. The first one reads the house file.
   std::unique_ptr<Show> prepare(const std::string& id, bool is_first) const {
     Exhibit exhibit = load_exhibit(settings.content + "/" + id);
     read_recordings_or_fail(exhibit, settings.recordings);
@@ -264,7 +265,7 @@ struct Museum::Impl {
         settings.show.watched);
   }
 
-  // What answers are made from, and where newcomers are led.
+  // Fills the sources of HTTP answers, and makes a new queue for newcomers of all rooms.
   void put_up_signs() {
     sources.exhibits.clear();
     std::vector<ExhibitDoor> doors;
@@ -334,7 +335,8 @@ Museum::Museum(const MuseumSettings& settings) : impl_(std::make_unique<Impl>(se
 
 Museum::~Museum() {
   for (Room& room : impl_->rooms)
-    if (room.rehearsal) room.rehearsal->cancel();  // all at once
+    // All are cancelled before the first one is waited for.
+    if (room.rehearsal) room.rehearsal->cancel();
 }
 
 AnswerSources& Museum::sources() { return impl_->sources; }
@@ -418,7 +420,7 @@ void Museum::take_over() {
   for (Room& room : impl_->rooms) {
     if (!room.next) continue;
     log::info("'{}' has changed: its pages come back by themselves", room.show->exhibit.id);
-    room.next->seal = room.show->seal;  // visits go on where they were
+    room.next->seal = room.show->seal;  // visits go on in the new show
     room.stills.reset();
     room.show = std::move(room.next);
     room.stills = std::make_unique<StillRoom>(*room.show);

@@ -14,13 +14,13 @@
 namespace wellspring::museum {
 namespace {
 
-constexpr double heartbeat = 4;       // seconds, after which the same is told again
+constexpr double heartbeat = 4;       // seconds after which an unchanged place is sent again
 constexpr double tell_interval = 2;   // seconds
-constexpr double turns_kept = 600;    // seconds that a turn tells how long the next will take
-constexpr double least_seconds = 10;  // since the first turn, that tell anything
+constexpr double turns_kept = 600;    // seconds for which a turn counts in the estimate
+constexpr double least_seconds = 10;  // least seconds since the first turn for an estimate
 constexpr size_t turns_counted = 16;
 
-// Pictures of the same shape with no more pixels.
+// Changes the newcomer's hello to pictures of the same shape with no more than `pixels` pixels.
 void ask_for_less(Newcomer& who, double pixels) {
   Hello hello = *said_as<Hello>(who.hello);
   const double scale = std::sqrt(pixels / (double(hello.width) * hello.height));
@@ -57,10 +57,10 @@ bool WaitingQueue::listen(Waiting& one) {
 
 void WaitingQueue::order(double now, const Capacity& capacity) {
   std::ranges::sort(all_, {}, &Waiting::number);
-  std::map<std::string, int> rounds;  // of the next one of each address
+  std::map<std::string, int> rounds;  // round of the next visitor of each address
   for (Waiting& one : all_) {
     const std::string& address = one.who.link->address;
-    if (address.empty()) continue;  // shares with nobody
+    if (address.empty()) continue;  // an unknown address shares with nobody
     const auto [next, is_first] = rounds.try_emplace(address, capacity.seats_of(address));
     one.round = is_first && now - one.since > patience ? 0 : next->second;
     next->second++;
@@ -91,7 +91,7 @@ std::vector<Newcomer> WaitingQueue::let_in(double now, Capacity& capacity) {
   return in;
 }
 
-// As long a time for each as the last ones took.
+// Estimates the wait from the mean time that the last turns took.
 std::optional<double> WaitingQueue::seconds_for(size_t place, double now) const {
   if (turns_.empty() || now - turns_.front() < least_seconds) return {};
   return double(place) * (now - turns_.front()) / double(turns_.size());
@@ -115,10 +115,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto look_interval = std::chrono::milliseconds(5);  // at those who have said nothing yet
-constexpr auto queue_interval = std::chrono::milliseconds(50);  // at those who wait and rest
+// Between looks at links that have said nothing yet.
+constexpr auto look_interval = std::chrono::milliseconds(5);
+// Between looks at links that wait or rest.
+constexpr auto queue_interval = std::chrono::milliseconds(50);
 
-// What somebody does who is there; a page by itself says the rest.
+// Returns whether the message shows that somebody is at the page; pages send the others by
+// themselves.
 bool tells_of_somebody(const BrowserMessage& message) {
   if (const PresenceNews* news = std::get_if<PresenceNews>(&message)) return news->here;
   return !std::holds_alternative<Settings>(message) && !std::holds_alternative<Ack>(message) &&
@@ -178,8 +181,8 @@ void Reception::rest(std::shared_ptr<Link> link) {
   resting_.push_back({std::move(link), std::move(*hello)});
 }
 
-// Into the exhibit, or into the queue; false: not even that. The link does not have its hello any
-// more.
+// Puts a visitor into the exhibit, or into the queue; false: the queue is full. Takes the hello
+// that receive() has taken from the link.
 bool Reception::place(std::shared_ptr<Link>& link, Heard heard, size_t door,
                       std::vector<Shown>& ready) {
   const Hello& hello = *said_as<Hello>(heard);
@@ -198,7 +201,7 @@ bool Reception::place(std::shared_ptr<Link>& link, Heard heard, size_t door,
   return true;
 }
 
-// False: the link stays where it is.
+// Reads a stranger's first messages. False: the link stays among strangers.
 bool Reception::receive(const std::shared_ptr<Link>& stranger, std::vector<Shown>& ready) {
   std::shared_ptr<Link> link = stranger;
   if (link->closed()) return true;

@@ -6,7 +6,7 @@
 
 namespace wellspring::museum {
 
-// How far the clock is from where it would be, had it gone on.
+// Returns how many seconds the clock is off from a clock that has gone on since `seen`.
 double Calendar::apart(const Seen& seen, std::time_t wall, double steady) {
   return std::abs(double(wall) - (seen.wall + steady - seen.steady));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a show goes on: its ticks, and what is drawn beside them.
+// Tells whether a show goes on: its ticks, and the drawing beside them.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -10,20 +10,20 @@
 
 namespace wellspring::museum {
 
-// Which day it is, where the system's clock may be wild: a machine that begins in 1970, a battery
-// that is empty, a typing error.
+// Finds which day it is even if the system's clock is wrong: a machine that begins in 1970, a
+// battery that is empty, a typing error.
 //
-// The clock is believed as long as it goes on as it was, give or take a day. Where it jumps
-// farther, either way, days go on by what it was before, for an hour; one that has stayed by then
-// is believed, as a clock that was corrected is. One that shows a time before 2020 was never set:
-// it is never believed, and days that are counted by it are none (ledger/ledger.h).
+// The clock is believed as long as it goes on as it was, give or take a day. If it jumps farther,
+// either way, days go on by the time before the jump for an hour; if the new time has stayed by
+// then, it is believed, as of a clock that was corrected. A clock that shows a time before 2020 was
+// never set: it is never believed, and no days are counted by it (ledger/ledger.h).
 
 class Calendar {
  public:
   static constexpr std::time_t first_time = 1577836800;   // 2020-01-01
   static constexpr double leap = 86400, patience = 3600;  // seconds
-  // The time that is believed when the clock shows `wall`, at `steady` seconds of a clock that does
-  // not run backwards. Until one is believed: as the clock shows it.
+  // Returns the time that is believed when the clock shows `wall`, at `steady` seconds of a clock
+  // that does not run backwards. Until a time is believed, it is the one that the clock shows.
   std::time_t see(std::time_t wall, double steady);
   bool doubts() const { return doubted_.has_value(); }
 
@@ -32,18 +32,18 @@ class Calendar {
     double wall = 0, steady = 0;
   };
   static double apart(const Seen& seen, std::time_t wall, double steady);
-  std::optional<Seen> believed_, doubted_;  // the latter since it was first seen so
+  std::optional<Seen> believed_, doubted_;  // `doubted_`: when the new time was first seen
 };
 
-// The disks that a museum writes to.
+// Watches the disks that a museum writes to.
 
 class Disks {
  public:
-  static constexpr uint64_t least_bytes = 4 << 20;  // with fewer free ones it is full
+  static constexpr uint64_t least_bytes = 4 << 20;  // a disk with fewer free bytes is full
   Disks() = default;
-  // Both are what is written: files or folders, there or not yet; empty ones are left out.
+  // Takes the files or folders that are written to, there or not yet; empty ones are left out.
   Disks(std::string cache, std::string sums) : places_{std::move(cache), std::move(sums)} {}
-  std::vector<std::string> full() const;  // those of the places whose disks are
+  std::vector<std::string> full() const;  // returns the places whose disks are full
 
  private:
   std::vector<std::string> places_;
@@ -51,23 +51,23 @@ class Disks {
 
 class Heartbeat {
  public:
-  static constexpr double longest_drawing = 60;  // seconds; one that takes longer hangs
+  static constexpr double longest_drawing = 60;  // seconds; a drawing that takes longer hangs
 
-  // After every tick, by the show's thread, at `now` (seconds). `drawing`: the number of the
-  // drawing that is under way; 0: there is none.
+  // Notes a tick; called after every tick by the show's thread, at `now` (seconds). `drawing`: the
+  // number of the drawing that is under way; 0: there is none.
   void tick(double now, uint64_t drawing) {
     if (!drawing || drawing != drawing_) began_ = now;
     drawing_ = drawing;
     if (now - began_ < longest_drawing) beats_ = true;
   }
-  // By any other thread: whether it has gone on since forget().
+  // Returns whether the show has gone on since forget(). Any other thread.
   bool beats() const { return beats_; }
   void forget() { beats_ = false; }
 
  private:
   std::atomic<bool> beats_ = false;
   uint64_t drawing_ = 0;
-  double began_ = 0;  // that drawing
+  double began_ = 0;  // time at which that drawing began
 };
 
 }  // namespace wellspring::museum

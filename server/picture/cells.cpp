@@ -10,7 +10,7 @@
 namespace wellspring::picture {
 namespace {
 
-// Samples that a point counts for whose light was forgotten: something where nothing newer is
+// Samples that a point whose light was forgotten counts for: few, but something if nothing newer is
 // known.
 constexpr float forgotten_samples = 1 / 256.0f;
 constexpr float least_samples = forgotten_samples / 2;
@@ -31,8 +31,8 @@ void add(Vec& sum, const LaneMask& mask, const Vec& v) {
   sum.x += keep_lanes(mask, v.x), sum.y += keep_lanes(mask, v.y), sum.z += keep_lanes(mask, v.z);
 }
 
-// Planes through places, seen at rays (x, y, 1) in depth 1 / inverse_depth: coefficients of inverse
-// depth over the picture.
+// Returns planes through places, seen at rays (x, y, 1) in depth 1 / inverse_depth: coefficients of
+// inverse depth over the picture.
 Vec inverse_depth_plane(Vec normal, const Vec& ray, const Lanes& inverse_depth) {
   Lanes facing = dot(normal, ray), length2 = dot(ray, ray);
   // A plane seen edge-on would reach from the eye to infinity within a pixel; bend it towards the
@@ -44,7 +44,7 @@ Vec inverse_depth_plane(Vec normal, const Vec& ray, const Lanes& inverse_depth) 
   return normal * (inverse_depth / dot(normal, ray));
 }
 
-// The sixteen pixels of eight cells side by side.
+// Holds the sixteen pixels of eight cells side by side.
 struct Pixels {
   LaneBits plane[surface_planes][cell_size * cell_size];
 };
@@ -66,7 +66,7 @@ struct Gathered {
   Lanes told{};  // points that were not forgotten
 };
 
-// The object most pixels of a cell see (majority vote of Boyer and Moore).
+// Returns the object that most pixels of a cell see (majority vote of Boyer and Moore).
 LaneBits elect_object(const Pixels& pixels) {
   LaneBits elected = LaneBits{} + no_object;
   LaneMask votes{};
@@ -79,7 +79,7 @@ LaneBits elect_object(const Pixels& pixels) {
   return elected;
 }
 
-// The means over the pixels of that object; `x` and `y` are counted from the cell's corner.
+// Sums over the pixels of that object; `x` and `y` are counted from the cell's corner.
 Gathered gather_cells(const Pixels& pixels) {
   Gathered g;
   g.object = elect_object(pixels);
@@ -90,7 +90,7 @@ Gathered gather_cells(const Pixels& pixels) {
   Vec reference;
   unpack_octahedron(first & 0xffffu, reference.x, reference.y, reference.z);
   Lanes least2 = 0.49f * dot(reference, reference);        // 0.7 is the cosine
-  Lanes above_light[cell_size], above_samples[cell_size];  // of the pixels before, columnwise
+  Lanes above_light[cell_size], above_samples[cell_size];  // values of each column's last pixel
   // Means of neighbours differ by what one sample's light deviates, and hardly by detail.
   auto add_pair = [&](const Lanes& light, const Lanes& samples, const Lanes& other,
                       const Lanes& others) {
@@ -236,18 +236,18 @@ void build_cells(const WindowView& view, const SurfaceRows& rows, int cy, Cells&
   }
 }
 
-// Holes: the known cells are gathered into coarser and coarser levels, then every unknown cell
-// takes what the level above knows (push and pull, Gortler et al. 1996), one object at a time.
+// Fills holes: the known cells are gathered into coarser and coarser levels, then every unknown
+// cell takes what the level above knows (push and pull, Gortler et al. 1996), one object at a time.
 
 namespace {
 
-constexpr float flat = 0.97f;  // of Coarse::flatness: normals some ten degrees apart
+constexpr float flat = 0.97f;  // Coarse::flatness of a flat surface: normals some ten degrees apart
 
 struct Coarse {
   vec3 albedo{0}, rest{0}, smooth{0}, normal{0};
   vec3 plane{0};  // as Cells::plane: the same for all cells of one plane
   float inverse_depth = 0, weight = 0;
-  float flatness = 0;  // 1: all that it was made of faces one way
+  float flatness = 0;  // 1: all its cells face one way
   uint32_t object = no_object;
 };
 
@@ -271,7 +271,7 @@ void add(Coarse& sum, const Coarse& c, float weight) {
   sum.weight += weight;
 }
 
-// The mean of those that show the object of most weight; the weight is theirs.
+// Returns the mean of the candidates that show the object of most weight, with their weight.
 Coarse blend(const Coarse* const* candidates, const float* weights, int count) {
   Coarse sum;
   float best = 0;
@@ -313,7 +313,7 @@ Coarse read_cell(const Cells& cells, int x, int y) {
   return c;
 }
 
-// Children at (2x, 2y) .. (2x+1, 2y+1).
+// Blends the children at (2x, 2y) .. (2x+1, 2y+1).
 template <class Read>
 Coarse reduce(const Read& read, int x, int y) {
   Coarse child[4] = {read(2 * x, 2 * y), read(2 * x + 1, 2 * y), read(2 * x, 2 * y + 1),
@@ -326,7 +326,8 @@ Coarse reduce(const Read& read, int x, int y) {
   return result;
 }
 
-// What the level above knows around the middle of cell (x, y): its four nearest cells, bilinear.
+// Returns what the level above knows around the middle of cell (x, y): its four nearest cells,
+// bilinear.
 Coarse pull(const Level& above, int x, int y) {
   int px = x >> 1, py = y >> 1, sx = x & 1 ? 1 : -1, sy = y & 1 ? 1 : -1;
   const Coarse* candidates[4] = {&above.at(px, py), &above.at(px + sx, py), &above.at(px, py + sy),
@@ -340,8 +341,8 @@ Coarse pull(const Level& above, int x, int y) {
 void write_cell(const PixelRays& rays, const Coarse& c, int x, int y, Cells& cells) {
   size_t i = size_t(cells.index(x, y));
   vec3 ray(rays.x((float(x) + 0.5f) * cell_size), rays.y((float(y) + 0.5f) * cell_size), 1);
-  // A flat surface goes on as it does around. Of others the cell faces the viewer: its depth is a
-  // guess, a slope would be a bolder one.
+  // A flat surface goes on as it does around. A cell of another surface faces the viewer: its depth
+  // is a guess, and a slope would be a bolder one.
   float inverse_depth = c.inverse_depth, there = dot(c.plane, ray);
   vec3 plane(0, 0, inverse_depth);
   if (c.flatness > flat && there > 0.5f * inverse_depth && there < 2 * inverse_depth)

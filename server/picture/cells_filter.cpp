@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight cells at a time. What lies on either side of a row is empty, so nothing asks where it ends.
+// Filters eight cells at a time. Rows are padded with empty cells, so nothing asks where a row
+// ends.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,17 +14,18 @@ namespace wellspring::picture {
 namespace {
 
 constexpr int steps = 4;  // taps 1, 2, 4 and 8 cells apart
-constexpr float plane_tolerance =
-    0.03f;  // relative depth off the other cell's plane that halves a weight
-// Squared, in variances of the mean. Of a few samples these are no better known than the light, and
-// count for `unsure_variance` times as much.
+// Relative depth off the other cell's plane that halves a weight.
+constexpr float plane_tolerance = 0.03f;
+// Squared difference of light that halves a weight, in variances of the mean. The variance of a few
+// samples is no better known than the light, and counts up to `unsure_variance` times as much.
 constexpr float light_tolerance = 4, unsure_variance = 6;
-constexpr float least_samples = 1 / 512.0f;  // of a cell that remembers none
-constexpr float most_samples = 64;      // that a cell counts for: its neighbours show other places
-constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
-constexpr float enough_pairs = 12;      // of neighbours, likewise
-constexpr float least_detail =
-    1 / 48.0f;  // of smooth light among nine cells: a variance over the mean squared
+constexpr float least_samples = 1 / 512.0f;  // samples that a cell without any counts for
+// Samples that a cell counts for at most: its neighbours show other places.
+constexpr float most_samples = 64;
+constexpr float plenty_of_points = 48;  // points in nine cells that show how light deviates there
+constexpr float enough_pairs = 12;      // pairs of neighbours that count for half in this
+// Least detail of smooth light among nine cells: a variance over the mean squared.
+constexpr float least_detail = 1 / 48.0f;
 constexpr float most_prior_weight = 192;  // samples
 
 Lanes load_at(std::span<const float> plane, size_t i) { return load_lanes(plane.data() + i); }
@@ -31,7 +33,7 @@ Lanes clamped(const Lanes& v, float low, float high) {
   return lanes_min(lanes_max(v, all_lanes(low)), all_lanes(high));
 }
 
-// Sums over cells of one object.
+// Holds sums over cells of one object.
 struct Pool {
   Lanes samples{}, points{}, sum{}, sum2{};
   Lanes rest{}, rest2{}, rest_noise{}, rest_known{};
@@ -53,7 +55,7 @@ PoolPlanes own_planes(const Cells& c) {
           c.rest_sum2, c.rest_noise, c.rest_known, c.pairs, c.pair_sum};
 }
 
-// Over the cells `step` apart around eight, and these.
+// Sums over eight cells and those `step` apart around each of them.
 Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const LaneBits& object,
                  int step) {
   Pool pool;
@@ -66,7 +68,7 @@ Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const L
   return pool;
 }
 
-// The brightest means around.
+// Holds the brightest means of the cells around.
 struct Brightest {
   Lanes light{}, rest{};
 };
@@ -90,7 +92,7 @@ struct Estimate {
   Lanes mean_variance, prior_weight, rest_detail, rest_noise, rest_mean_variance;
 };
 
-// What cells somewhat farther around say, for those with few points near.
+// Holds what cells somewhat farther around say, for cells with few points near.
 struct Prior {
   Lanes mean, variance, rest_mean;
   LaneMask told;
@@ -108,10 +110,10 @@ Prior make_prior(const Pool& wide) {
   return prior;
 }
 
-// Where few points tell, smooth light is assumed to deviate as it does farther around, and what
-// varies in the rest to be noise by `rest_share`. `samples` > 0; `light` and `rest_light` are the
-// cells' sums over their samples; `unsure`: some point of a cell may owe its rest to chance, and
-// these differ.
+// Estimates the cells' variances and outliers. If there are few points, smooth light is assumed to
+// deviate as it does farther around, and variation of the rest to be noise by `rest_share`.
+// `samples` > 0; `light_sum` and `rest_sum` are the cells' sums over their samples; `unsure`: some
+// point of a cell may owe its rest to chance, and the points differ.
 Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& brightest,
                         const Lanes& samples, const Lanes& light_sum, const Lanes& rest_sum,
                         const LaneMask& unsure, float rest_share) {
@@ -122,8 +124,8 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   Lanes mean = pool.sum * per_pooled, spread = positive_lanes(pool.sum2 - pool.sum * mean);
   Lanes expected = (pool.sum + prior.mean * guess_points) / (pool.samples + guess_points);
   Lanes variance = (spread + prior.variance * guess_points) / (pool.points + guess_points);
-  // What points spread beyond that is detail: their means of many samples differ where the light
-  // does.
+  // Variance of points beyond that of neighbouring pairs is detail: means of many samples differ
+  // where the light does.
   Lanes paired = pool.pairs / (pool.pairs + enough_pairs);
   Lanes deviates = pool.pair_sum / lanes_max(pool.pairs, all_lanes(1));
   Lanes detail = paired * positive_lanes(variance - deviates) * pool.points * per_pooled;
@@ -132,7 +134,7 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
                            most_prior_weight);
   Lanes known_badly = 1.0f + (unsure_variance - 1) * (1.0f - paired);
   e.mean_variance = variance * per_sample * known_badly;
-  // What varies from place to place beyond what varies from sample to sample is detail.
+  // Variance from place to place beyond the variance from sample to sample is detail.
   Lanes rest_spread = positive_lanes(pool.rest2 - pool.rest * pool.rest * per_pooled) /
                       lanes_max(pool.points - 1.0f, all_lanes(1));
   Lanes wide_spread =
@@ -144,7 +146,7 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   e.rest_detail = positive_lanes(rest_spread - e.rest_noise) * pool.points * per_pooled;
   e.rest_mean_variance = e.rest_noise * per_sample * known_badly;
   // A cell brighter than all around it, or far brighter than their mean, owes that to a lucky path,
-  // unless many samples say so or, of the rest, it stays so from sample to sample.
+  // unless many samples confirm it or, for the rest, it stays so from sample to sample.
   Lanes light = light_sum * per_sample, rest_light = rest_sum * per_sample;
   Lanes others = pool.samples - samples;
   LaneMask near = others >= 3.0f;
@@ -166,8 +168,8 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   return e;
 }
 
-// Of all that varies in the rest of the whole picture, how much is noise? Every third row tells;
-// each adds up for itself, so that the sum does not depend on the threads.
+// Returns how much of all variation in the rest of the whole picture is noise. Every third row is
+// looked at; each adds up for itself, so that the sum does not depend on the threads.
 float share_of_noise(const Cells& cells) {
   struct Sums {
     double noise = 0, spread = 0, known = 0;
@@ -210,8 +212,8 @@ void pool_cells(Cells& cells) {
   });
 }
 
-// Replaces the moments by what follows from them; the other side of the a-trous steps serves
-// meanwhile.
+// Replaces the moments by the variances that follow from them; the other side of the a-trous steps
+// serves as scratch meanwhile.
 void estimate_variance(Cells& cells) {
   float rest_share = share_of_noise(cells);
   auto &mean_variance = cells.spare[0], &rest_detail = cells.spare[1], &rest_noise = cells.spare[2];
@@ -259,21 +261,21 @@ void estimate_variance(Cells& cells) {
   std::swap(cells.rest_known, rest_mean_variance);
 }
 
-// Light of eight cells and the variance of its mean, weighed by samples.
+// Holds light of eight cells and the variance of its mean, weighed by samples.
 struct LightSums {
   Lanes r, g, b, variance, weight, own_r, own_g, own_b, tolerance;
 };
 struct LightPlanes {
   const float *r, *g, *b, *variance;
 };
-constexpr float own_weight = 4;  // of a step's nine cells
+constexpr float own_weight = 4;  // weight of a step's middle cell; the other eight have 1 or 2
 LightSums begin_sums(const LightPlanes& from, size_t i, const Lanes& samples) {
   Lanes r = load_lanes(from.r + i), g = load_lanes(from.g + i), b = load_lanes(from.b + i),
         v = load_lanes(from.variance + i), w = own_weight * samples;
   return {w * r, w * g, w * b, w * w * v, w, r, g, b, 1.0f / (light_tolerance * v + 1e-12f)};
 }
-// `common`: what the two cells' surfaces have in common; `apart`: one plus their squared distance.
-// Returns how much of the cells' samples counted.
+// Adds eight cells. `common`: how much the two cells' surfaces agree; `apart`: one plus their
+// squared distance. Returns the share of the cells' samples that counted.
 Lanes add(LightSums& sums, const LightPlanes& from, size_t j, const Lanes& common,
           const Lanes& apart, const Lanes& samples) {
   Lanes r = load_lanes(from.r + j), g = load_lanes(from.g + j), b = load_lanes(from.b + j);
@@ -285,7 +287,7 @@ Lanes add(LightSums& sums, const LightPlanes& from, size_t j, const Lanes& commo
   sums.weight += weight;
   return share;
 }
-// Where no sample lies within reach, what was there before stays.
+// Stores the means; if no sample lies within reach, the earlier ones stay.
 void store_sums(const LightSums& sums, const LightPlanes& from, size_t i, float* r, float* g,
                 float* b, float* variance) {
   LaneMask told = sums.weight > 1e-6f;
@@ -296,8 +298,8 @@ void store_sums(const LightSums& sums, const LightPlanes& from, size_t i, float*
   store_lanes(variance, told ? sums.variance * share * share : load_lanes(from.variance + i));
 }
 
-// What the surfaces of eight cells at i and those at j have in common: object and orientation; and
-// how far those at i lie off the planes at j.
+// Returns how much the surfaces of eight cells at i and those at j agree in object and orientation,
+// and sets `apart` to one plus the squared distance of those at i from the planes at j.
 Lanes compare_surfaces(const Cells& cells, size_t i, size_t j, const Lanes& ray_x, float ray_y,
                        Lanes& apart) {
   Lanes facing = load_at(cells.normal[0], i) * load_at(cells.normal[0], j) +
@@ -337,7 +339,7 @@ void filter_cells(const WindowView& view, Cells& cells) {
           size_t i = size_t(cells.index(x, y));
           Lanes own = lanes_min(load_at(cells.samples, i), all_lanes(most_samples));
           LightSums s = begin_sums(smooth, i, own), r = begin_sums(rest, i, own);
-          // A mean's samples are as many as equally weighed ones of its variance would be.
+          // A mean has as many samples as equally weighed ones of its variance would be.
           Lanes weights = own_weight * own, weights2 = own_weight * own_weight * own;
           Lanes across = load_lanes(&ray_x[size_t(x)]);
           for (int dy = -1; dy <= 1; dy++)

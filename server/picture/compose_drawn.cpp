@@ -17,12 +17,13 @@ namespace wellspring::picture {
 namespace {
 
 constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-// Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
-// or chance nobody knows.
+// Most points of a moving picture hold one sample or two, and nobody knows whether their rest is a
+// shadow's edge or chance.
 constexpr float moving_prior_variance = 3;
-constexpr float still_told =
-    0.4f;  // at rest: guessed share of the light at which prior variance begins
-constexpr float smooth_prior_variances = 4;  // of these, for smooth light, where chance is larger
+// Guessed share of the light at which prior variance begins at rest.
+constexpr float still_told = 0.4f;
+// Prior variances that smooth light counts as prior weight: its chance is larger.
+constexpr float smooth_prior_variances = 4;
 Lanes under(const Lanes& light, const Lanes& albedo, const Lanes& theirs) {
   return light * rest_ratio(albedo, theirs);
 }
@@ -31,17 +32,17 @@ struct Drawn {
   Pixels pixels;
   Color albedo;
   Color unit{all_lanes(1), all_lanes(1), all_lanes(1)};  // Sample::known
-  LaneMask mapped{};                                     // where a map tells it
+  LaneMask mapped{};                                     // pixels whose unit a map holds
   Lanes raised{};                                        // Sample::raised
 };
 
-// Those of the pixels are lit as their map says.
+// Lights the pixels of these lanes as their map says.
 void light_as_mapped(const LaneMask& which, Pixels& p) {
   for (Lanes* channel : {&p.smooth.r, &p.smooth.g, &p.smooth.b})
     *channel = which ? all_lanes(1) : *channel;
 }
 
-// Own light of the pixels, as far as their light pixel's point lies on the same surface.
+// Takes the pixels' own light, as far as their light pixel's point lies on the same surface.
 void take_own(const View& view, const PixelRays& rays, const OwnLight& own, float light_x,
               float light_y, Drawn& d) {
   Pixels& p = d.pixels;
@@ -57,8 +58,8 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
   unpack_octahedron(more & 0xffffu, nx, ny, nz);
   Lanes facing = p.nx * nx + p.ny * ny + p.nz * nz;
   LaneMask near = off * off <= plane_tolerance * plane_tolerance * p.depth * p.depth * p.normal2;
-  near |=
-      d.albedo.r + d.albedo.g + d.albedo.b == 0.0f;  // what mirrors show lies where its image does
+  // The point of a mirror (no albedo) lies where the mirror image does.
+  near |= d.albedo.r + d.albedo.g + d.albedo.b == 0.0f;
   LaneMask alike =
       (facing > 0.0f) & (facing * facing > 0.5f * p.normal2 * (nx * nx + ny * ny + nz * nz));
   LaneMask same = (p.object == own.plane[plane_object]) & (samples > 0.0f) & near & alike;
@@ -77,7 +78,8 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
             keep_lanes(same, under(light.b, d.albedo.b, theirs.b))};
 }
 
-// The light of a lamp does not end where a picture on the wall does.
+// Blends in the light around, scaled to the pixels' reflectance: the light of a lamp does not end
+// where a picture on the wall does.
 void light_as(const Surroundings& around, const Lanes& prior_variances, Drawn& d) {
   Surroundings s = around;
   s.rest = {under(s.rest.r, d.albedo.r, s.albedo.r), under(s.rest.g, d.albedo.g, s.albedo.g),
@@ -85,15 +87,14 @@ void light_as(const Surroundings& around, const Lanes& prior_variances, Drawn& d
   blend_light(s, d.pixels, prior_variances);
 }
 
-// `asked`: lanes that matter.
+// Lights eight pixels. `asked`: lanes that matter.
 template <class FindNearby>
 void light_group(const WideCell* const* corners, const LaneMask& flat, const Lanes* weights,
                  float prior_variance, const LaneMask& asked, const FindNearby& find_nearby,
                  Drawn& d) {
   Pixels& p = d.pixels;
   Surroundings around = look_around(corners, flat, weights, p);
-  // Where nothing of the surface has a point, and a map knows its light, there is nothing to
-  // search.
+  // If no point lies on the surface, and a map knows its light, there is nothing to search for.
   const LaneMask untold = d.mapped & around.lonely & (p.samples <= 0.0f),
                  unsure = asked & (around.known < 1.0f) & ~untold;
   const Lanes known = unsure ? (around.lonely ? Lanes{} : around.known) : all_lanes(1);
@@ -103,13 +104,13 @@ void light_group(const WideCell* const* corners, const LaneMask& flat, const Lan
   Drawn thin = d;
   light_as(around, prior_variances, d);
   if (any_lane(unsure)) {
-    // Narrow things are lit by points of their own, found around. Between those and others light
-    // passes gradually.
+    // Narrow things are lit by points of their own, found around. Between them and others light
+    // changes gradually.
     find_nearby(unsure, thin);
     around.lonely = unsure;
     light_as(around, prior_variances, thin);
     const Pixels& q = thin.pixels;
-    // The map says what light there is as far as no point of the surface says otherwise.
+    // The map's light counts as far as no point of the surface says otherwise.
     light_as_mapped(d.mapped & (q.samples <= 0.0f), thin.pixels);
     p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
     p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
@@ -119,7 +120,7 @@ void light_group(const WideCell* const* corners, const LaneMask& flat, const Lan
   for (Lanes* channel : {&p.rest.r, &p.rest.g, &p.rest.b}) *channel = keep_lanes(~untold, *channel);
 }
 
-// All that pixels are lit by, and where in them they are seen.
+// Holds all that pixels are lit by, and the place in them at which they are seen.
 struct Composer {
   const View& view;
   const Cells& cells;
@@ -129,12 +130,12 @@ struct Composer {
   vec2 offset{0.5f};
   float prior_variance = moving_prior_variance;
   KeptLight kept = {};
-  bool passing = false;  // what maps say all of is not asked of points: the picture is soon another
+  bool passing = false;  // the picture is soon replaced: maps light what they can alone
   Shade shade = {};
 
-  // Lights what nothing is known of.
+  // Returns the light of surfaces of which nothing is known.
   vec3 usual_light() const { return vec3(kept.maps ? kept.maps->usual : 0); }
-  // Eight lanes each.
+  // Returns the number of parts of eight lanes each.
   static int parts_of(const VisibleRun& run) {
     return (run.count + half_cell + lane_count - 1) / lane_count;
   }
@@ -157,12 +158,12 @@ const CellRows& Composer::rows_around(const VisibleRun& run) const {
   return rows;
 }
 
-// Lights pixels whose surface no cell knows by the points around that lie on it. Should there be
-// none and no map, they take the object's light from elsewhere, or what is usual in the scene:
-// nothing is black because it has just come into view.
+// Lights pixels whose surface no cell knows by the points around that lie on it. Should there be no
+// such point and no map, they take the object's light from elsewhere, or the usual light of the
+// scene: nothing is black because it has just come into view.
 void Composer::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const {
   Pixels& p = d.pixels;
-  NearbyLight far;  // of the lane before
+  NearbyLight far;  // light of the object looked up last
   uint32_t far_object = no_object;
   for (unsigned bits = negative_lanes(lonely); bits != 0; bits &= bits - 1) {
     int k = std::countr_zero(bits);
@@ -189,8 +190,8 @@ void Composer::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) cons
   }
 }
 
-// The `n`-th eight of the run's pixels, of which `part` lies in the run: beyond it arrays hold
-// anything. What the light of points says of them.
+// Lights the `n`-th eight of the run's pixels by points. Only `part` of them lies in the run:
+// beyond it arrays hold anything.
 void Composer::light_run(const RunPixels& p, const VisibleRun& run, const CellRows* read,
                          const RunGlow& emitting, int n, LanePart part, Drawn& d) const {
   int i = n * lane_count - half_cell, x = run.x + i;  // the first lane's pixel
@@ -261,7 +262,7 @@ Shown Composer::light_part(const VisibleRun& run, const RunPixels& p, const RunG
   return shown;
 }
 
-// Runs of the picture, put into `planes`.
+// Returns a function that lights runs of the picture and puts them into `planes`.
 template <class Planes>
 auto taker(const Composer& composer, const Planes& planes) {
   return [&composer, &planes](const VisibleRun& run) {
@@ -295,7 +296,7 @@ constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs e
 float still_prior_variance(float guessed) {
   return moving_prior_variance * std::clamp((guessed - still_told) / still_told, 0.0f, 1.0f);
 }
-// A picture that stands for itself. Returns its edges.
+// Draws a picture that is shown by itself. Returns its edges.
 template <class Planes>
 std::span<const std::vector<EdgeShare>> compose_moment(const View& view,
                                                        const VisibilityPass& visibility,
@@ -313,7 +314,7 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view,
                               differ);
 }
 
-// What moves, in runs within the window that show any of it. Returns its edges.
+// Shows moving meshes, in runs within the window that show any of them. Returns their edges.
 template <class Take>
 std::span<const std::vector<EdgeShare>> see_moving(const View& view,
                                                    const VisibilityPass& visibility,
@@ -370,7 +371,7 @@ std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
                     taker(composer, NearerPlanes{frame}));
 }
 
-// What moves, drawn in the light that is kept on its skin (light/known/skin_light.h).
+// Draws what moves in the light that is kept on its skin (light/known/skin_light.h).
 
 namespace {
 

@@ -51,18 +51,18 @@ std::array<float, 256> decoded() {
   return shown;
 }
 
-// Radiance times exposure of what a code shows; of white the least.
+// Returns the radiance times exposure that a colour shows; for white the least.
 vec3 light_of(uint32_t color) {
   static const std::array<float, 256> shown = decoded();
   const vec3 linear(shown[color & 255], shown[color >> 8 & 255], shown[color >> 16 & 255]);
   const float peak = max_component(linear);
   if (peak <= shoulder_start) return linear;
-  static constexpr float most = 0.995f;  // from there on a code says nothing
+  static constexpr float most = 0.995f;  // codes above say nothing
   const LaneMask code = eval_peak_codes(all_lanes(invert_shoulder(std::min(peak, most))));
   return invert_tone_curve(linear, uint8_t(code[0]));
 }
 
-// Eight pixels from lane `i` of the run on.
+// Puts up to eight pixels, the keyframe's colours with the light that is `added`.
 void put_lanes(const Keyframe& keyframe, const Lanes3& added, size_t at, int count, Image8& picture,
                std::vector<uint8_t>& peaks) {
   float light[3][lane_count] = {};
@@ -105,7 +105,7 @@ void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tone
   });
 }
 
-// Of a pixel: until then aimed ones count, too.
+// Samples of a pixel below which aimed ones count, too.
 static constexpr int few_samples = 4;
 
 size_t memory_bytes(const CompositorWork& work) {
@@ -116,7 +116,7 @@ Compositor::Compositor(std::shared_ptr<CompositorWork> shared)
     : shares_(shared != nullptr),
       work_(shares_ ? std::move(shared) : std::make_shared<CompositorWork>()) {}
 
-// Of another view nothing is kept.
+// Drops the means of another view.
 void Compositor::begin(const RenderCache& cache) {
   if (projection_ == cache.projection()) return;
   projection_ = cache.projection();
@@ -139,7 +139,7 @@ void Compositor::follow_changes(const RenderCache& cache) {
     if (cache.image().renewed[i]) samples_.count[i] = 0;
 }
 
-// Finds the light of `view`, which is projected, then calls compose() and takes the time.
+// Finds the light of `view`, which is projected, then calls compose() and measures its time.
 template <class Compose>
 void Compositor::draw(RenderCache& cache, const View& view, const Compose& compose) {
   Frame& light = work_->light;

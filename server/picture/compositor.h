@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One visitor's pictures: what is visible (light/visible/visibility.h), in the light that the
+// Draws one visitor's pictures: what is visible (light/visible/visibility.h), in the light that the
 // points of a render cache remember (picture/compose_drawn.h). While the view stands still it keeps
 // the mean of its pictures and of their samples.
 #pragma once
@@ -20,40 +20,40 @@
 
 namespace wellspring::picture {
 
-// From the points that a picture shows to its cells and its packed surface, once a picture.
+// Turns the points that a picture shows into its cells and its packed surface, once a picture.
 
 // Reads every visible point once: builds the cells, fills holes from their neighbours and leaves
 // the surface packed in the frame's planes. Pixels far from any point stay unknown.
 ShownPoints read_surface(const WindowView& view, const PointCache& points, const PointImage& image,
                          Cells& cells, Frame& frame);
 
-// A picture at rest shows the light that stays; what lights that move or change add is put over it
-// as often as what moves is drawn: their light times the reflectance of what each pixel shows,
-// added before the tone curve.
+// Adds dynamic light to a picture at rest, which shows the light that stays, as often as what moves
+// is drawn: the lights' irradiance times the reflectance of what each pixel shows, added before the
+// tone curve.
 
-// What stands still of a picture, and what falls there.
+// Holds the surfaces of a picture that stand still, and the light that falls there.
 struct BackdropLight {
   const BackdropSurfaces& surfaces;
   const LightPlanes& light;
 };
-// Overwrites `picture` by what the keyframe, of the view of those surfaces, shows with that light,
-// and `peaks` by the light beyond white (frame/tonemap.h). What emits light by itself stays as
-// it is.
+// Overwrites `picture` with what the keyframe, whose view is that of the surfaces, shows with that
+// light, and `peaks` with the light beyond white (frame/tonemap.h). Pixels that emit light by
+// themselves stay as they are.
 void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tonemap& tonemap,
              Image8& picture, std::vector<uint8_t>& peaks);
 
 struct BackdropLight;  // picture/compositor.h
 struct Keyframe;       // picture/keyframe.h
-struct MovingPicture;  // picture/keyframe.h: what moves in a picture at rest
+struct MovingPicture;  // picture/keyframe.h: the moving part of a picture at rest
 struct MovingLight;
-enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
+enum class StillShows : uint8_t { all, backdrop };  // backdrop: all that does not move
 
-// What a picture needs and nobody afterwards. Those that are never under way at the same time may
-// share it.
+// Holds memory that is needed only while a picture is drawn. Compositors that are never at work at
+// the same time may share it.
 struct CompositorWork {
   Frame light;                 // packed (picture/surface_image.h)
-  std::vector<uint8_t> peaks;  // of a picture for the eye: light beyond white
-  std::vector<float> shares;   // of a picture at rest (mix_in_means())
+  std::vector<uint8_t> peaks;  // light beyond white of a picture for the eye
+  std::vector<float> shares;   // shares of means in a picture at rest (mix_in_means())
 };
 size_t memory_bytes(const CompositorWork& work);
 
@@ -61,54 +61,57 @@ class Compositor {
  public:
   explicit Compositor(std::shared_ptr<CompositorWork> shared = nullptr);
 
-  // Moving meshes are lit by it from now on (borrowed; null: by points like everything else), and
-  // what of that is smooth shows `lights` (borrowed).
+  // Lights moving meshes by `skin` from now on (borrowed; null: by points like everything else);
+  // their smooth gloss shows `lights` (borrowed).
   void set_skin(const SkinLight* skin, const Lights* lights) {
     kept_.skin = skin, kept_.lights = lights;
   }
-  // Still surfaces are lit by these as far as points do not say otherwise, whose light counts in
-  // multiples of theirs (Sample::known); null: by points alone.
+  // Lights still surfaces by these maps as far as points do not say otherwise; the points' light
+  // counts in multiples of the maps' (Sample::known). Null: by points alone.
   void set_maps(std::shared_ptr<const IlluminationMap> maps) {
     kept_.maps = maps.get();
     maps_ = std::move(maps);
   }
-  // Pictures show what lights that move or change add from now on (borrowed; null: nothing); of
-  // each view it is to be computed before. Pictures at rest, which become means, are without.
+  // Adds dynamic light to pictures from now on (borrowed; null: none); `image` has to be computed
+  // for each view before. Pictures at rest, which become means, are drawn without it.
   void set_dynamic(const DynamicImage* image) { kept_.dynamic = image; }
-  // A picture of `view`, which is projected if it is not. The second for the eye at once, and of a
-  // `depth` that is not null metres along the viewing axis, infinity: nothing there.
+  // Draws a picture of `view`, which is projected if it is not. The second draws for the eye at
+  // once, and sets `depth`, unless it is null, to metres along the viewing axis, infinity: nothing
+  // there.
   void draw(RenderCache& cache, const View& view, const VisibilityPass& visibility, Frame& frame);
   void draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
             const Tonemap& tonemap, Image8& image, std::vector<float>* depth = nullptr);
-  // The same at rest: what does not move is antialiased in time, seen at another place of the
+  // Draws the same at rest: what does not move is antialiased in time, seen at another place of the
   // pixels each time.
   void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                   Frame& frame, StillShows shows = StillShows::all);
-  // At rest, after RenderCache::remember(): samples of pixels whose light it found changed since
-  // the last picture are forgotten.
+  // Forgets the samples of pixels at which RenderCache::remember(), called before at rest, has
+  // found changed light since the last picture.
   void follow_changes(const RenderCache& cache);
-  // At rest: answers to requests of `view` are kept for each pixel by itself, until the view is
-  // another. Those that are aimed at a point, not anywhere in the pixel, are not; but see below.
+  // Keeps answers to requests of `view`, at rest, for each pixel by itself, until the view is
+  // another. Requests that are aimed at a point, not anywhere in the pixel, are left out unless
+  // set_reconstructed() lets them count.
   void add_samples(const View& view, std::span<const Request> requests,
                    std::span<const Sample> samples);
-  void invalidate_samples();  // other light
-  // Pictures at rest serve as what reconstruction begins with (picture/still/reconstruct_still.h):
-  // means of samples are not mixed into them, and while a pixel has few of these, aimed ones count,
+  void invalidate_samples();  // for a change of the light
+  // Says that pictures at rest are the input of reconstruction (picture/still/reconstruct_still.h):
+  // means of samples are not mixed into them, and while a pixel has few samples, aimed ones count,
   // too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
-  // What moves, as the world is now, to be laid over the last draw_still() without it, of which
-  // `backdrop` is the keyframe; in the light that is kept on its skin, and that of set_dynamic().
-  // Needs sight.rasterises(backdrop.view) and set_skin(). An empty picture: it is not to be seen.
-  // `relit`: not null, all of the picture is drawn, the backdrop with that light. in_layer: what
-  // moves goes into the picture's layer instead.
+  // Draws what moves, as the world is now, to be laid over the last draw_still() without it, whose
+  // keyframe is `backdrop`; in the light that is kept on its skin, and that of set_dynamic(). Needs
+  // visibility.rasterises(backdrop.view) and set_skin(). The picture is empty if nothing that moves
+  // shows. `relit`: unless null, all of the picture is drawn, the backdrop with that light.
+  // `in_layer`: what moves goes into the picture's layer instead.
   void draw_moving(const World& world, const Keyframe& backdrop, const BackdropLight* relit,
                    const VisibilityPass& visibility, const Tonemap& tonemap, bool in_layer,
                    MovingLight& work, MovingPicture& picture);
 
-  // What the pixels of a view at rest have been found to be by samples; empty before.
+  // Returns the samples that the pixels of a view at rest have had; empty before.
   const StillSamples& samples() const { return samples_; }
-  float drawing_ms() const { return drawing_ms_; }  // visibility and shading of the last picture
-  size_t memory_bytes() const;                      // without work that is shared
+  // Milliseconds of visibility and shading of the last picture.
+  float drawing_ms() const { return drawing_ms_; }
+  size_t memory_bytes() const;  // without work that is shared
 
  private:
   template <class Compose>
@@ -119,14 +122,14 @@ class Compositor {
   bool shares_;
   std::shared_ptr<CompositorWork> work_;
   KeptLight kept_;
-  std::shared_ptr<const IlluminationMap> maps_;  // keeps those of kept_
-  Cells cells_;                                  // in the cache's scratch
-  bool known_ = false;                           // any light
+  std::shared_ptr<const IlluminationMap> maps_;  // keeps kept_.maps alive
+  Cells cells_;                                  // planes in the cache's scratch
+  bool known_ = false;                           // whether any light is known
   StillImage still_;
   StillSamples samples_;
   View sampled_;  // the view of samples_
   bool reconstructed_ = false;
-  uint64_t projection_ = 0;  // RenderCache::projection() of what is kept
+  uint64_t projection_ = 0;  // RenderCache::projection() of the means that are kept
   uint32_t pictures_ = 0;
   float drawing_ms_ = 0;
 };

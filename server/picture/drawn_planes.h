@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where pixels of a drawn picture go, eight at a time.
+// Writes the pixels of a drawn picture, eight at a time.
 #pragma once
 #include <algorithm>
 
@@ -9,14 +9,14 @@
 
 namespace wellspring::picture {
 
-// What has been found out about eight pixels of a row.
+// Holds eight lit pixels of a row.
 struct Shown {
   Color color;
-  Lanes samples, depth;  // infinity: nothing there
+  Lanes samples, depth;  // depth: metres; infinity: nothing there
   LaneBits object;
 };
 
-// Takes the pixels [begin, end) of eight to place `at` of a plane, where lane `begin` belongs.
+// The pixels [begin, end) of eight that are written to a plane; lane `begin` comes first there.
 struct LanePart {
   int begin, end;
   bool all() const { return end - begin == lane_count; }
@@ -28,14 +28,15 @@ struct LanePart {
   }
 };
 
-// All planes of a frame.
+// Writes all planes of a frame.
 struct FramePlanes {
   Frame& frame;
   Lanes differ(uint32_t pixel, uint32_t step, int count) const {
     Lanes codes{};
     for (int k = 0; k < count; k++) {
       const size_t at = pixel + size_t(k);
-      codes[k] = frame.color[at] == frame.color[at + step] ? 0 : 1 << 16;  // light knows no white
+      // Light without a white: any difference counts.
+      codes[k] = frame.color[at] == frame.color[at + step] ? 0 : 1 << 16;
     }
     return codes;
   }
@@ -55,7 +56,7 @@ struct FramePlanes {
   }
 };
 
-// What is nearer than what the frame shows is laid over it.
+// Lays pixels that are nearer than the frame's over it.
 struct NearerPlanes {
   Frame& frame;
   void put(size_t at, LanePart part, const Shown& s) const {
@@ -69,12 +70,12 @@ struct NearerPlanes {
   }
 };
 
-// What of it is nearer, likewise, where the eye sees something already.
+// Lays pixels that are nearer over a picture for the eye.
 struct NearerEyePlanes {
   float exposure;
-  const float* disparity;  // 1 / depth of what it sees
-  uint8_t* covered;        // becomes 0 there
-  float* nearer;           // becomes 1 / its depth there; null: not wanted
+  const float* disparity;  // 1 / depth of that picture
+  uint8_t* covered;        // becomes 0 at pixels that were laid over
+  float* nearer;           // becomes 1 / the new depth there; null: not wanted
   uint8_t *rgb, *peaks;    // as EyePlanes'
   void put(size_t at, LanePart part, const Shown& s) const {
     const Color& c = s.color;
@@ -92,12 +93,13 @@ struct NearerEyePlanes {
   }
 };
 
-// What the eye sees.
+// Writes a picture for the eye.
 struct EyePlanes {
   float exposure;
-  uint8_t *rgb, *peaks;  // codes of what is shown, and eval_peak_codes() of its light
+  uint8_t *rgb, *peaks;  // codes of the shown colours, and eval_peak_codes() of their light
   float* depth;          // null: not wanted
-  // In codes, of which light beyond white has more than they show.
+  // Returns how much pixels differ from those `step` farther, in codes; light beyond white counts
+  // for more than its codes show.
   Lanes differ(uint32_t pixel, uint32_t step, int count) const {
     uint8_t one[3 * lane_count] = {}, other[3 * lane_count] = {}, peak[lane_count] = {};
     const uint8_t *a = rgb + 3 * size_t(pixel), *b = a + 3 * size_t(step);
@@ -132,8 +134,7 @@ struct EyePlanes {
   }
 };
 
-// What the light's own points say of eight pixels of a picture, as picture/surface_image.h packs
-// them.
+// Reads the points of eight pixels of a picture, as picture/surface_image.h packs them.
 
 struct OwnLight {
   LaneBits plane[surface_planes];

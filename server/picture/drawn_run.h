@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn of a run of pixels (light/visible/surface_buffer.h), eight at a time, as
-// picture/compose_drawn.h puts light on it.
+// Puts light on a run of pixels (light/visible/surface_buffer.h), eight at a time, for
+// picture/compose_drawn.h.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -13,7 +13,8 @@
 
 namespace wellspring::picture {
 
-// Eight lanes of a run's array from lane `i` on, which may begin before it and end behind it.
+// Returns eight lanes of a run's array from lane `i` on, which may begin before it and end behind
+// it.
 inline Lanes lanes_at(const float* from, int i) {
   if (i >= 0) return load_lanes(from + i);  // arrays may be read up to eight beyond their end
   Lanes v{};
@@ -21,27 +22,27 @@ inline Lanes lanes_at(const float* from, int i) {
   return v;
 }
 
-// What of a run moves, and its light.
+// Holds which of a run's pixels move, and their light.
 struct RunMoving {
-  uint64_t pixels = 0;  // a bit each
+  uint64_t pixels = 0;  // one bit a pixel
   RunSkin light;
 };
 
-// What of a run an illumination map lights.
+// Holds which of a run's pixels an illumination map lights, and its light.
 struct RunMapped {
-  uint64_t pixels = 0;  // a bit each
-  uint64_t plain = 0;   // those that are lit by it alone
+  uint64_t pixels = 0;  // one bit a pixel
+  uint64_t plain = 0;   // those that the map alone lights
   RunKnown unit;
 };
 
-// Eight of a run's bits, from lane `i` on, which may begin before it.
+// Returns eight of a run's bits, from lane `i` on, which may begin before it.
 inline unsigned bits_at(uint64_t bits, int i) {
   return unsigned(i < 0 ? bits << -i : bits >> i) & 0xff;
 }
 
-inline constexpr float skin_samples = 64;  // as much as light of the skin is sure of
+inline constexpr float skin_samples = 64;  // samples that the skin's light counts for
 
-// Radiance of those of eight pixels, from lane `i` on, that reflect the light of the skin.
+// Puts the radiance of those of eight pixels, from lane `i` on, that reflect the light of the skin.
 inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
                        const LaneMask& lanes_that_move, Shown& shown) {
   const Lanes gloss = lanes_at(skin.gloss, i);
@@ -56,8 +57,8 @@ inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
   shown.samples = lanes_that_move ? all_lanes(skin_samples) : shown.samples;
 }
 
-// Radiance of those of eight pixels, from lane `i` on, of which a map says all; `raised`: as
-// Sample::raised.
+// Puts the radiance of those of eight pixels, from lane `i` on, that a map alone lights; `raised`:
+// as Sample::raised.
 inline void put_plain(const RunPixels& p, const RunKnown& known, float raised, int i,
                       const LaneMask& lanes, Shown& shown) {
   const Lanes gloss = lanes_at(known.gloss, i);
@@ -72,11 +73,12 @@ inline void put_plain(const RunPixels& p, const RunKnown& known, float raised, i
   shown.samples = lanes ? all_lanes(skin_samples) : shown.samples;
 }
 
-// Around what moves, in the view's axes: it may change the light of what stands there.
+// A sphere around what moves, in the view's axes: moving things may change the light of surfaces in
+// it.
 struct Shade {
-  static constexpr float reach = 2.5f;  // times as far as it is large
-  vec3 centre{0};                       // to the right, up and ahead
-  float radius = 0;                     // 0: nothing moves
+  static constexpr float reach = 2.5f;  // radius over half the size of what moves
+  vec3 centre{0};                       // metres to the right, up and ahead
+  float radius = 0;                     // metres; 0: nothing moves
   Shade() = default;
   Shade(const View& view, const Bounds& box) {
     if (!(box.low.x <= box.high.x)) return;
@@ -84,7 +86,7 @@ struct Shade {
     centre = {dot(to, view.right), dot(to, view.up), dot(to, view.forward)};
     radius = reach * 0.5f * length(box.high - box.low);
   }
-  // Pixels of a run that see a place in it, a bit each, maybe others beyond.
+  // Returns the pixels of a run that see a place in the sphere, a bit each, maybe others beyond.
   uint64_t pixels(const VisibleRun& run, const PixelRays& rays, vec2 offset) const {
     constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
     uint64_t found = 0;
@@ -100,7 +102,7 @@ struct Shade {
   }
 };
 
-// `image`: null, or computed for pictures of `view`.
+// Returns the dynamic light of a run. `image`: null, or computed for pictures of `view`.
 inline RunDynamic find_dynamic(const DynamicImage* image, const View& view, const VisibleRun& run,
                                const RunPixels& p) {
   RunDynamic found;
@@ -108,7 +110,7 @@ inline RunDynamic find_dynamic(const DynamicImage* image, const View& view, cons
   return found;
 }
 
-// Adds what their surfaces reflect of the light of lights that move or change.
+// Adds the dynamic light that the surfaces reflect.
 inline void add_dynamic(const RunPixels& p, const RunDynamic& dynamic, int i, Shown& shown) {
   Color& c = shown.color;
   c.r += lanes_at(p.surface.red, i) * lanes_at(dynamic.light.red, i);
@@ -119,7 +121,7 @@ inline void add_dynamic(const RunPixels& p, const RunDynamic& dynamic, int i, Sh
   c.b += lanes_at(dynamic.gloss.blue, i);
 }
 
-// What of eight pixels emits light by itself. `here`: lanes that count, a bit each.
+// Adds the light that eight pixels emit by themselves. `here`: lanes that count, a bit each.
 inline void add_glow(const RunPixels& p, const RunGlow& emitting, int i, unsigned here,
                      Shown& shown) {
   const unsigned only = bits_at(emitting.only, i);

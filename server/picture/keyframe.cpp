@@ -17,10 +17,10 @@
 namespace wellspring::picture {
 namespace {
 
-// On each side, of width and height: turning goes sideways.
+// Width and height over the margin on each side: turning goes sideways.
 constexpr int margin_across = 40, margin_down = 45;
-constexpr int widest_across = 10;       // of quick turns
-constexpr float widest_tangent = 3;     // from the middle of surroundings to their border
+constexpr int widest_across = 10;       // width over the widest margin, for quick turns
+constexpr float widest_tangent = 3;     // tangent from the middle of surroundings to their border
 constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
 
 float disparity_of(float depth) {
@@ -28,7 +28,7 @@ float disparity_of(float depth) {
                    : 0.0f;  // 1 / infinity is 0; NaN is not > 0
 }
 
-// Of a row: how far apart disparities are there and in the row below.
+// Writes the steps of a row: how far apart disparities are there and in the row below.
 void write_steps(const Keyframe& k, int y, uint32_t* color) {
   int width = k.view.width;
   const float* row = &k.disparity[size_t(y) * size_t(width)];
@@ -84,7 +84,7 @@ float disparity_unit(const View& view) {
 }
 
 float uncovered_a_metre(const Keyframe& keyframe) {
-  constexpr float of_slope = 20;  // pixels a metre that a block of one slanted surface has
+  constexpr float of_slope = 20;  // parallax within a block of one slanted surface, pixels a metre
   const View& view = keyframe.view;
   const float focal = 0.5f * float(view.height) / view.tan_half_fov;  // pixels
   float sum = 0;
@@ -95,7 +95,8 @@ float uncovered_a_metre(const Keyframe& keyframe) {
   return sum / float(std::max<size_t>(keyframe.nearest.size(), 1));
 }
 
-static vec3 direction_at(const View& view, float across, float down) {  // of the picture, 0 to 1
+// Returns the direction to a place of the picture; `across` and `down` are 0 to 1.
+static vec3 direction_at(const View& view, float across, float down) {
   float high = view.tan_half_fov, wide = high * float(view.width) / float(view.height);
   return view.forward + view.right * (view.middle.x + wide * (2 * across - 1)) +
          view.up * (view.middle.y + high * (1 - 2 * down));
@@ -175,9 +176,9 @@ namespace {
 
 constexpr int run_pixels = RasterRun::most;
 constexpr float margin = 2;          // pixels around what moves
-constexpr float near_depth = 1e-3f;  // metres: what is nearer may be anywhere
+constexpr float near_depth = 1e-3f;  // metres; nearer places may fall anywhere
 
-// Where places fall in a picture.
+// Holds the bounds of places in a picture, pixels.
 struct Extent {
   vec2 low{INFINITY}, high{-INFINITY};
   bool behind = false;  // some lie behind the eye
@@ -240,7 +241,7 @@ PictureWindow moving_window(const World& world, const View& view) {
     if (!world.is_moving(uint32_t(i)) || !world.is_visible(uint32_t(i))) continue;
     Extent of_mesh = extent_of(world.mesh_of(uint32_t(i)).positions, view);
     if (!of_mesh.ahead()) continue;
-    // What reaches from before the eye to behind it may cross the whole picture.
+    // A mesh that reaches from before the eye to behind it may cross the whole picture.
     if (of_mesh.behind) return {0, 0, view.width, view.height};
     extent.add(of_mesh);
   }

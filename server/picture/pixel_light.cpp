@@ -35,13 +35,15 @@ namespace {
 
 constexpr int rings = 5;
 constexpr int cell_rings = 16;
-constexpr int enough_points = 6;  // found by a ring: no other is needed
-// Cosines squared: from no less on it is the same surface, and certainly from there on.
+constexpr int enough_points = 6;  // points found by a ring after which no other is needed
+// Squared cosines: below the first a surface is another one, from the second on it certainly is the
+// same.
 constexpr float turned_away = 0.49f, same_direction = 0.75f;
 constexpr float reach2 = (rings + 0.5f) * (rings + 0.5f);
-constexpr float least_fade = 1e-3f;  // the light is told all the same, should nothing else know it
+constexpr float least_fade = 1e-3f;  // weight that is left, should no nearer point know the light
 
-// Of squared distances in pixels. Else each point would light a square as large as the rings.
+// Returns a weight for squared distances in pixels. Without it each point would light a square as
+// large as the rings.
 Lanes fade_out(const Lanes& distance2) {
   Lanes left = positive_lanes(1.0f - distance2 * (1 / reach2));
   return lanes_max(left * left, all_lanes(least_fade));
@@ -49,19 +51,19 @@ Lanes fade_out(const Lanes& distance2) {
 
 struct Sum {
   Lanes samples{}, squares{}, deviation{};
-  Lanes reached{};  // samples, were none of them far off
+  Lanes reached{};  // samples as if none of them were far off
   Color smooth, rest;
 };
 
-// Points around that show the place's object, eight of which are weighed at a time.
+// Holds points around that show the place's object; eight of them are weighed at a time.
 struct Points {
   int count = 0;
   uint32_t words[surface_planes][lane_count] = {};  // lanes that were never filled are read, too
   float x[lane_count] = {}, y[lane_count] = {};
 };
 
-// How much the surfaces that points tell of are the place's; 0: other ones. It ends nowhere at
-// once, as places side by side differ a little.
+// Returns how much the points' surfaces are the place's; 0: other ones. The weight ends gradually,
+// as places side by side differ a little.
 Lanes alike(const View& view, const PixelRays& rays, const SeenPlace& place, const Points& points) {
   Lanes nx, ny, nz;
   unpack_octahedron(load_lanes<LaneBits>(points.words[plane_more]) & 0xffffu, nx, ny, nz);
@@ -82,7 +84,7 @@ Lanes alike(const View& view, const PixelRays& rays, const SeenPlace& place, con
   return same * positive_lanes(1.0f - off);
 }
 
-// Returns how many of the points count, which are then forgotten.
+// Adds the points to the sum and drops them. Returns how many of them count.
 int add_points(const View& view, const PixelRays& rays, const SeenPlace& place, Points& points,
                Sum& sum) {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
@@ -91,7 +93,7 @@ int add_points(const View& view, const PixelRays& rays, const SeenPlace& place, 
   Lanes dx = load_lanes(points.x) - float(place.x), dy = load_lanes(points.y) - float(place.y);
   Lanes distance2 = dx * dx + dy * dy, near = 1.0f / (0.5f + distance2);
   Lanes weight = near * fade_out(distance2);
-  // What a mirror shows has neither its place nor its normal.
+  // A mirror image has neither the place nor the normal of its mirror.
   if (place.albedo != vec3(0)) weight *= alike(view, rays, place, points);
   weight = keep_lanes(there, weight);
   Lanes samples = keep_lanes(there, to_float((more >> 16) & 255u)), share = weight * samples;
@@ -109,7 +111,8 @@ int add_points(const View& view, const PixelRays& rays, const SeenPlace& place, 
   return std::popcount(negative_lanes(weight > 0.0f));
 }
 
-// Bit k: at column x + k of row y, within the picture, samples are known of the object.
+// Returns a bit k for each column x + k of row y, within the picture, that has samples of the
+// object.
 constexpr int window = 2 * rings + 1;
 static_assert(window <= 2 * lane_count);
 unsigned find_known(const Frame& light, uint32_t object, int x, int y) {

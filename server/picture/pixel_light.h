@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light of eight places in the picture at a time: what their own samples say, blended with what
-// the four cells around say of the same surface.
+// Computes the light of eight places in the picture at a time: their own samples, blended with the
+// light of the four cells around on the same surface.
 #pragma once
 #include <algorithm>
 #include <cstring>
@@ -14,7 +14,8 @@
 
 namespace wellspring::picture {
 
-inline constexpr float plane_tolerance = 0.02f;  // of the depth: farther off is another surface
+// Share of the depth; a surface farther off is another one.
+inline constexpr float plane_tolerance = 0.02f;
 
 struct Color {
   Lanes r{}, g{}, b{};
@@ -28,8 +29,8 @@ inline Color weighted_sum(const Color& a, const Lanes& kept, const Color& b, con
   return {kept * a.r + other * b.r, kept * a.g + other * b.g, kept * a.b + other * b.b};
 }
 
-// Rest holds light of lamps with the reflectance in it: how much of what was seen under `theirs`
-// there is under `own`.
+// Rest holds light of lamps with the reflectance in it: this ratio turns the rest that was seen
+// under the reflectance `theirs` into that under `own`.
 inline constexpr float dark_reflectance = 0.05f, most_brighter = 4;
 inline Lanes rest_ratio(const Lanes& own, const Lanes& theirs) {
   return lanes_min((own + dark_reflectance) / (theirs + dark_reflectance),
@@ -39,17 +40,17 @@ inline vec3 rest_ratio(vec3 own, vec3 theirs) {
   return min((own + dark_reflectance) / (theirs + dark_reflectance), vec3(most_brighter));
 }
 
-// Eight pixels, or places in them.
+// Holds eight pixels, or places in them.
 struct Pixels {
   LaneBits object;
   Lanes x, y, depth, samples;
   Lanes nx, ny, nz, normal2;  // not normalised; its length squared
   Color smooth, rest;
-  Lanes deviation;  // of one sample's rest
+  Lanes deviation;  // standard deviation of one sample's rest
 };
 
-// What pixels want to know of a cell, in one place: of the same cell for all (float, uint32_t), or
-// of one for each (f8, u8).
+// Holds what pixels need of a cell, in one place: the same cell for all (float, uint32_t), or one
+// cell for each (Lanes, LaneBits).
 template <class Number, class Id>
 struct CellLightOf {
   Number smooth[3], rest[3], prior_weight, detail, noise;
@@ -58,7 +59,7 @@ struct CellLightOf {
 };
 using CellLight = CellLightOf<float, uint32_t>;
 
-// The cell (x, y), or the nearest one where there is none.
+// Returns the index of cell (x, y), or of the nearest one if there is none.
 inline size_t nearest_cell(const Cells& cells, int x, int y) {
   return size_t(cells.index(std::clamp(x, 0, cells.width - 1), std::clamp(y, 0, cells.height - 1)));
 }
@@ -76,19 +77,19 @@ inline void read_cell(const Cells& cells, int x, int y, CellLight& c) {
   c.object = cells.object[i];
 }
 
-// Which of the eight blocks from bx on lie between four cells in one plane: what a pixel has in
-// common with one of those, it has with all.
+// Finds which of the eight blocks from bx on lie between four cells in one plane: a pixel that
+// agrees with one of those agrees with all.
 LaneMask find_flat(const PixelRays& rays, const Cells& cells, int bx, int by);
 
-// What the four cells say at each pixel, as far as they lie on the same surface.
+// Holds the light of the four cells at each pixel, as far as they lie on the same surface.
 struct Surroundings {
   Color smooth, rest;
   Lanes prior_weight{}, detail{}, noise{};
-  Color albedo;       // of cells that tell it
+  Color albedo;       // reflectance, if the cells have it
   LaneMask lonely{};  // no cell lies on this surface
-  Lanes known{};      // 0 to 1: cells hardly do, or some certainly do
+  Lanes known{};      // 0 to 1: how surely some cell lies on this surface
 };
-// With the reflectance that its rest was seen under.
+// A cell with the reflectance under which its rest was seen.
 struct PaintedCell : CellLight {
   float albedo[3];
 };
@@ -103,12 +104,13 @@ template <class Cell>
     add(sum.albedo, weight, c.albedo[0], c.albedo[1], c.albedo[2]);
 }
 
-inline constexpr float enough_alike = 0.01f;  // of the cells around, for Surroundings::known
+// Agreement of the cells around that makes Surroundings::known 1.
+inline constexpr float enough_alike = 0.01f;
 inline Lanes known_by(const Lanes& alike) {
   return lanes_min(alike * (1 / enough_alike), all_lanes(1));
 }
 
-// How much a cell's surface is that of the pixels.
+// Returns how much a cell's surface is that of the pixels, 0 to 1.
 template <class Cell>
 Lanes alike(const Cell& c, const Pixels& p, const Lanes& inverse_normal2) {
   Lanes facing = positive_lanes(c.normal[0] * p.nx + c.normal[1] * p.ny + c.normal[2] * p.nz);
@@ -119,8 +121,9 @@ Lanes alike(const Cell& c, const Pixels& p, const Lanes& inverse_normal2) {
   return keep_lanes(p.object == c.object, facing / (1.0f + off * off));
 }
 
-// `weights`: how much of each corner a pixel's place asks for, adding up to one. `flat`: all four
-// lie in one plane, and so what a pixel has in common with one it has with all.
+// Sums the corners' light at the pixels. `weights`: the share of each corner at a pixel's place,
+// adding up to one. `flat`: all four lie in one plane, and so a pixel that agrees with one agrees
+// with all.
 template <class Cell>
 Surroundings look_around(const Cell* const* corners, bool flat, const Lanes* weights,
                          const Pixels& p) {
@@ -146,7 +149,7 @@ Surroundings look_around(const Cell* const* corners, bool flat, const Lanes* wei
   return s;
 }
 
-// The same, where that is so for some of the pixels only.
+// Does the same if only some of the pixels lie between cells in one plane.
 template <class Cell>
 Surroundings look_around(const Cell* const* corners, const LaneMask& flat, const Lanes* weights,
                          const Pixels& p) {
@@ -169,16 +172,17 @@ Surroundings look_around(const Cell* const* corners, const LaneMask& flat, const
   return s;
 }
 
-// What is left of `own` light where more than `most` would be too much.
+// Returns the share of `own` light that is left if more than `most` would be too much.
 inline Lanes cut_to(const Lanes& own, const Lanes& most) {
   return most / (lanes_max(own, most) + 1e-12f);
 }
 
-// Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
-// more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
-// `prior variance`: samples that make the own rest count for half of what it would. What few
-// samples vary by may be alike by chance, most of all where now and then one finds a light: what
-// those around vary by counts as so many of them.
+// Blends the pixels' own light with that of their surroundings. Smooth light: the more samples a
+// pixel has, the more its own light counts. Rest: the more of the variation around is detail rather
+// than noise, the more its own light counts (Lee 1980, the local Wiener filter); `prior_variance`:
+// with as many samples the own rest counts for half of that. A few samples may be alike by chance,
+// most of all if only now and then one finds a light: the noise around counts as `prior_samples` of
+// them.
 inline constexpr float prior_samples = 4;
 inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& prior_variance = Lanes{}) {
   const LaneMask& lonely = s.lonely;
@@ -207,7 +211,8 @@ inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& prior_var
   p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);
 }
 
-// Rows of cells (picture/cells.h) as groups of pixels read them, for picture/compose_drawn.cpp.
+// Reads rows of cells (picture/cells.h) as groups of pixels need them, for
+// picture/compose_drawn.cpp.
 
 // Pixels are lit in groups that lie between two columns of cell centres: four pixels, which are
 // packed together, and four cells around. Groups begin half a cell before a tile, and two lie side
@@ -216,7 +221,8 @@ constexpr int half_cell = cell_size / 2;
 constexpr int cells_together = lane_count / cell_size;
 static_assert(cell_size == packed_four && cells_together == 2);
 
-// What the lanes of two groups side by side have to the same side of them.
+// Holds two cells side by side: the left one in the lanes of the left group of pixels, the right
+// one in those of the right group.
 struct WideCell : CellLightOf<Lanes, LaneBits> {
   Lanes albedo[3];
 };
@@ -231,15 +237,16 @@ inline void spread_cells(const PaintedCell& left, const PaintedCell& right, Wide
   std::memcpy(static_cast<void*>(&to), both, sizeof both);
 }
 
-// Two rows of cells around a tile's blocks, each beside the one that the next group needs.
+// Holds two rows of cells around a tile's blocks, each cell beside the one that the next group
+// needs.
 struct CellRows {
   static constexpr int most = RasterRun::most / cell_size + 3;
   uint64_t picture = 0;
   int first = 0, row = 0, count = 0;
-  int above = 0;  // which of the rows
+  int above = 0;  // index of the upper row
   WideCell cell[2][most];
-  LaneMask
-      flat[most];  // lanes of each group and those beside it that lie between cells in one plane
+  // Lanes of each group and those beside it that lie between cells in one plane.
+  LaneMask flat[most];
 
   const WideCell& at(int r, int k) const { return cell[above ^ r][k]; }
   void read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y, int columns);
@@ -265,39 +272,39 @@ inline void CellRows::read(const PixelRays& rays, const Cells& cells, uint64_t o
   above = below ? above ^ 1 : 0;
   if (!below) read_row(cells, y, cell[above]);
   read_row(cells, y + 1, cell[above ^ 1]);
-  int32_t one_plane[most + 2 * lane_count] = {};  // by groups
+  int32_t one_plane[most + 2 * lane_count] = {};  // one value a group
   for (int g = 0; g < count; g += lane_count)
     store_lanes(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
   for (int g = 0; g < count; g++)
     for (int k = 0; k < lane_count; k++) flat[g][k] = one_plane[g + k / cell_size];
 }
 
-// The light of a place on a surface so narrow that no cell stands for it: told by the points around
-// that lie on the same surface.
+// Finds the light of a place on a surface so narrow that no cell stands for it, from the points
+// around that lie on the same surface.
 
-// What is seen at one place of a picture.
+// A place that a picture shows.
 struct SeenPlace {
-  int x = 0, y = 0;           // the light's pixel that it falls in
-  vec2 ray{0};                // to it, in view coordinates (right, up; forward is 1)
-  float depth = 0;            // along the viewing axis
+  int x = 0, y = 0;           // pixel of the light that it falls in
+  vec2 ray{0};                // ray to it, in view coordinates (right, up; forward is 1)
+  float depth = 0;            // metres along the viewing axis
   vec3 normal{0}, albedo{0};  // the normal need not be unit
   uint32_t object = 0;
 };
 struct NearbyLight {
   vec3 smooth{0}, rest{0};  // rest for the place's own reflectance
-  // Behind that mean (Kish: as many as if they weighed alike), the fewer the farther off they are
-  // or the less their surface is the place's; 0: none.
+  // Samples behind that mean (Kish: as many as if they weighed alike), the fewer the farther off
+  // they are or the less their surface is the place's; 0: none.
   float samples = 0;
   float deviation = 0;
 };
 
-// Looks at the pixels around the place's own in rings, and no farther than where some know it.
+// Looks at the pixels around the place's own in rings, until enough of them know its light.
 // `light`: the packed planes of a picture with these `rays`.
 NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Frame& light,
                               const SeenPlace& place);
 // Returns the light of the nearest cells in eight directions that know the place's object,
-// whichever way their surfaces face, within 64 pixels: for places that no pixel around tells of.
-// `samples`: theirs.
+// whichever way their surfaces face, within 64 pixels: for places whose light no pixel around
+// knows. `samples`: those of the cells.
 NearbyLight find_light_far(const Cells& cells, const SeenPlace& place);
 
 }  // namespace wellspring::picture

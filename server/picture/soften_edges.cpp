@@ -12,7 +12,8 @@
 namespace wellspring::picture {
 namespace {
 
-// Replaces a share of a pixel's `own` light in what it has `become`, by no more than there is.
+// Replaces a share of a pixel's `own` light by that `beyond` the edge in what it has `become`, and
+// never leaves the range of the latter two.
 vec3 mix_in(float share, vec3 own, vec3 beyond, vec3 become) {
   return clamp(become + share * (beyond - own), min(become, beyond), max(become, beyond));
 }
@@ -26,7 +27,7 @@ struct LinearPicture {
   }
 };
 
-// The sRGB transfer function in tables.
+// Holds the sRGB transfer function in tables.
 struct Codes {
   static constexpr int roots = 2047;  // steps from 0 to 1 of a linear value's square root
   std::array<float, 256> linear{};
@@ -45,7 +46,7 @@ const Codes& known_codes() {
   return known;
 }
 
-// Mixed through the tone curve.
+// Mixes light of before the tone curve.
 struct ShownPicture {
   struct Pixel {
     std::array<uint8_t, 3> code;

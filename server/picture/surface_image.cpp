@@ -26,7 +26,7 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
   uint32_t* more_row = rows.row(plane_more, y);
   LaneBits converged{};
   for (int x = 0; x < width; x += lane_count) {
-    // No branch: where there is no point, the first one is read and thrown away.
+    // There is no branch: without a point, point 0 is read and thrown away.
     alignas(32) uint32_t point[lane_count];
     if (x + ahead + lane_count <= width) {
       LaneBits early = load_lanes<LaneBits>(row + x + ahead);
@@ -34,7 +34,7 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
       for (uint32_t next : point) {
         auto record = reinterpret_cast<const char*>(&colors[next]);
         __builtin_prefetch(record);
-        __builtin_prefetch(record + sizeof(PointColor) - 1);  // they do not stop at cache lines
+        __builtin_prefetch(record + sizeof(PointColor) - 1);  // records do not stop at cache lines
       }
     }
     LaneBits index = LaneBits{} + no_point;
@@ -48,8 +48,8 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
     auto more = [&](int i) {
       uint32_t word;
       std::memcpy(&word, &colors[point[i]].normal, sizeof word);
-      return (word & 0xff00ffffu) | uint32_t(counts[point[i]])
-                                        << 16;  // in place of its prior variances
+      // The count takes the place of the doubts.
+      return (word & 0xff00ffffu) | uint32_t(counts[point[i]]) << 16;
     };
     LaneBits m{more(0), more(1), more(2), more(3), more(4), more(5), more(6), more(7)};
     m &= known;
@@ -74,8 +74,8 @@ struct Neighbour {
   const uint32_t *albedo, *rest, *smooth, *object, *more, *depth;
 };
 
-// The object of most weight among the neighbours of eight pixels at x (exact where one object has
-// more than half). Mostly all show the same, and no vote is needed.
+// Returns the object of most weight among the neighbours of eight pixels at x (exact if one object
+// has more than half). Mostly all show the same, and no vote is needed.
 LaneBits elect_object(const Neighbour* around, int x, const LaneMask& asked) {
   LaneBits least = LaneBits{} + no_object, most{};  // no_object itself wraps around to 0 in `most`
   for (int k = 0; k < 8; k++) {
@@ -98,7 +98,7 @@ LaneBits elect_object(const Neighbour* around, int x, const LaneMask& asked) {
   return elected;
 }
 
-// Sums over the neighbours of one kind (beside or diagonal) that show the elected object.
+// Holds sums over the neighbours of one kind (beside or diagonal) that show the elected object.
 struct Sums {
   LaneBits red_blue{}, green{}, count{};
   Lanes depth{};
@@ -121,8 +121,8 @@ void take(const Neighbour& from, int x, const LaneMask& mask, Nearest& nearest) 
   nearest.more = mask ? load_lanes<LaneBits>(from.more + x) : nearest.more;
 }
 
-// Eight pixels at x, of which those `asked` for matter: averages the neighbours of the elected
-// object.
+// Fills eight pixels at x, of which those `asked` for matter, with the mean of their neighbours of
+// the elected object.
 void fill(const Neighbour* around, int x, const LaneMask& asked, LaneBits* words) {
   LaneBits elected = elect_object(around, x, asked);
   Sums beside, diagonal;
@@ -130,7 +130,7 @@ void fill(const Neighbour* around, int x, const LaneMask& asked, LaneBits* words
   LaneMask masks[8];
   for (int k = 0; k < 4; k++) masks[k] = add(around[k], x, elected, beside);
   for (int k = 4; k < 8; k++) masks[k] = add(around[k], x, elected, diagonal);
-  // The nearest last, so that it stays.
+  // The nearest comes last, so that it stays.
   if (any_lane(asked & (beside.count == 0u)))
     for (int k = 7; k >= 4; k--) take(around[k], x, masks[k], nearest);
   for (int k = 3; k >= 0; k--) take(around[k], x, masks[k], nearest);
@@ -148,7 +148,7 @@ void fill(const Neighbour* around, int x, const LaneMask& asked, LaneBits* words
   words[plane_rest] = nearest.rest & known;
   words[plane_smooth] = nearest.smooth & known;
   words[plane_object] = elected;
-  words[plane_more] = nearest.more & known & 0xffffu;  // of the samples, none are its own
+  words[plane_more] = nearest.more & known & 0xffffu;  // it has no samples of its own
   words[plane_depth] = lanes_as<LaneBits>((2.0f * beside.depth + diagonal.depth) * share) & known;
 }
 
@@ -199,7 +199,7 @@ int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame) {
   for (int x = packed_start; x < frame.width; x += lane_count) {
     LaneBits words[surface_planes];
     for (int p = 0; p < surface_planes; p++) words[p] = load_lanes<LaneBits>(own[p] + x);
-    LaneMask hole = words[plane_object] == no_object;  // beyond the ends all are
+    LaneMask hole = words[plane_object] == no_object;  // all pixels beyond the ends are holes
     points += lanes_as<LaneBits>(hole) + 1u;
     if (any_lane(hole)) {
       LaneBits filled[surface_planes];

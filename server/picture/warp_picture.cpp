@@ -18,15 +18,17 @@ namespace {
 using namespace warping;
 constexpr int block = Keyframe::block;
 static_assert(block == lane_count);
-constexpr int most_steps = 96;   // along an epipolar line
-constexpr int most_blocks = 24;  // written per block, on average, when bounds are carried forward
-constexpr int seam_across = 64;  // of its width, a keyframe passes into the next
-constexpr float found = 0.5f;    // pixels that disparities of one surface may be apart in a line
-constexpr float meets = 1;       // pixels between a place and itself, carried there and back
-constexpr float same = 0.125f;   // pixels between places of a block that one disparity stands for
+constexpr int most_steps = 96;  // steps along an epipolar line
+// Blocks written per block, on average, when bounds are carried forward.
+constexpr int most_blocks = 24;
+// Width of a keyframe over that of the border at which it passes into the next.
+constexpr int seam_across = 64;
+constexpr float found = 0.5f;   // pixels that disparities of one surface may be apart in a line
+constexpr float meets = 1;      // pixels between a place and itself, carried there and back
+constexpr float same = 0.125f;  // pixels between places of a block that one disparity stands for
 
-// Bounds of disparities of every block of the new view, from the keyframe's blocks carried forward.
-// False: they would move too far for that.
+// Bounds the disparities of every block of the new view by the keyframe's blocks carried forward.
+// Returns false if they would spread over too many blocks.
 bool carry_bounds(const Source& source, const View& view, WarpBounds& bounds) {
   const Keyframe& k = source.k;
   const Mapping& m = source.back;
@@ -70,7 +72,7 @@ bool carry_bounds(const Source& source, const View& view, WarpBounds& bounds) {
   return true;
 }
 
-// Bounds of a block that nothing was carried to: those around; at infinity where there are none.
+// Bounds a block that nothing was carried to by those around; at infinity if there are none.
 void borrow_bounds(const WarpBounds& bounds, int columns, int rows, int bx, int by, float& far,
                    float& near) {
   far = std::numeric_limits<float>::infinity(), near = -1;
@@ -85,13 +87,13 @@ void borrow_bounds(const WarpBounds& bounds, int columns, int rows, int bx, int 
   far = near = 0;
 }
 
-// Where eight neighbours' epipolar lines run, in steps of a pixel or less from the nearest to the
-// farthest.
+// Says where eight neighbours' epipolar lines run, in steps of a pixel or less from the nearest to
+// the farthest disparity.
 struct Search {
   float nearest = 0, step = 0;
   int steps = 0;
-  bool look = true;  // without steps: the middle may be beside what is there
-  float pixels = 0;  // a unit of disparity, at most
+  bool look = true;  // if there are no steps: the surface may lie beside the middle disparity
+  float pixels = 0;  // pixels a unit of disparity, at most
 };
 Search plan_search(const Source& source, float x, float y, float near, float far) {
   const Mapping& m = source.to;
@@ -117,7 +119,7 @@ Search plan_search(const Source& source, float x, float y, float near, float far
   return search;
 }
 
-// Eight pixels from their words' lowest three bytes.
+// Writes eight pixels from their words' lowest three bytes.
 void write_rgb(const LaneBits& words, uint8_t* to, int count) {
   using b16 = uint8_t __attribute__((vector_size(16)));
   uint8_t bytes[2 * 12 + 4];
@@ -131,9 +133,9 @@ void write_rgb(const LaneBits& words, uint8_t* to, int count) {
   if (count < lane_count) std::memcpy(to, bytes, size_t(count) * 3);
 }
 
-// The first of eight neighbours' epipolar lines' places that shows what the pixel would see,
-// and its disparity. Returns which of the wanted have none: they get the place of the farthest
-// surface on their line, since that does not stand before what they would see.
+// Finds the first place on each of eight neighbours' epipolar lines that shows what the pixel would
+// see, and its disparity. Returns which of the waiting pixels have none: they get the place of the
+// farthest surface on their line, since that does not stand before what they would see.
 LaneMask follow_line(const Source& source, const Place& base, const Search& search,
                      LaneMask waiting, Lanes& at_x, Lanes& at_y, Lanes& disparity) {
   const Mapping& m = source.to;
@@ -161,7 +163,8 @@ LaneMask follow_line(const Source& source, const Place& base, const Search& sear
   return waiting;
 }
 
-// Eight neighbours, the first of which has its middle at (x, y).
+// Returns the places, at disparity 0 and not yet divided by the ratio, of eight neighbours, the
+// first of which has its middle at (x, y).
 Place make_base(const Source& source, float x, float y) {
   const Mapping& m = source.to;
   const Lanes px = x + Lanes{0, 1, 2, 3, 4, 5, 6, 7};
@@ -173,12 +176,12 @@ LaneMask is_inside(const Source& source, const Lanes& x, const Lanes& y) {
          (y <= source.last_y + (1 + found));
 }
 
-// This is what a keyframe has for a row of eight pixels.
+// Holds what a keyframe has for a row of eight pixels.
 struct Row {
-  LaneBits color{};    // what it shows, or else how it goes on
-  Lanes disparity{};   // of what it shows
-  Lanes share{};       // how much of the pixel that is, 0 to 1: less near its border
-  LaneMask outside{};  // it is not within the keyframe, and not hidden by it
+  LaneBits color{};    // colours of what it shows, or else of how it goes on
+  Lanes disparity{};   // disparities of what it shows
+  Lanes share{};       // share of the pixel that it covers, 0 to 1: less near its border
+  LaneMask outside{};  // not within the keyframe, and not hidden by it
 };
 [[gnu::always_inline]] inline Row warp_row(const Source& source, float x, float y, LaneMask wanted,
                                            const Search& search) {
@@ -188,7 +191,7 @@ struct Row {
   LaneMask hidden{};
   Lanes at_x, at_y;
   if (search.steps == 0) {
-    // Whatever lies in the middle is right to half a pixel, and then to much less.
+    // The middle disparity is right to half a pixel; after one look it is right to much less.
     row.disparity = all_lanes(search.nearest);
     Place place = carry(m, base, row.disparity);
     if (search.look) {
@@ -226,7 +229,7 @@ Search plan_block(const Layer& layer, const View& view, int bx, int by) {
                      far);
 }
 
-// Sums of colours by their shares.
+// Sums colours by their shares.
 struct Mix {
   Lanes red{}, green{}, blue{}, left = all_lanes(1);
   void add(const LaneBits& color, const Lanes& share) {
@@ -240,7 +243,7 @@ struct Mix {
   }
 };
 
-// Which of eight pixels a keyframe sees past at that disparity: nothing is there any more.
+// Returns which of eight pixels a keyframe sees past at that disparity: nothing is there any more.
 LaneMask sees_past(const Source& source, const Place& base, const Search& search,
                    const Lanes& disparity) {
   const Place place = carry(source.to, base, disparity);
@@ -248,8 +251,9 @@ LaneMask sees_past(const Source& source, const Place& base, const Search& search
   return is_inside(source, place.x, place.y) & ((disparity - there) * search.pixels > meets);
 }
 
-// The next keyframes give what the first one does not show all of, but for what it sees
-// past; then it goes on as the first does. Returns how many pixels lie outside of all.
+// Takes what the first keyframe does not fully show from the next ones, except for what the first
+// one sees past; the remaining share goes on as the first does. Returns how many pixels lie outside
+// of all.
 int mix_row(std::span<const Layer> layers, const View& view, int x, int y, LaneMask wanted,
             const Search& search, const Row& first, LaneBits& color) {
   const float middle_x = float(x) + 0.5f, middle_y = float(y) + 0.5f;
@@ -273,7 +277,8 @@ int mix_row(std::span<const Layer> layers, const View& view, int x, int y, LaneM
   return std::popcount(negative_lanes(outside));
 }
 
-// Draws the picture's rows of blocks from `begin` to `end`, and returns the same.
+// Draws the picture's rows of blocks from `begin` to `end`. Returns how many of their pixels lie
+// outside of all keyframes.
 int64_t warp_rows(std::span<const Layer> layers, const View& view, int begin, int end,
                   Image8& out) {
   int64_t outside = 0;
@@ -294,7 +299,7 @@ int64_t warp_rows(std::span<const Layer> layers, const View& view, int begin, in
   return outside;
 }
 
-// The share of the blocks that nothing was carried to.
+// Returns the share of the blocks that nothing was carried to.
 float bare_share(const WarpBounds& bounds) {
   const auto bare = std::count(bounds.nearest.begin(), bounds.nearest.end(), -1.0f);
   return float(bare) / float(bounds.nearest.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pixels of a warped picture ask of a keyframe, eight neighbours at a time: where they lie in
-// it, what is to be seen there, and its colour. See picture/warp_picture.h.
+// Reads a keyframe for pixels of a warped picture, eight neighbours at a time: their places in it,
+// the surface that is to be seen there, and its colour. See picture/warp_picture.h.
 #pragma once
 #include <algorithm>
 #include <cstring>
@@ -10,17 +10,17 @@
 
 namespace wellspring::picture::warping {
 
-// Over that of the other view: nothing is nearer to a camera.
+// Least depth over that of the other view: nothing is nearer to a camera.
 inline constexpr float least_depth = 1e-6f;
-// Pixels that disparities within a bilinear sample may open.
+// Gap, in pixels, that disparities within a bilinear sample may open.
 inline constexpr float half_step = 0.5f;
-// Pixels of a keyframe that are as many times as large as the picture's count as larger: margins
+// Pixels of a keyframe that are this many times as large as the picture's count as larger: margins
 // are rounded to whole pixels, and a field of view may change a little between two keyframes.
 inline constexpr float larger_pixel = 1.1f;
 // Places of a bilinear sample between two pixels, as a power of 2.
 inline constexpr int fractions = 16, fraction_bits = 4;
 
-// From a pixel (x, y) and its disparity w in one view to another: one + x * across + y * down + w *
+// Maps a pixel (x, y) and its disparity w in one view to another: one + x * across + y * down + w *
 // baseline is the place there times its depth over the depth here, and that ratio.
 struct Mapping {
   vec3 one, across, down, baseline;
@@ -41,7 +41,7 @@ inline Mapping make_mapping(const View& from, const View& to) {
 }
 
 struct Place {
-  Lanes x, y, ratio;  // ratio: of depths, there over here
+  Lanes x, y, ratio;  // ratio: depth there over depth here
 };
 inline Place carry(const Mapping& m, const Place& base, const Lanes& w) {
   Lanes z = lanes_max(base.ratio + w * m.baseline.z, all_lanes(least_depth));
@@ -61,7 +61,7 @@ inline LaneBits gather(const T* from, const LaneMask& index) {
   return v;
 #endif
 }
-// Words at the places and those after them.
+// Reads the words at the places and those after them.
 inline void gather_pairs(const uint32_t* from, const LaneMask& index, LaneBits& a, LaneBits& b) {
 #ifdef __AVX2__
   auto pairs = [&](const __m128i& i) {
@@ -76,13 +76,13 @@ inline void gather_pairs(const uint32_t* from, const LaneMask& index, LaneBits& 
 #endif
 }
 #ifdef __AVX2__
-// Sixteen words in a row, of which eight are picked much faster than gathered.
+// Holds sixteen words in a row: eight of them are picked much faster than gathered.
 struct Window {
   LaneBits low, high;
   explicit Window(const void* from)
       : low(load_lanes<LaneBits>(from)),
         high(load_lanes<LaneBits>(static_cast<const uint32_t*>(from) + lane_count)) {}
-  LaneBits pick(const LaneMask& at) const {  // 0 to 15
+  LaneBits pick(const LaneMask& at) const {  // `at`: 0 to 15
     auto permute = [&](const LaneBits& v) {
       return LaneMask(_mm256_permutevar8x32_epi32(__m256i(v), __m256i(at)));
     };
@@ -91,7 +91,7 @@ struct Window {
 };
 #endif
 inline constexpr int window = 2 * lane_count;
-// Whether neighbours lie in a window that begins with the first of them.
+// Returns whether neighbours lie in a window that begins with the first of them.
 inline bool lie_close(const LaneMask& index, int width_of_pick) {
   return !any_lane(
       lanes_as<LaneMask>(lanes_as<LaneBits>(index - index[0]) > uint32_t(window - width_of_pick)));
@@ -103,18 +103,19 @@ inline float least(const Lanes& v) {
   return std::min(a[0], a[1]);
 }
 inline float most(const Lanes& v) { return -least(-v); }
-// NaN becomes 0.
+// Clamps to 0 and `high`; NaN becomes 0.
 inline Lanes clamped(const Lanes& v, float high) {
   return lanes_min(lanes_max(v, Lanes{}), all_lanes(high));
 }
 
-// What every pixel asks of the keyframe.
+// Holds what every pixel needs of the keyframe.
 struct Source {
   const Keyframe& k;
-  Mapping to, back;  // from the new view to the keyframe's, and back
+  Mapping to, back;  // mappings from the new view to the keyframe's, and back
   float last_x, last_y;
-  float seam = 0;  // pixels over which it passes into something else at its border
-  // Its pixels are larger: colours are bilinear across silhouettes, too, which would have steps.
+  float seam = 0;  // pixels at its border over which the keyframe passes into the next
+  // The keyframe's pixels are larger: colours are bilinear across silhouettes, too, which would
+  // have steps otherwise.
   bool coarse;
 
   Source(const Keyframe& k, const View& view)
@@ -125,7 +126,7 @@ struct Source {
         last_y(float(k.view.height - 1)),
         coarse(k.view.tan_half_fov * float(view.height) >
                larger_pixel * view.tan_half_fov * float(k.view.height)) {}
-  // Of the pixel that holds the place.
+  // Returns the disparity of the pixel that holds the place.
   Lanes disparity(const Lanes& x, const Lanes& y) const {
     LaneMask index = to_int(clamped(y, last_y)) * k.view.width + to_int(clamped(x, last_x));
 #ifdef __AVX2__
@@ -134,7 +135,7 @@ struct Source {
 #endif
     return lanes_as<Lanes>(gather(k.disparity.data(), index));
   }
-  // What the keyframe shows there, as a disparity in the new view.
+  // Returns what the keyframe shows there, as a disparity in the new view.
   Lanes surface(const Lanes& x, const Lanes& y) const {
     Lanes s = disparity(x, y);
     Lanes z = back.one.z + x * back.across.z + y * back.down.z + s * back.baseline.z;
@@ -142,7 +143,8 @@ struct Source {
   }
 };
 
-// Four pixels each: the first, that after it, and those below both where `below` is not `first`.
+// Reads four pixels a lane: the first, the one after it, and the two below them if `below` is not
+// `first`.
 inline void read_corners(const Keyframe& k, const LaneMask& first, const LaneMask& below,
                          LaneBits& c00, LaneBits& c10, LaneBits& c01, LaneBits& c11) {
 #ifdef __AVX2__
@@ -159,7 +161,7 @@ inline void read_corners(const Keyframe& k, const LaneMask& first, const LaneMas
   gather_pairs(k.color.data(), below, c01, c11);
 }
 
-// Bilinear, of the pixels around that lie on the surface of the nearest of them.
+// Returns bilinear colours, of the pixels around that lie on the surface of the nearest of them.
 inline LaneBits sample_color(const Source& source, const Lanes& x, const Lanes& y, float pixels) {
   const Keyframe& k = source.k;
   int width = k.view.width;
@@ -170,7 +172,7 @@ inline LaneBits sample_color(const Source& source, const Lanes& x, const Lanes& 
   LaneMask x0 = px >> fraction_bits, y0 = py >> fraction_bits;
   LaneBits fx = lanes_as<LaneBits>(px & (fractions - 1)),
            fy = lanes_as<LaneBits>(py & (fractions - 1));
-  // Where there is no further row its weight is 0; behind the last pixel there is one more.
+  // If there is no further row its weight is 0; behind the last pixel there is one more.
   LaneMask first = y0 * width + x0, below = first + (lanes_as<LaneMask>(fy > 0u) & width);
   LaneBits c00, c10, c01, c11;
   read_corners(k, first, below, c00, c10, c01, c11);

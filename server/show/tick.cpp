@@ -32,14 +32,17 @@ namespace {
 
 constexpr double agent_interval = 0.1;  // seconds between agent messages while somebody listens
 constexpr double state_interval = 0.5;
-constexpr double pose_interval = 1 / 30.0;    // while the view changes
-constexpr double heard_state_interval = 0.1;  // while there is sound to be heard from somewhere
+constexpr double pose_interval = 1 / 30.0;  // seconds between pose messages while the view changes
+// seconds while there is sound to be heard from somewhere
+constexpr double heard_state_interval = 0.1;
 constexpr double behave_interval = 0.04;
-constexpr double idle_before_bake = 5;       // seconds in which nothing was drawn
-constexpr double looks_every = 0.5;          // between what the baker is told
-constexpr double most_light_waits = 60;      // for better light, while visitors walk
-constexpr double least_wait = 0.002;         // between ticks, whatever is due
-constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
+constexpr double idle_before_bake = 5;  // seconds in which nothing was drawn
+constexpr double looks_every = 0.5;     // seconds between the rays that the baker is given
+// seconds that better light waits at most, while visitors walk
+constexpr double most_light_waits = 60;
+constexpr double least_wait = 0.002;  // seconds between ticks at least, whatever is due
+// seconds between looks at what visitors want, pictures or not
+constexpr double listening_interval = 0.01;
 
 }  // namespace
 
@@ -79,7 +82,7 @@ void read_visitors(Show& show, double dt) {
     visitor->link->close("bye");
     bool in_pass = show.pass.visitor == &*visitor;
     if (in_pass) show.pass.given_up = true;
-    if (visitor->picture.at_work || in_pass) continue;  // soon
+    if (visitor->picture.at_work || in_pass) continue;  // its work ends soon
     log::info("visitor {} left", visitor->link->id);
     keep_visit(show, visitor);
   }
@@ -102,7 +105,7 @@ void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utteranc
       subtitle_message(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
 }
 
-// Of a tour of their own, or of their leader's.
+// Returns whether the visitor hears the narrator of a tour of their own, or of their leader's.
 bool is_narrated(const Show& show, const Visitor& visitor) {
   const Visitor* leader = leader_of(show, visitor);
   const Voice& voice = (leader ? *leader : visitor).hearing.narration.voice;
@@ -115,7 +118,7 @@ void show_subtitles(Show& show, const Teller& teller, const Utterance* utterance
       show_subtitle(show, visitor, utterance, true);
 }
 
-// The camera of whoever asked for the story goes where its marks want it.
+// Moves the camera of whoever asked for the story to where its marks want it.
 void follow_story(Show& show, const Teller& teller, const VoiceEvents& events) {
   for (const ActionEvent& act : events.acts) {
     int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
@@ -127,7 +130,7 @@ void follow_story(Show& show, const Teller& teller, const VoiceEvents& events) {
   }
 }
 
-// Tours: their narrators speak, each to one visitor.
+// Lets the narrators of tours speak, each to one visitor and those whom that visitor leads.
 void narrate(Show& show, float dt) {
   for (Visitor& visitor : show.visitors) {
     Narration& narration = visitor.hearing.narration;
@@ -146,7 +149,8 @@ void narrate(Show& show, float dt) {
   }
 }
 
-// Guests of the kiosk that the storyteller is with; motion before any, while she is with none.
+// Gives the storyteller the guests of the kiosk that it is with; while it is with none, motion
+// before any kiosk.
 void see_guests(Show& show, StorytellerInput& input) {
   const Kiosk* kiosk = her_kiosk(show);
   input.visit = show.her_visits;
@@ -180,7 +184,7 @@ void greet_or_part(Show& show, Teller& teller, const StorytellerEvents& events) 
   }
 }
 
-// Notices, decides, speaks, poses.
+// Lets a storyteller notice, decide, speak and pose.
 void behave(Show& show, Teller& teller, float dt) {
   if (dt >= 1) teller.sounding.going = false;  // the show stood still while the sound went on
   const std::string story = teller.voice.story;
@@ -232,8 +236,8 @@ void behave(Show& show, Teller& teller, float dt) {
     if (visitor.welcomed && &teller_of(show, visitor) == &teller) visitor.link->send_text(message);
 }
 
-// A visitor's own does nothing while it is silent, holds nothing and is not to be seen; nor does
-// the house's while nobody shares it.
+// Returns whether the storyteller has anything to do. A visitor's own does nothing while it is
+// silent, holds nothing and is not to be seen; nor does the house's while nobody shares it.
 bool is_noticed(const Show& show, const Teller& teller) {
   if (&teller == &show.teller && connected_cameras(show) > 0) return true;
   const bool news =
@@ -251,14 +255,14 @@ void behave(Show& show, float dt) {
     if (is_noticed(show, *teller)) behave(show, *teller, dt);
 }
 
-// The next thing, if there is any, of what is due by now.
+// Does the next thing, if there is any, of all that is due by now.
 void use_renderer(Show& show, int waiting) {
   RendererState renderer = renderer_state(show);
   renderer.waiting = waiting;
   carry_out(show, decide(show.time, draw_states(show), renderer), waiting);
 }
 
-// Rays over what visitors see.
+// Returns rays over what visitors see.
 std::vector<Ray> looks_of(const Show& show) {
   constexpr int across = 24, down = 14;
   std::vector<Ray> rays;
@@ -271,8 +275,8 @@ std::vector<Ray> looks_of(const Show& show) {
   return rays;
 }
 
-// All cores are free while there are no visitors, or while all have been at rest for long. Better
-// light waits until nobody walks, so that it fades in, but not for ever.
+// Lets the baker work. All cores are free while there are no visitors, or while all have been at
+// rest for long. Better light waits until nobody walks, so that it fades in, but not for ever.
 void watch_baker(Show& show) {
   if (!show.baker) return;
   const bool free = !show.others_draw && (show.visitors.empty() || !draws(show));
@@ -290,7 +294,7 @@ void watch_baker(Show& show) {
   }
 }
 
-// A camera on its way waits for keyframes that are slow; a visitor's own turn does not.
+// Slows a camera on its way down to keyframes that are slow; a visitor's own turn does not wait.
 void pace_tour(Visitor& visitor) {
   double seconds = 0.001 * double(std::max(visitor.times.interval, visitor.times.whole));
   const PictureWishes& wants = visitor.wants;
@@ -304,10 +308,11 @@ void pace_tour(Visitor& visitor) {
   place.glide.most_pace = pace(place.glide.path, place.glide.time);
 }
 
-// A page that moves its own camera is told where it is led, or has to be.
+// Sends a page that moves its own camera the view to which it is led, or has to be.
 void send_pose(const Show& show, Visitor& visitor) {
   const View& view = visitor.place.last_view;
-  const double interval = visitor.kiosk ? 0 : pose_interval;  // whose window follows a head at once
+  // a kiosk's window follows a head at once
+  const double interval = visitor.kiosk ? 0 : pose_interval;
   if (!visitor.wants.local || view == visitor.posed || show.time - visitor.posed_at < interval)
     return;
   visitor.posed = view;
@@ -387,7 +392,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
 }
 
 double seconds_to_next_tick(const Show& show, double now) {
-  double wait = 1 / 20.0;  // nobody looks: only clocks and doors
+  double wait = 1 / 20.0;  // nobody looks: only clocks and arrivals
   for (const Visitor& visitor : show.visitors)
     if (is_shown(visitor)) {
       wait = std::min(wait, listening_interval);

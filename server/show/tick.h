@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole of a running show, one straight function of visible values: notice -> behave -> animate
-// -> (per visitor) picture.
+// Advances the whole of a running show, in one straight function of visible values: notice ->
+// behave -> animate -> (per visitor) picture.
 #pragma once
 #include "show/state/show.h"
 
 namespace wellspring::show {
 
-// One step at time `now` (seconds, any clock that does not run backwards; steps longer than a
+// Makes one step at time `now` (seconds, any clock that does not run backwards; steps longer than a
 // second are taken as one second). Never throws, never waits for a peer.
 void tick(Show& show, Arrivals& arrivals, double now);
 
-// Somebody is there, and something was drawn for them lately: the cores are not free.
+// Returns whether somebody is there, and something was drawn for them lately: the cores are not
+// free then.
 bool draws(const Show& show);
 
-// How long the caller may sleep after a tick, at time `now` on the same clock.
+// Returns how long the caller may sleep after a tick, at time `now` on the same clock.
 double seconds_to_next_tick(const Show& show, double now);
 // Sleeps until the next tick is due, or what is drawn meanwhile is finished.
 void wait_for_tick(const Show& show, double now);

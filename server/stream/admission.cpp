@@ -5,8 +5,7 @@
 
 namespace wellspring::stream {
 
-// Addresses without a connection are remembered for their rates: until these have recovered, or
-// until there are too many.
+// Addresses without a connection are remembered for their rates until there are too many.
 static constexpr size_t most_remembered = 16384;
 
 Admission::Admission(const Limits& limits)
@@ -70,7 +69,7 @@ Admission::Entry Admission::enter(uint64_t id, const Address& from, Standing sta
     }
   }
   entry.reserved = standing != Standing::stranger && places_.size() >= for_strangers;
-  // One that has been told to end keeps its place for the moment that this takes.
+  // A connection that has been asked to end keeps its place for the moment that this takes.
   if (!entry.drop && places_.size() >= (standing == Standing::stranger ? for_strangers : all)) {
     entry.drop = take_oldest();
     if (!entry.drop) return {Answer::full, {}, false};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boost.Asio and Beast for the .cpp files of this folder, and short names for them (heavy).
+// Includes Boost.Asio and Beast for the .cpp files of this folder, and gives them short names
+// (heavy).
 #pragma once
 #include <utility>  // Boost 1.74's awaitable.hpp uses std::exchange without it
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all sessions of one server share. Only for the .cpp files of this folder (heavy).
+// Holds what all sessions of one server share. Only for the .cpp files of this folder (heavy).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -25,17 +25,17 @@
 
 namespace wellspring::stream {
 
-// A few threads and a bounded queue, for work that may take long and must not hold up input and
-// output.
+// Runs jobs on a few threads with a bounded queue, for work that may take long and must not hold up
+// input and output.
 
 class Workers {
  public:
-  // Called once: with true on a worker, or with false when the workers stop before it was its turn.
+  // A job is called once: with true on a worker, or with false if the workers stop before its turn.
   using Job = std::function<void(bool run)>;
 
   Workers(int threads, size_t max_waiting);
   ~Workers() { stop(); }
-  bool post(Job job);  // false: full or stopped, the job is not kept
+  bool post(Job job);  // false: full or stopped; the job is not kept
   void stop();         // idempotent; waits for jobs under way
 
  private:
@@ -48,12 +48,12 @@ class Workers {
   std::vector<std::thread> threads_;
 };
 
-// Counts the frames of a WebSocket on the wire (RFC 6455, section 5.2), whatever they are: a
-// library that reads messages swallows empty fragments and pongs without a word.
+// Counts the frames of a WebSocket on the wire (RFC 6455, section 5.2), of every kind: a library
+// that reads messages swallows empty fragments and pongs without a word.
 
 class FrameCounter {
  public:
-  // The frames whose header ends in these bytes, the next ones of the stream.
+  // Returns how many frames' headers end in these bytes, the next ones of the stream.
   size_t count(std::span<const uint8_t> bytes) {
     size_t frames = 0;
     while (!bytes.empty()) {
@@ -89,14 +89,14 @@ class FrameCounter {
   }
 
   std::array<uint8_t, 14> header_{};
-  size_t size_ = 0;            // of header_, so far
+  size_t size_ = 0;            // bytes of header_ so far
   uint64_t payload_left_ = 0;  // bytes of the frame's payload that are still to come
 };
 
 class Session;
 
 struct Core {
-  // Throws std::runtime_error for settings that mean nothing.
+  // Throws std::runtime_error for settings that make no sense.
   Core(const StreamSettings& settings, Doors doors);
 
   const StreamSettings settings;
@@ -106,13 +106,13 @@ struct Core {
   std::unique_ptr<Certificate> certificate;  // null: no TLS
   Admission admission;
   net::io_context io;
-  Workers workers{4, 64}, slow_workers{2, 8};  // slow: as Doors::slow says
-  Workers health_workers{1, 16};               // for trusted addresses that ask how it is
+  Workers workers{4, 64}, slow_workers{2, 8};  // slow: see Doors::slow
+  Workers health_workers{1, 16};               // health checks of trusted addresses
 
   std::atomic<uint64_t> accepted{0}, refused{0}, http_requests{0}, websockets{0}, slow_closed{0},
       flood_closed{0}, accept_errors{0}, next_link{1}, limited{0}, limited_in_all{0}, dropped{0},
       silent_closed{0};
-  std::atomic<int> being_refused{0};  // connections that are told so
+  std::atomic<int> being_refused{0};  // connections that are being sent a refusal
   std::atomic<bool> proxy_told{false}, host_told{false};
 
   // Every session is listed from its start to its end, so that stop() can reach it and wait for it.
@@ -122,7 +122,7 @@ struct Core {
   bool stopping = false;
 };
 
-// Logs what went wrong; quietly where it is only the other side going away.
+// Logs an error; at the debug level if the peer only went away.
 void fail(const error_code& ec, const char* where);
 
 }  // namespace wellspring::stream

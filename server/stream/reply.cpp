@@ -12,7 +12,8 @@
 
 namespace wellspring::stream {
 
-// Thousandths of a qvalue: "0" or "1", then up to three digits after a point. Nothing: it is none.
+// Returns thousandths of a qvalue: "0" or "1", then up to three digits after a point. Nothing: the
+// text is no qvalue.
 static std::optional<int> read_weight(std::string_view text) {
   if (text.empty() || text.size() > 5 || (text[0] != '0' && text[0] != '1')) return std::nullopt;
   if (text.size() > 1 && text[1] != '.') return std::nullopt;
@@ -25,7 +26,7 @@ static std::optional<int> read_weight(std::string_view text) {
   return weight <= 1000 ? std::optional(weight) : std::nullopt;
 }
 
-// The weight of a coding's parameters, the text after its first semicolon.
+// Returns the weight in a coding's parameters, the text after its first semicolon.
 static std::optional<int> read_parameters(std::string_view text) {
   const std::string parameter = lower(trimmed(text));
   return parameter.starts_with("q=") ? read_weight(std::string_view(parameter).substr(2))
@@ -63,7 +64,7 @@ void encode_reply(const HttpQuestion& question, HttpReply& reply) {
     etag->second.insert(etag->second.size() - 1, "-gzip");
 }
 
-// Digits and nothing else.
+// Reads a number of digits and nothing else.
 static std::optional<uint64_t> read_number(std::string_view text) {
   uint64_t value = 0;
   auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);

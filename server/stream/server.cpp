@@ -56,14 +56,15 @@ net::awaitable<void> tell_callers(tcp::acceptor& acceptor, std::function<std::st
     std::string line = say();
     if (ec || line.empty()) continue;
     line += '\n';
-    // A few bytes, which a new connection's buffer takes at once: nobody keeps the next waiting.
+    // A new connection's buffer takes these few bytes at once, so no caller keeps the next one
+    // waiting.
     socket.non_blocking(true, ec);
     socket.write_some(net::buffer(line), ec);
     socket.shutdown(tcp::socket::shutdown_send, ec);
   }
 }
 
-// Connections being told 503 at a time; more are just closed.
+// Most connections that are sent a refusal at a time; more are just closed.
 static constexpr int max_refusals = 64;
 static constexpr rlim_t other_descriptors = 512;  // files, pipes, and connections being refused
 static constexpr auto accept_pause = std::chrono::milliseconds(100);
@@ -108,7 +109,8 @@ void Server::Impl::listen() {
     listen_on(core->io, settings.host, settings.agent_port, agent_acceptor);
 }
 
-// Never ends on an error: a server that lives on with its door closed looks healthy and is not.
+// Accepts connections, and never ends on an error: a server that lives on without accepting looks
+// healthy and is not.
 net::awaitable<void> Server::Impl::accept() {
   net::steady_timer pause(acceptor.get_executor());
   uint64_t errors_in_a_row = 0;
@@ -122,7 +124,7 @@ net::awaitable<void> Server::Impl::accept() {
       admit(std::move(socket), id);
       continue;
     }
-    if (ec == net::error::connection_aborted) continue;  // came and went
+    if (ec == net::error::connection_aborted) continue;  // the peer has gone again
     core->accept_errors++;
     if (errors_in_a_row++ % 50 == 0)
       log::warn("accept: {}; trying again every {} ms", ec.message(), accept_pause.count());
@@ -170,7 +172,7 @@ void Server::Impl::forget(uint64_t id) {
   core->session_ended.notify_all();
 }
 
-// The files of the certificate may change while the server runs.
+// Looks for changes of the certificate's files, which may come while the server runs.
 net::awaitable<void> Server::Impl::watch_certificate() {
   while (core->certificate && acceptor.is_open()) {
     error_code ec;
@@ -231,8 +233,8 @@ void Server::Impl::spawn(net::awaitable<void> (Impl::*work)()) {
       });
 }
 
-// A connection takes a descriptor. Asks the kernel for as many as it allows, and makes do with
-// fewer connections where it allows fewer.
+// Asks the kernel for as many descriptors as connections need, and makes do with fewer connections
+// if it allows fewer.
 static StreamSettings fit_to_descriptors(StreamSettings settings) {
   rlimit files{};
   if (getrlimit(RLIMIT_NOFILE, &files) != 0) return settings;

@@ -102,8 +102,8 @@ void Session::spawn(Work work) {
                     self->core_->admission.close_websocket(self->caller_.address);
                   self->core_->admission.leave(self->id_);
                   if (self->refused_) self->core_->being_refused--;
-                  // Notified under the lock: the waiter may be the destructor of what the lock
-                  // lives in.
+                  // This is notified under the lock: the waiter may be the destructor of the object
+                  // that holds the lock.
                   std::lock_guard lock(self->core_->mutex);
                   self->core_->sessions.erase(self->id_);
                   self->core_->session_ended.notify_all();
@@ -121,7 +121,7 @@ void Session::start_refusal(int status) {
 }
 
 net::awaitable<void> Session::refuse(int status) {
-  if (core_->certificate) co_return;  // a handshake is not worth it
+  if (core_->certificate) co_return;  // no TLS handshake for a refusal
   HttpQuestion nothing_read;
   HttpReply reply = make_refusal(status, "too many connections");
   reply.headers["Retry-After"] = "5";
@@ -138,7 +138,7 @@ net::awaitable<void> Session::run() {
   if (upgrade_) co_await serve_websocket();
 }
 
-// What begins as TLS does is TLS. False: the connection is over.
+// Starts TLS if the first bytes are a TLS handshake. False: the connection is over.
 net::awaitable<bool> Session::start_tls() {
   static constexpr uint8_t handshake_record = 22;
   stream().expires_after(core_->settings.header_timeout);
@@ -150,7 +150,7 @@ net::awaitable<bool> Session::start_tls() {
   if (!ec && *static_cast<const uint8_t*>(buffer_.data().data()) == handshake_record)
     ec = co_await stream().shake_hands(core_->certificate->context(), buffer_);
   reading_ = false;
-  if (ec) log::debug("session {}: TLS: {}", name_, ec.message());  // scanners abound
+  if (ec) log::debug("session {}: TLS: {}", name_, ec.message());  // many scanners try this
   co_return !ec;
 }
 
@@ -170,7 +170,7 @@ void Session::drop() {
   });
 }
 
-// What the kernel still holds for this peer is thrown away.
+// Resets the connection: bytes that the kernel still holds for this peer are thrown away.
 void Session::cut(const char* why) {
   log::debug("session {}: cut, {}", name_, why);
   stream().cut();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The HTTP half of a session: read a request, judge it, let a worker answer, write, and again.
+// Runs the HTTP half of a session: reads a request, judges it, lets a worker answer, writes, and
+// again.
 #include <poll.h>
 
 #include <algorithm>
@@ -15,10 +16,11 @@
 
 namespace wellspring::stream {
 
-static constexpr auto look_at_peer = std::chrono::milliseconds(200);  // whose answer takes long
+// Between looks whether the peer still waits.
+static constexpr auto look_at_peer = std::chrono::milliseconds(200);
 static constexpr std::string_view subprotocol = "wellspring.v1";
 
-// The one path that takes a body, and nothing but a POST.
+// This path alone takes a body, and nothing but a POST.
 static constexpr std::string_view posted_path = "/api/v1/admin/announce";
 
 static std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
@@ -36,7 +38,7 @@ static bool is_posted_path(std::string_view target) {
   return target.substr(0, target.find('?')) == posted_path;
 }
 
-// A header that is a list may come in several lines.
+// Joins the lines of a header that is a list.
 static std::string list_of(const Request& request, beast::string_view name) {
   std::string list;
   const auto range = request.equal_range(name);
@@ -49,20 +51,20 @@ static const char* allowed_methods(const Request& request) {
   return is_posted_path(view(request.target())) ? "POST" : "GET, HEAD";
 }
 
-// Of a Content-Type; its parameters are left out.
+// Returns whether a Content-Type is JSON, whatever its parameters.
 static bool is_json(std::string_view type) {
   type = type.substr(0, type.find(';'));
   while (type.ends_with(' ') || type.ends_with('\t')) type.remove_suffix(1);
   return beast::iequals(beast::string_view(type.data(), type.size()), "application/json");
 }
 
-// 200 with `request` filled, a status to refuse with, or 0: nobody there to be told. At 405 its
-// target is there.
+// Reads a request. Returns 200 with `request` filled, a status to refuse with, or 0: the peer has
+// gone. At 405 `request` has the target.
 net::awaitable<int> Session::read_request(Request& request) {
   http::request_parser<http::string_body> parser;
   parser.header_limit(max_header_bytes);
   parser.body_limit(max_body_bytes);
-  stream().expires_after(core_->settings.header_timeout);  // for all of it, however slow
+  stream().expires_after(core_->settings.header_timeout);  // for the whole request, however slow
   error_code ec;
   reading_ = true;  // stop() may close
   co_await http::async_read_header(stream(), buffer_, parser,
@@ -175,15 +177,15 @@ static bool is_proxied(const Request& request) {
                      [](const auto& field) { return is_proxy_header(view(field.name_string())); });
 }
 
-// Nothing for a proxy's header that names no address.
+// Finds the client; nothing for a proxy's header that names no address.
 std::optional<Caller> Session::find_caller(const Request& request) const {
   const auto client = find_client(address_, list_of(request, "X-Forwarded-For"), core_->proxies);
   if (!client) return std::nullopt;
   Caller caller{*client, any_holds(core_->trusted, *client), name_};
   if (*client != address_)
     caller.name = (caller.trusted ? to_string(*client) : shortened(*client)) + " by " + name_;
-  // A proxy that nobody named, or that does not say for whom, must not lend its visitors what this
-  // machine may.
+  // A proxy that no option names, or that does not name its client, must not lend its visitors this
+  // machine's rights.
   if (caller.trusted && *client == address_ && is_proxied(request)) {
     caller.trusted = false;
     if (!core_->proxy_told.exchange(true))
@@ -219,8 +221,8 @@ HttpReply Session::judge_caller(const Request& request) {
                                         : make_too_many(*core_, taken, "too many requests");
 }
 
-// Where this server is called by a name that is not its own, and where TLS is asked for, but not
-// spoken.
+// Refuses requests for a name that is not this server's, and sends plain requests to TLS if there
+// is a certificate.
 HttpReply Session::judge_host(const Request& request) const {
   if (request.count(http::field::host) == 0) return {};  // HTTP/1.0: no browser
   const std::string_view header = view(request[http::field::host]);
@@ -253,7 +255,7 @@ bool Session::is_local(const Request& request) const {
   return is_from_this_machine(peer_, is_proxied(request), view(request[http::field::host]));
 }
 
-// 200 when a body may be handed on, else the refusal.
+// Returns 200 if a body may be handed on, else the refusal.
 HttpReply Session::judge_post(const Request& request) const {
   if (!is_from_here(request)) return make_refusal(403, "this origin may not post here");
   if (!is_json(view(request[http::field::content_type])))
@@ -261,7 +263,7 @@ HttpReply Session::judge_post(const Request& request) const {
   return {};
 }
 
-// 101 when a WebSocket may be opened, else the refusal.
+// Returns 101 if a WebSocket may be opened, else the refusal.
 HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& request) {
   const bool visit = question.path == "/api/v1/visit", eye = question.path == "/api/v1/eye";
   if (!visit && !eye) return make_refusal(404, "no WebSocket here");
@@ -300,14 +302,15 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
   return reply;
 }
 
-// It has closed its end of the line, or the line is broken.
+// Returns whether the peer has closed its end of the connection, or the connection is broken.
 bool Session::peer_has_left() {
   pollfd line{stream().socket().native_handle(), POLLRDHUP, 0};
-  if (line.fd < 0) return true;  // it was cut
+  if (line.fd < 0) return true;  // the session was cut
   return poll(&line, 1, 0) > 0 && (line.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
 }
 
-// On a worker thread, or later on any; this coroutine looks meanwhile whether its peer still waits.
+// Gets the answer from a worker thread, or later from any; this coroutine looks meanwhile whether
+// its peer still waits.
 net::awaitable<HttpReply> Session::ask(HttpQuestion question) {
   auto reply = std::make_shared<HttpReply>();
   auto asker = std::make_shared<HttpAsker>([self = shared_from_this(), reply](HttpReply made) {
@@ -355,7 +358,7 @@ net::awaitable<void> Session::write_refusal(HttpQuestion question, int status, s
   co_await linger();
 }
 
-// Headers of any message but Content-Length.
+// Puts the headers of any message except Content-Length.
 template <class Message>
 static void put_headers(const HttpReply& reply, bool secure, unsigned version, bool keep_alive,
                         Message& message) {
@@ -372,7 +375,7 @@ static void put_headers(const HttpReply& reply, bool secure, unsigned version, b
     message.set(http::field::connection, keep_alive ? "Upgrade" : "Upgrade, close");
 }
 
-// A part of the file at a time. A file that ends early, or cannot be read, ends the connection: its
+// Writes a file in pieces. A file that ends early, or cannot be read, ends the connection: its
 // length has been promised.
 net::awaitable<error_code> Session::write_file(const FilePart& part,
                                                http::response<http::buffer_body>& message) {
@@ -391,11 +394,11 @@ net::awaitable<error_code> Session::write_file(const FilePart& part,
     stream().expires_after(http_write_timeout);
     error_code ec;
     co_await http::async_write(stream(), serializer, net::redirect_error(net::use_awaitable, ec));
-    if (ec != http::error::need_buffer) co_return ec;  // all is written, or nothing more will be
+    if (ec != http::error::need_buffer) co_return ec;  // everything is written, or writing failed
   }
 }
 
-// True: the connection may be used again.
+// Writes a reply. True: the connection may be used again.
 net::awaitable<bool> Session::write_reply(HttpQuestion question, HttpReply reply, unsigned version,
                                           bool keep_alive) {
   if (reply.status < 200 || reply.status > 599) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebSocket half of a session. Two coroutines on one strand: the session's own reads, a second
-// one writes, one message at a time, and is the only one that starts a close.
+// Runs the WebSocket half of a session, with two coroutines on one strand: the session's own reads,
+// a second one writes, one message at a time, and is the only one that starts a close.
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
@@ -27,7 +27,7 @@ static void set_socket_options(tcp::socket& socket) {
 
 net::awaitable<bool> Session::accept_websocket() {
   const StreamSettings& settings = core_->settings;
-  stream().expires_never();  // from here the WebSocket has its own clocks
+  stream().expires_never();  // from here on the WebSocket has its own timeouts
   set_socket_options(stream().socket());
   websocket::stream_base::timeout timeout;
   timeout.handshake_timeout = seconds(settings.write_timeout);
@@ -35,7 +35,7 @@ net::awaitable<bool> Session::accept_websocket() {
   timeout.keep_alive_pings = true;
   ws_.set_option(timeout);
   ws_.read_message_max(max_message_bytes);
-  ws_.auto_fragment(false);  // a picture is one frame, written from where it lies
+  ws_.auto_fragment(false);  // a picture is one frame, sent without a copy
   const bool echo = upgrade_->count(http::field::sec_websocket_protocol) > 0;
   const bool secure = stream().secure();
   ws_.set_option(websocket::stream_base::decorator([=](websocket::response_type& response) {
@@ -102,8 +102,8 @@ net::awaitable<void> Session::serve_websocket() {
             link_->pictures_sent.load(), link_->bytes_sent.load());
 }
 
-// A text came, and is read here. With its first one the peer joins: who says nothing takes no place
-// among visitors.
+// Reads a text that came. With its first one the peer joins: a peer that sends nothing takes no
+// place among visitors.
 void Session::hear(std::string text) {
   const size_t values = link_->push_text_in(std::move(text));
   if (!count_input({0, value_bytes * double(values)}) || joined_) return;
@@ -128,11 +128,11 @@ void Session::start_first_deadline() {
   });
 }
 
-// Until the connection ends (false) or is to be closed (true; the writer's async_close then reads
-// and throws away what still comes). No read may be started once a close was: where the peer's
+// Reads until the connection ends (false) or is to be closed (true; the writer's async_close then
+// reads and throws away what still comes). No read may be started once a close was: if the peer's
 // close frame has already been received and there is a control callback, such a read keeps Beast's
-// read lock while it waits for the write lock, and the close the other way round, for ever
-// (Boost 1.74 and 1.81).
+// read lock while it waits for the write lock, and the close the other way round, for ever (Boost
+// 1.74 and 1.81).
 net::awaitable<bool> Session::read_messages() {
   beast::flat_buffer buffer;
   while (close_reason_.code == websocket::close_code::none) {
@@ -150,8 +150,8 @@ net::awaitable<bool> Session::read_messages() {
   co_return true;
 }
 
-// Of bytes as they come. False: more than a peer may say, the connection is being closed, and
-// nothing more is read: the peer has a moment to read why.
+// Counts input as it comes. False: it is more than a peer may send, the connection is being closed,
+// and nothing more is read: the peer has a moment to read why.
 bool Session::count_input(const WireInput& input) {
   if (flooded_) return false;
   const double now = seconds_now();
@@ -182,7 +182,7 @@ void Session::want_close(websocket::close_code code, std::string reason) {
   close_reason_.code = code;
   reason.resize(std::min(reason.size(), size_t(120)));  // a control frame holds 125 bytes
   close_reason_.reason = websocket::reason_string(reason.data(), reason.size());
-  link_->mark_closed();  // nothing more goes either way
+  link_->mark_closed();  // nothing more is sent or read
   writable_.raise();
 }
 
@@ -194,8 +194,9 @@ void Session::wake_writer() {
   });
 }
 
-// Beast bounds silence, not a write that is pending: a peer that reads nothing but pings now and
-// then would hold its picture for ever. This clock runs only while something is being written.
+// Starts a timer for one write. Beast bounds silence, not a write that is pending: a peer that
+// reads nothing but pings now and then would hold its picture for ever. The timer runs only while
+// something is being written.
 void Session::start_deadline() {
   deadline_.expires_after(seconds(core_->settings.write_timeout));
   deadline_.async_wait([self = shared_from_this(), number = ++deadline_number_](error_code ec) {
@@ -223,7 +224,7 @@ net::awaitable<error_code> Session::ping(Delivery behind) {
   co_return ec;
 }
 
-// Whether it answers a ping of ours; those before, too, have arrived then.
+// Returns whether it answers a ping of ours; data before earlier pings has arrived then, too.
 bool Session::take_pong(beast::string_view payload) {
   const std::string number(payload);
   size_t answered = 0;
@@ -239,7 +240,7 @@ bool Session::take_pong(beast::string_view payload) {
 net::awaitable<void> Session::write_messages() {
   if (link_->kind == LinkKind::visit) co_await ping({0, seconds_now(), 0, true, false});
   while (!ended_ && close_reason_.code == websocket::close_code::none) {
-    // Asked before the queue: what was sent before the close is still written.
+    // This is asked before the queue: messages that were sent before the close are still written.
     std::string reason;
     const bool closing = link_->close_requested(reason);
     Link::Out out;

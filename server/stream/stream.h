@@ -1,32 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sockets: HTTP and WebSocket on one port (Boost.Beast, in the .cpp files only). Knows nothing of
+// Serves HTTP and WebSocket on one port (Boost.Beast, in the .cpp files only). Knows nothing of
 // rendering: questions go to Doors::answer, connected peers to Doors::joined as Links.
 //
-// What a stranger gets (limits not in StreamSettings are in session.h):
+// A stranger gets the following (limits not in StreamSettings are in session.h):
 // - Names: a request whose Host is none of HostNames (target.h) gets 421, whatever it asks.
-// - Limits by address and in all, a reserve for trusted addresses: admission.h. What is too much is
-//   429 or 503 with Retry-After.
-// - TLS where there is a certificate; plain requests are then sent to https:// (308), but for those
-//   of trusted addresses.
+// - Limits by address and in all, a reserve for trusted addresses: admission.h. Anything beyond
+//   gets 429 or 503 with Retry-After.
+// - TLS if there is a certificate; plain requests are then sent to https:// (308), except those of
+//   trusted addresses.
 // - HTTP/1.1 with keep-alive, GET and HEAD only (405); header 16 KiB (431), body 64 KiB and ignored
 //   (413), no Transfer-Encoding but chunked (501); targets as in target.h. /api/v1/admin/announce
 //   takes a POST and nothing else: a body of at most 16 KiB (413) of application/json (415), Origin
 //   as in target.h (403). Every reply carries the headers of reply.h; ETag and If-None-Match make a
-//   304. Text goes as gzip to who accepts that (reply.h).
-// - WebSocket at /api/v1/visit and /api/v1/eye; a plain GET there is told 426. Origin as in
-// target.h (403).
-//   Subprotocol wellspring.v1 is echoed when offered; offering none is fine, offering only others
-//   is a 400.
+//   304. Text goes as gzip to clients that accept it (reply.h).
+// - WebSocket at /api/v1/visit and /api/v1/eye; a plain GET there gets 426. Origin as in target.h
+//   (403). Subprotocol wellspring.v1 is echoed when offered; offering none is fine, offering only
+//   others is a 400.
 // - A WebSocket becomes a Link with its first message, which must come within
 //   first_message_timeout.
 // - Close codes of a WebSocket: 1003 binary message, 1007 not UTF-8, 1008 no first message, or more
 //   than 400 frames of any kind or 1 MiB a second for longer than a burst of two seconds' worth, or
-//   250 frames or 100 kB where all strangers together say too much (admission.h), or too much from
-//   its address,
-//   1009 message above 64 KiB, 1001 the server stops, 1000 the show closed the link.
+//   250 frames or 100 kB if all strangers together send too much (admission.h), or too much from
+//   its address, 1009 message above 64 KiB, 1001 the server stops, 1000 the show closed the link.
 // - A peer that is silent (not even pongs) is dropped after idle_timeout + half of it at most; one
-// that does not
-//   read what it is sent after write_timeout, whatever it says meanwhile.
+//   that does not read what it is sent after write_timeout, whatever it sends meanwhile.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -41,22 +38,23 @@
 namespace wellspring::stream {
 
 struct Doors {
-  // Runs on a worker thread of its own pool, may take seconds; must not throw.
+  // Answers a question. Runs on a worker thread of its own pool, may take seconds; must not throw.
   std::function<HttpReply(const HttpQuestion&)> answer;
-  // Optional: whether a WebSocket may be opened; without it every one may. Runs on an I/O thread;
-  // must not block.
+  // Optional: decides whether a WebSocket may be opened; without it every one may. Runs on an I/O
+  // thread; must not block.
   std::function<UpgradeAnswer(const HttpQuestion&)> admit{};
-  // Optional: asked before `answer`, likewise on a worker thread, and must not take long. True: it
-  // has taken the question, and answers the asker when it can, or not at all once that is gone.
+  // Optional: is asked before `answer`, likewise on a worker thread, and must not take long. True:
+  // it has taken the question, and answers the asker when it can, or not at all if the asker is
+  // gone.
   std::function<bool(const HttpQuestion&, const std::shared_ptr<HttpAsker>&)> answer_later{};
-  // A peer passed the WebSocket handshake and said something. Runs on an I/O thread; must not
-  // block.
+  // Gets each peer that has passed the WebSocket handshake and sent a first message. Runs on an I/O
+  // thread; must not block.
   std::function<void(std::shared_ptr<Link>)> joined;
-  // Optional: questions that may take long. They get two threads and a short queue of their own, so
-  // that they never keep a health check waiting. Both queues answer 503 when full.
+  // Optional: says which questions may take long. They get two threads and a short queue of their
+  // own, so that they never keep a health check waiting. Both queues answer 503 when full.
   std::function<bool(const HttpQuestion&)> slow{};
-  // Optional: what callers of StreamSettings::agent_port are told, one line; empty: nothing yet.
-  // Runs on an I/O thread; must not block.
+  // Optional: returns the line for callers of StreamSettings::agent_port; empty: nothing yet. Runs
+  // on an I/O thread; must not block.
   std::function<std::string()> agent{};
 };
 
@@ -68,27 +66,28 @@ struct StreamSettings {
   double header_timeout = 10;  // seconds for a request's header and body
   double write_timeout = 5;    // a WebSocket write pending longer closes the connection
   double idle_timeout = 20;    // a silent WebSocket is pinged after half of it, closed after all
-  double first_message_timeout = 10;         // seconds after the handshake of a WebSocket
-  std::vector<std::string> allowed_origins;  // besides same-host: may open WebSockets; "*": any
-  std::vector<std::string> allowed_hosts;    // names besides this machine's; "*": any
+  double first_message_timeout = 10;  // seconds after the handshake of a WebSocket
+  // Besides same-host, origins that may open WebSockets; "*": any.
+  std::vector<std::string> allowed_origins;
+  std::vector<std::string> allowed_hosts;  // names besides this machine's; "*": any
   Limits limits;
   bool trust_loopback = true;        // 127.0.0.1 and ::1 are trusted
   std::vector<std::string> trusted;  // addresses and networks without limits by address
-  std::vector<std::string> proxies;  // whose X-Forwarded-For is believed; likewise
+  std::vector<std::string> proxies;  // proxies whose X-Forwarded-For is believed; likewise
   std::string certificate, key;      // files for TLS, in PEM; both or none
   double certificate_interval = 2;   // seconds between looks whether they have changed
 };
 
-struct StreamCounters {  // since the start, but for open, websockets and addresses: now
+struct StreamCounters {  // since the start, except open, websockets and addresses: now
   uint64_t accepted = 0, refused = 0, open = 0, http_requests = 0, websockets = 0, slow_closed = 0;
   uint64_t flood_closed = 0, accept_errors = 0;
   uint64_t limited = 0;         // requests and WebSockets refused by their address's limits
-  uint64_t limited_in_all = 0;  // likewise, by those of all addresses together
+  uint64_t limited_in_all = 0;  // likewise, by the limits of all addresses together
   uint64_t dropped = 0;         // connections that waited and made place for others
-  uint64_t silent_closed = 0;   // WebSockets that said nothing
-  uint64_t addresses = 0;       // that are remembered, with what they have and asked for
+  uint64_t silent_closed = 0;   // WebSockets that sent no first message
+  uint64_t addresses = 0;       // addresses whose counts and rates are remembered
 };
-// As Prometheus reads it.
+// Writes the counters in Prometheus' format.
 std::string to_metrics(const StreamCounters& counters);
 
 class Server {
@@ -98,11 +97,11 @@ class Server {
   ~Server();  // closes every connection (WebSockets with 1001) and joins
   uint16_t port() const;
   StreamCounters counters() const;
-  // Reads the certificate anew, where there is one; what is wrong is logged, and the old one stays.
-  // From any thread, returns at once.
+  // Reads the certificate anew, if there is one; faults are logged, and the old one stays. From any
+  // thread, returns at once.
   void reread_certificate();
-  // Idempotent: no more accepts, closes, joins; waits for answers under way. Not from within a
-  // door.
+  // Stops: accepts no more, closes, joins; waits for answers under way. Idempotent. Not from within
+  // a function of Doors.
   void stop();
 
  private:

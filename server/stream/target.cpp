@@ -97,7 +97,7 @@ static bool read_query(std::string_view text, HttpQuestion& question) {
 
 int read_target(std::string_view target, HttpQuestion& question) {
   if (target.size() > max_target_bytes) return 414;
-  if (target.starts_with("http://") || target.starts_with("https://")) {  // as proxies ask
+  if (target.starts_with("http://") || target.starts_with("https://")) {  // the form for proxies
     const size_t slash = target.find('/', target.find("//") + 2);
     target = slash == target.npos ? "/" : target.substr(slash);
   }
@@ -116,7 +116,7 @@ struct Authority {
   bool operator==(const Authority&) const = default;
 };
 
-// "host", "host:80", "[::1]:80"; nothing for what is neither.
+// Reads "host", "host:80", "[::1]:80"; returns nothing for other texts.
 static std::optional<Authority> read_authority(std::string_view text,
                                                std::string_view default_port) {
   size_t end = text.find(':');
@@ -200,7 +200,8 @@ bool HostNames::hold(std::string_view host_header) const {
 }
 
 static bool is_loopback(std::string_view address) {
-  if (address.starts_with("::ffff:")) address.remove_prefix(7);  // IPv4 on a socket of both
+  // IPv4 on a socket for both versions.
+  if (address.starts_with("::ffff:")) address.remove_prefix(7);
   return address == "::1" || address.starts_with("127.");
 }
 

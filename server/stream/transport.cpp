@@ -12,7 +12,7 @@
 
 namespace wellspring::stream {
 
-// For TLS 1.2; those of 1.3 are all sound.
+// Ciphers for TLS 1.2; all ciphers of 1.3 are sound.
 static constexpr const char* ciphers = "ECDHE+AESGCM:ECDHE+CHACHA20";
 
 static std::string last_error() {
@@ -23,7 +23,8 @@ static std::string last_error() {
   return text;
 }
 
-// Clients that offer protocols must offer ours; those that offer none speak it anyway.
+// Chooses HTTP/1.1: clients that offer protocols must offer ours; those that offer none speak it
+// anyway.
 static int choose_protocol(SSL*, const unsigned char** out, unsigned char* out_size,
                            const unsigned char* in, unsigned in_size, void*) {
   static constexpr unsigned char ours[] = "\x08http/1.1";
@@ -42,7 +43,7 @@ static std::shared_ptr<boost::asio::ssl::context> load_context(const std::string
                                SSL_OP_CIPHER_SERVER_PREFERENCE | SSL_OP_PRIORITIZE_CHACHA);
   SSL_CTX_set_mode(own, SSL_MODE_RELEASE_BUFFERS);
   SSL_CTX_set_alpn_select_cb(own, choose_protocol, nullptr);
-  // A key that asks for a pass phrase is refused: nobody is there to be asked.
+  // A key with a pass phrase is refused: nobody is there to enter it.
   SSL_CTX_set_default_passwd_cb(own, [](char*, int, int, void*) { return -1; });
   if (SSL_CTX_set_cipher_list(own, ciphers) != 1) throw std::runtime_error(last_error());
   if (SSL_CTX_use_certificate_chain_file(own, chain.c_str()) != 1)
@@ -94,7 +95,7 @@ bool Certificate::read_again() {
   return true;
 }
 
-static constexpr size_t record_bytes = 16 * 1024;  // of TLS, at most
+static constexpr size_t record_bytes = 16 * 1024;  // most bytes of a TLS record
 
 struct Transport::State {
   using Tls = net::ssl::stream<beast::tcp_stream&>;
@@ -102,9 +103,9 @@ struct Transport::State {
   std::shared_ptr<Certificate::Context> context;
   std::unique_ptr<Tls> tls;
   Watch watch;
-  bool held = false;                     // nothing more is read
-  std::optional<Completion> never_read;  // what waits meanwhile
-  std::vector<char> record;              // TLS: what is being written, small buffers put together
+  bool held = false;                     // the watch stopped reading
+  std::optional<Completion> never_read;  // read that waits while `held`
+  std::vector<char> record;              // TLS: bytes being written, small buffers put together
 
   explicit State(tcp::socket socket) : tcp(std::move(socket)) {}
 };
@@ -134,7 +135,7 @@ void Transport::cut() {
   close();
 }
 
-// Shows the watch what was read into `buffers`. False: it wants no more.
+// Shows the watch the bytes that were read into `buffers`. False: it wants no more.
 static bool show(const Transport::Watch& watch, const SomeBuffers<net::mutable_buffer>& buffers,
                  size_t bytes) {
   bool more = true;
@@ -170,7 +171,7 @@ void Transport::write(const SomeBuffers<net::const_buffer>& buffers, Completion 
     state.tcp.async_write_some(buffers, std::move(handler));
     return;
   }
-  // OpenSSL takes one buffer at a time: a small one, as a frame's header is, goes with the next.
+  // OpenSSL takes one buffer at a time: a small one, such as a frame's header, goes with the next.
   net::const_buffer whole = buffers.count > 0 ? buffers.list[0] : net::const_buffer();
   if (buffers.count > 1 && whole.size() < record_bytes) {
     state.record.resize(std::min(net::buffer_size(buffers), record_bytes));

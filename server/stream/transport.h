@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The byte stream of one connection, plain or TLS, as Beast's AsyncStream. Buffers and handlers are
-// of one type inside, so that neither TLS nor sockets are compiled once more for each operation of
-// HTTP and WebSocket. All calls come from the strand of the socket. Only for the .cpp files of this
-// folder (heavy).
+// Carries the byte stream of one connection, plain or TLS, as Beast's AsyncStream. Buffers and
+// handlers have one type inside, so that neither TLS nor sockets are compiled once more for each
+// operation of HTTP and WebSocket. All calls come from the strand of the socket. Only for the .cpp
+// files of this folder (heavy).
 #pragma once
 #include <array>
 #include <concepts>
@@ -17,34 +17,36 @@
 
 namespace boost::asio::ssl {
 
-// The server's certificate and key, as two files in PEM, read anew when they change.
+// Holds the server's certificate and key, from two files in PEM, read anew when they change.
 
 class context;
 }  // namespace boost::asio::ssl
 
 namespace wellspring::stream {
 
-// TLS 1.2 and 1.3 with forward secrecy and authenticated encryption only; HTTP/1.1 by ALPN.
+// Allows TLS 1.2 and 1.3 with forward secrecy and authenticated encryption only; HTTP/1.1 by ALPN.
 class Certificate {
  public:
   using Context = boost::asio::ssl::context;
 
   // `chain`: the server's certificate first, then those that sign it. Throws std::runtime_error
-  // that names the file and what is wrong with it.
+  // that names the file and its fault.
   Certificate(std::string chain, std::string key);
 
-  // For connections that begin now; those that are under way keep theirs. Any thread.
+  // Returns the context for connections that begin now; those that are under way keep theirs. Any
+  // thread.
   std::shared_ptr<Context> context() const;
 
-  // Reads the files where they are others than at the last look and have been left alone since
-  // then: whoever renews them writes one after the other. What cannot be used is logged once, and
-  // the certificate stays. True: there is a new one. To be called every few seconds.
+  // Reads the files if they are others than those in use and have not changed since the last look:
+  // a renewal writes one after the other. Files that cannot be used are logged once, and the
+  // certificate stays. True: there is a new one. To be called every few seconds.
   bool look_again();
-  // The same at once, whether they have changed or not: somebody says that they are complete.
+  // Does the same at once, whether they have changed or not: the caller says that they are
+  // complete.
   bool read_again();
 
  private:
-  struct Stamp {  // of both files, links followed
+  struct Stamp {  // times and sizes of both files, links followed
     std::filesystem::file_time_type chain_time, key_time;
     uintmax_t chain_size = 0, key_size = 0;
     bool operator==(const Stamp&) const = default;
@@ -52,12 +54,12 @@ class Certificate {
   Stamp stamp() const;
 
   const std::string chain_, key_;
-  Stamp used_, seen_;  // of what was read last, of the last look
+  Stamp used_, seen_;  // stamps of the files read last, and at the last look
   mutable std::mutex mutex_;
   std::shared_ptr<Context> context_;
 };
 
-// A handler of an operation, of whatever type. Called at most once, on the strand.
+// Holds a handler of an operation, of any type. Called at most once, on the strand.
 class Completion {
  public:
   template <class Handler>
@@ -70,7 +72,7 @@ class Completion {
  private:
   struct Any {
     virtual ~Any() = default;
-    virtual void call(error_code ec, size_t bytes) = 0;  // and destroys this first
+    virtual void call(error_code ec, size_t bytes) = 0;  // destroys this object first
   };
   template <class Handler>
   struct Held : Any {
@@ -87,7 +89,7 @@ class Completion {
   std::unique_ptr<Any> held_;
 };
 
-// The first buffers of a sequence: an operation that moves some bytes need not see all.
+// Holds the first buffers of a sequence: an operation that moves some bytes need not see all.
 template <class Buffer>
 struct SomeBuffers {
   using value_type = Buffer;
@@ -115,18 +117,18 @@ class Transport {
 
   executor_type get_executor() noexcept;
   tcp::socket& socket();
-  void expires_after(double seconds);  // for all that begins from now on, until said otherwise
+  void expires_after(double seconds);  // for operations that begin from now on, until changed
   void expires_never();
   void close();
-  void cut();  // resets: what the kernel holds for the peer is thrown away
+  void cut();  // resets: bytes that the kernel holds for the peer are thrown away
   void watch(Watch watch);
   bool secure() const;
 
-  // The server's part of a TLS handshake, whose first bytes may have been read already.
+  // Does the server's part of a TLS handshake, whose first bytes may have been read already.
   net::awaitable<error_code> shake_hands(std::shared_ptr<Certificate::Context> context,
                                          beast::flat_buffer& read_already);
-  // Ends it so that the peer gets all that was written: closing a socket with unread input would
-  // reset it. Closed afterwards.
+  // Ends and closes the connection so that the peer gets all that was written: closing a socket
+  // with unread input would reset it.
   net::awaitable<void> linger(double most_seconds);
 
   template <class Buffers, class Token>
@@ -154,7 +156,7 @@ class Transport {
   std::shared_ptr<State> state_;  // operations under way hold it, too
 };
 
-// What Beast asks of a stream below a WebSocket.
+// Beast calls these two for a stream below a WebSocket.
 template <class Handler>
 void async_teardown(beast::role_type, Transport& transport, Handler&& handler) {
   transport.tear_down(Completion(std::forward<Handler>(handler)));

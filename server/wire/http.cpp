@@ -23,7 +23,7 @@ std::string gzip(std::string_view text) {
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window, most_memory,
                    Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::runtime_error("gzip: zlib does not start");
-  std::string packed(text.size() - 1, '\0');  // what does not fit is not smaller
+  std::string packed(text.size() - 1, '\0');  // a longer result is not wanted
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
   stream.avail_in = uInt(text.size());
   stream.next_out = reinterpret_cast<Bytef*>(packed.data());

@@ -9,17 +9,17 @@
 
 namespace wellspring::wire {
 
-// Messages of browsers and kiosks, and errors, into text: compact, "type" first.
+// Writes messages of browsers and kiosks, and errors, as text: compact, "type" first.
 
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// Never throws on bad UTF-8, which strings of our own (file names) may hold.
+// Dumps the text, and never throws on bad UTF-8, which strings of our own (file names) may hold.
 static std::string to_text(const ordered_json& value) {
   return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-// Adding 0 makes -0 a plain 0.
+// Rounds to 4 decimals; adding 0 makes -0 a plain 0.
 static double rounded(double value) { return std::round(value * 1e4) / 1e4 + 0.0; }
 
 static ordered_json rounded(vec3 v) {
@@ -172,11 +172,11 @@ std::string write_message(const BrowserMessage& message) {
       message);
 }
 
-// What a browser may say, out of the lists of the messages' fields, in words.
+// Describes a browser's messages in words, from the lists of the messages' fields.
 
 namespace {
 
-// Notes what each field that a message lists means.
+// Notes the meaning of each field that a message lists.
 struct MessageDescriber {
   json out = json::object();
 
@@ -249,7 +249,7 @@ json describe_browser_messages() {
 
 namespace {
 
-// What the parser tells us, put together. The parser itself keeps its state in a vector, so depth
+// Builds the tree from the parser's calls. The parser itself keeps its state in a vector, so depth
 // costs no stack while parsing.
 class TreeBuilder {
  public:
@@ -281,7 +281,7 @@ class TreeBuilder {
   }
 
  private:
-  // Of the last character read, counted from 1; a column is a byte.
+  // Returns the place of the last character read, counted from 1; a column is a byte.
   std::string place_of(size_t position) const {
     std::string_view read = text_.substr(0, position > 0 ? position - 1 : 0);
     size_t line = 1 + size_t(std::count(read.begin(), read.end(), '\n'));
@@ -310,7 +310,8 @@ class TreeBuilder {
     values++;
     return true;
   }
-  // Addresses stay valid while open: a container only grows after what it holds was shut.
+  // Opens a container. Addresses stay valid while it is open: a container only grows after its last
+  // value was closed.
   bool open(json&& value) {
     if (int(open_.size()) >= limits_.depth)
       return fail("too_deep", "nested deeper than " + std::to_string(limits_.depth));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text to messages and back. Everything read here comes from strangers: size, nesting, count,
-// types, ranges and finiteness are checked before a value exists. Nothing throws; nothing keeps
-// state.
+// Turns text into messages and back. Everything read here comes from strangers: size, nesting,
+// count, types, ranges and finiteness are checked before a value exists. Nothing throws; nothing
+// keeps state.
 //
-// Rules of reading. Unknown fields are ignored (older and newer peers understand each other); of
+// Rules of reading: Unknown fields are ignored (older and newer peers understand each other); of
 // equal names the last counts, as in every browser. A field of the wrong type, null included, is
 // refused, not guessed. Whole numbers may be written 3 or 3.0. Absent fields keep the default of
-// messages.h, but for those that have no sensible one: seq (input, camera, viewpoint), position
+// messages.h, except those that have no sensible one: seq (input, camera, viewpoint), position
 // (camera), name (viewpoint), action (tour), frame (ack); and time, id, position, rotation and
 // confidence of an observation; showing of a browser's kiosk, stage of a server's.
 #pragma once
@@ -21,43 +21,44 @@
 
 namespace wellspring::wire {
 
-// Why a message was refused: `code` is a fixed word for programs (bad_json, too_deep, too_large,
-// unknown_type, bad_field), `message` a sentence naming the field.
+// Says why a message was refused: `code` is a fixed word for programs (bad_json, too_deep,
+// too_large, unknown_type, bad_field), `message` a sentence naming the field.
 struct WireError {
   std::string code, message;
 };
 
-// `values`: how many of JSON were read, good or not; null: nobody asks.
+// Reads a browser's message. `values`: set to how many JSON values were read, good or not, unless
+// it is null.
 std::variant<BrowserMessage, WireError> read_browser_message(std::string_view text,
                                                              size_t* values = nullptr);
-// People come out nearest first whatever their order in the text. `state` rules; where only
-// `presence` is given, true means person and false absent.
+// Reads an observation. People come out nearest first whatever their order in the text. `state`
+// rules; if only `presence` is given, true means person and false absent.
 std::variant<Observation, WireError> read_observation(std::string_view text,
                                                       size_t* values = nullptr);
-// What a server says to an eye; needs that are left out are there.
+// Reads a server's order to an eye; needs that are left out are true.
 std::variant<EyeOrder, WireError> read_eye_order(std::string_view text);
 
-// Compact, numbers rounded to 4 decimals. A value that is not finite becomes null, which no reader
-// takes.
+// These write compact text, numbers rounded to 4 decimals. A value that is not finite becomes null,
+// which no reader takes.
 std::string write_observation(const Observation& observation);
 std::string write_eye_order(const EyeOrder& order);
 std::string write_waiting(const WaitingPlace& waiting);
 std::string write_error(const WireError& error);  // {"type":"error","code":..,"message":..}
-// Browser messages as clients write them (bench, tests): read_browser_message(write_message(m)) ==
+// Writes browser messages as clients do (bench, tests): read_browser_message(write_message(m)) ==
 // m.
 std::string write_message(const BrowserMessage& message);
-// {type: {field: what it means}} of all of them, for GET /api/v1/.
+// Returns {type: {field: what it means}} of all of them, for GET /api/v1/.
 nlohmann::json describe_browser_messages();
 
-// How much of a text is made into values.
+// Bounds how much of a text is made into values.
 struct JsonLimits {
-  int depth = max_message_depth;  // of `[[1]]` it is 2
+  int depth = max_message_depth;  // levels of nesting; `[[1]]` has 2
   size_t values = SIZE_MAX;       // containers too
 };
-// Parses within limits: nlohmann's own parser takes any depth, but copying or dumping what it made
-// of 100,000 brackets overflows the stack, and 20,000 empty arrays take milliseconds. Stops at the
+// Parses within limits: nlohmann's own parser takes any depth, but copying or dumping its result of
+// 100,000 brackets overflows the stack, and 20,000 empty arrays take milliseconds. Stops at the
 // first value too many. Returns a WireError (bad_json, too_deep, too_large; bad_field for a number
-// no double can hold) naming the place. `values`: how many were read.
+// no double can hold) naming the place. `values`: set to how many were read.
 std::variant<nlohmann::json, WireError> parse_json(std::string_view text,
                                                    const JsonLimits& limits = {},
                                                    size_t* values = nullptr);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parser tells what it reads and not where, so the text counts its lines as they are read.
+// Finds the lines of values: the parser does not say at which place it reads, so the text counts
+// its lines as they are read.
 #include "wire/json_line.h"
 
 #include <cstddef>
@@ -15,10 +16,10 @@ namespace {
 
 struct Lines {
   int ended = 0;
-  bool last_ended = false;  // the last character that was read ended one
+  bool last_ended = false;  // the last character that was read ended a line
 };
 
-// Characters of a text, which counts those that have been read.
+// Iterates over the characters of a text, and counts the lines that have been read.
 struct CountedText {
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
@@ -41,7 +42,7 @@ struct CountedText {
   bool operator==(const CountedText& other) const { return at == other.at; }
 };
 
-// Follows the places of all values.
+// Follows the places of all values, and notes the line of one.
 class PlaceFinder {
  public:
   PlaceFinder(const std::string& wanted, const Lines& lines) : wanted_(wanted), lines_(lines) {}
@@ -67,11 +68,12 @@ class PlaceFinder {
 
  private:
   struct Level {
-    std::string where, place;  // of itself, of the value that comes
+    std::string where, place;  // places of the container, and of its next value
     bool list = false;
     size_t next = 0;
   };
-  // A number is known to end by the character after it.
+  // Notes the line of a value. The parser reads a number up to the character after it, which may
+  // end the line.
   void note(const std::string& place) {
     if (place == wanted_) found = 1 + lines_.ended - (lines_.last_ended ? 1 : 0);
   }

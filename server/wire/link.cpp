@@ -183,7 +183,7 @@ bool Link::close_requested(std::string& reason) const {
   return close_requested_;
 }
 
-// Outside the lock, so that the callee may call back into the link.
+// Calls outside the lock, so that the callee may call back into the link.
 void Link::wake() {
   std::function<void()> wake;
   {

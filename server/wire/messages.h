@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words that cross a process boundary: what a browser or a kiosk may say to the server.
-// Plain values; json.h turns text into them and them into text. Golden files: tests/protocol.
+// Defines the messages that cross a process boundary: from a browser or a kiosk to the server, and
+// back. Plain values; json.h turns text into them and them into text. Golden files: tests/protocol.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -20,17 +20,17 @@ struct Expression {  // 0..1 each
   bool operator==(const Expression&) const = default;
 };
 
-// One person. position: metres from the screen's centre, +x to the right as the
-// visitor sees the screen, +y up, +z out of the screen towards the visitor. rotation: yaw, pitch,
-// roll of the head, radians; 0 faces the screen squarely; yaw positive: turned to the screen's
-// right as the visitor sees it; pitch positive: looking up; roll positive: head tilted towards the
-// visitor's right shoulder.
+// Describes one person. position: metres from the screen's centre, +x to the right as the visitor
+// sees the screen, +y up, +z out of the screen towards the visitor. rotation: yaw, pitch, roll of
+// the head, radians; 0 faces the screen squarely; yaw positive: turned to the screen's right as the
+// visitor sees it; pitch positive: looking up; roll positive: head tilted towards the visitor's
+// right shoulder.
 struct Person {
   uint32_t id = 0;
   vec3 position{0, 0, 1};
   vec3 rotation{0};
   float confidence = 0;
-  std::optional<Expression> expression;  // absent where the kiosk does not estimate it
+  std::optional<Expression> expression;  // absent if the kiosk does not estimate it
   std::string gesture;                   // empty: none
   bool operator==(const Person&) const = default;
 };
@@ -38,30 +38,30 @@ struct Person {
 enum class Presence : uint8_t { absent, motion, person };
 const char* to_string(Presence presence);
 
-// What is wrong with a kiosk's camera.
+// The fault of a kiosk's camera.
 enum class CameraState : uint8_t {
   good,
   dark,     // the picture is black
-  frozen,   // it does not change at all, not even by noise
-  missing,  // there is none
-  slow,     // fewer than 8 a second
+  frozen,   // the picture does not change at all, not even by noise
+  missing,  // there is no camera
+  slow,     // fewer than 8 pictures a second
 };
 inline constexpr const char* camera_states[] = {"good", "dark", "frozen", "missing", "slow"};
 
-// The networks that a kiosk's eye works with: their weights are installed apart from the program.
+// The networks that a kiosk's eye has: their weights are installed apart from the program.
 enum class EyeNetworks : uint8_t {
-  all,            // those that are asked for
+  all,            // all that are asked for
   no_expression,  // expressions are asked for and not estimated
-  none,           // cascades find faces instead, and say little of how heads are turned
+  none,           // cascades find faces instead, and estimate head rotations poorly
 };
 inline constexpr const char* eye_networks[] = {"all", "no_expression", "none"};
 
-// While a kiosk finds out how its camera sits: where the person is to stand, and for how much of
-// the time it takes they have been steady there.
+// Shows the state of a kiosk's calibration of its camera: where the person is to stand, and for
+// which share of the needed time they have been steady there.
 struct CalibrationStep {
   enum class What : uint8_t { near_mark, far_mark, done, failed };
   What what = What::near_mark;
-  float metres = 0;    // of the mark from the screen; 0 once it is done or has failed
+  float metres = 0;    // distance of the mark from the screen; 0 once it is done or has failed
   float progress = 0;  // 0..1
   bool operator==(const CalibrationStep&) const = default;
 };
@@ -72,16 +72,16 @@ struct Observation {
   Presence state = Presence::absent;
   std::vector<Person> people;  // nearest first
   CameraState camera = CameraState::good;
-  std::string name;  // of kiosk and camera, for people who look after them; may be empty
-  std::optional<CalibrationStep> calibration;  // then nobody is a guest
-  std::string kiosk{};                         // its name; empty: the only one of the house
+  std::string name;  // name of kiosk and camera, for technicians; may be empty
+  std::optional<CalibrationStep> calibration;  // during a calibration nobody is a guest
+  std::string kiosk{};                         // kiosk's name; empty: the only one of the house
   EyeNetworks networks = EyeNetworks::all;
   bool operator==(const Observation&) const = default;
 };
 
 // ---- server to kiosk ----
 
-// What of a kiosk's cameras is used at the moment; the rest need not be computed.
+// Says which results of a kiosk's cameras are used at the moment; the rest need not be computed.
 struct EyeNeeds {
   bool faces = true;  // false: presence is enough
   bool expression = true, gestures = true;
@@ -89,7 +89,7 @@ struct EyeNeeds {
 };
 
 struct EyeOrder {
-  std::string stage;  // of the kiosk (show/kiosk/kiosk.h)
+  std::string stage;  // stage of the kiosk (show/kiosk/kiosk.h)
   EyeNeeds needs;
   bool idle = false;  // the house is closed: a look now and then is enough
   bool operator==(const EyeOrder&) const = default;
@@ -111,8 +111,8 @@ struct Hello {
   std::string exhibit, lang, role,
       kiosk;  // role: "visitor" or "kiosk"; empty exhibit: the default one
   int width = 1280, height = 720;
-  std::string resume;         // of the last `keep`; empty: a new visit
-  std::string token;          // of a kiosk (wire/tokens.h); empty: none is shown
+  std::string resume;         // token of the last `keep`; empty: a new visit
+  std::string token;          // token of a kiosk (wire/tokens.h); empty: none
   std::optional<bool> parts;  // packet.h
   std::string display;        // "local" or "server"; empty: as "server"
   static void list(auto& message, auto& fields) {
@@ -138,7 +138,7 @@ struct Input {
   uint32_t seq = 0;
   vec3 move{0};                 // right, up, forward, metres a second, kept until the next input
   vec2 look{0};                 // yaw, pitch to turn by now
-  std::optional<vec2> pointer;  // in the picture; absent: no news of it
+  std::optional<vec2> pointer;  // place in the picture; absent: unchanged
   static void list(auto& message, auto& fields) {
     fields.u32("seq", message.seq, "u32, grows by one", Need::required);
     fields.vector("look", max_angle, message.look,
@@ -175,7 +175,8 @@ struct ViewpointTo {
   }
   bool operator==(const ViewpointTo&) const = default;
 };
-// To where the visitor points: at a place of the picture, at the ground or an object. One of them.
+// Sends the visitor to where it points: at a place of the picture, at the ground or an object. One
+// of them.
 struct GoTo {
   static constexpr const char* type = "go";
   uint32_t seq = 0;
@@ -236,10 +237,10 @@ struct LampOrder {
   }
   bool operator==(const LampOrder&) const = default;
 };
-// The hour of the day by which the visitor sees the exhibit.
+// Sets the hour of the day at which the visitor sees the exhibit.
 struct HourOrder {
   static constexpr const char* type = "hour";
-  std::optional<double> value;  // nothing: the exhibit's own
+  std::optional<double> value;  // empty: the exhibit's own
   static void list(auto& message, auto& fields) {
     fields.number_or_null("value", 0, 24, message.value,
                           "0..24, 17.5 is half past five, within the exhibit's day; null or left "
@@ -261,9 +262,9 @@ struct PlayOrder {
   bool operator==(const PlayOrder&) const = default;
 };
 
-// What a kiosk's page shows: the well or anything that lies under its water.
+// The content of a kiosk's page: the well or anything that lies under its water.
 enum class Showing : uint8_t { well, book, topics, partners, slides, museum, story, tour, walk };
-// What a guest does at a kiosk's screen.
+// Reports what a guest does at a kiosk's screen.
 struct KioskTouch {
   static constexpr const char* type = "kiosk";
   bool touched = false;  // a finger was there just now
@@ -287,7 +288,7 @@ enum class GroupAction : uint8_t { lead, follow, rejoin, leave };
 struct GroupOrder {
   static constexpr const char* type = "group";
   GroupAction action = GroupAction::lead;
-  std::string code;  // of the leader, to follow
+  std::string code;  // leader's code, to follow
   static void list(auto& message, auto& fields) {
     fields.choice("action", {"lead", "follow", "rejoin", "leave"}, message.action,
                   "lead, follow, rejoin (after walking off) or leave", Need::required);
@@ -295,7 +296,7 @@ struct GroupOrder {
   }
   bool operator==(const GroupOrder&) const = default;
 };
-// A question to the storyteller, in the visitor's language.
+// Asks the storyteller a question, in the visitor's language.
 struct Ask {
   static constexpr const char* type = "ask";
   std::string text;
@@ -307,13 +308,13 @@ struct Ask {
 struct Settings {
   static constexpr const char* type = "settings";
   std::optional<float> fps;
-  // False: samples are spread evenly. A number: how much what the visitor looks at counts beside
-  // what catches the eye.
+  // False: samples are spread evenly. A number: weight of what the visitor looks at against what
+  // catches the eye.
   std::optional<std::variant<bool, float>> attention;
   std::optional<bool> sound, comfort, saver;
   std::optional<int> quality, max_quality, bandwidth, width, height;
   std::string lang;
-  std::string display;  // as of hello; empty: as before
+  std::string display;  // as in hello; empty: as before
   static void list(auto& message, auto& fields) {
     fields.number("fps", min_fps, max_fps, message.fps,
                   "pictures a second, 0 for the server's choice");
@@ -353,8 +354,8 @@ struct Ack {
   }
   bool operator==(const Ack&) const = default;
 };
-// Whether somebody looks at the page: false while it is hidden, true when it is seen again and in
-// answer to the question whether somebody is still there.
+// Reports whether somebody looks at the page: false while it is hidden, true when it is seen again
+// and in answer to the question whether somebody is still there.
 struct PresenceNews {
   static constexpr const char* type = "presence";
   bool here = true;
@@ -373,10 +374,10 @@ struct Bye {
 
 // ---- server to browser ----
 
-// To who waits until a visitor's place is free.
+// Tells a visitor who waits for a seat its place in the queue.
 struct WaitingPlace {
-  size_t place = 1, of = 1;       // in the queue, and its length
-  std::optional<double> seconds;  // until their turn, about
+  size_t place = 1, of = 1;       // place in the queue, and the queue's length
+  std::optional<double> seconds;  // about how long until the visitor's turn
   bool operator==(const WaitingPlace&) const = default;
 };
 

@@ -90,7 +90,7 @@ static bool read_keyframe(std::span<const uint8_t> bytes, PacketView& view) {
          keyframe.height > 0 && keyframe.tan_half_fov > 0 && keyframe.unit > 0;
 }
 
-// False: they are not all there, or not within the picture.
+// Reads the parts' list. False: it is not complete, or parts are not within the picture.
 static bool read_parts(std::span<const uint8_t> bytes, PacketView& view) {
   const size_t header_bytes = bytes.size() - view.payload.size();
   if (header_bytes < parts_header_bytes(0)) return false;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary messages to the browser, little-endian: pictures (magic WSF1); packet.h has sound
-// (WSA1). Picture: 0 magic, 4 u32 frame number, 8 u32 last input/camera seq this picture shows, 12
-// u64 server time in microseconds, 20 u16 width, 22 u16 height, 24 u8 quality, 25 u8 flags, 26 u16
-// header length, payload: a JPEG. A complete picture may be smaller than was asked for: it is shown
-// as large all the same. Without the flag `complete` it holds parts of a picture of that width and
-// height, for clients whose hello says that they take them; all else is as in the picture before,
-// which is first scaled to that size where it was of another. Its header goes on: 28 u16 number of
-// parts, then for each from 30 on: u16 x, u16 y, u16 width, u16 height, u32 bytes; the payload is
-// their JPEGs one after the other. No parts: nothing is new but seq.
+// Writes and reads binary messages to the browser, little-endian: pictures (magic WSF1);
+// packet.h has sound (WSA1). Picture: 0 magic, 4 u32 frame number, 8 u32 last input/camera
+// seq this picture shows, 12 u64 server time in microseconds, 20 u16 width, 22 u16 height, 24 u8
+// quality, 25 u8 flags, 26 u16 header length, payload: a JPEG. A complete picture may be smaller
+// than was asked for: it is shown as large all the same. Without the flag `complete` it holds parts
+// of a picture of that width and height, for clients whose hello says that they take them; the rest
+// is the picture before, which is first scaled to that size if it had another. Its header goes on:
+// 28 u16 number of parts, then for each from 30 on: u16 x, u16 y, u16 width, u16 height, u32 bytes;
+// the payload is their JPEGs one after the other. No parts: nothing is new but seq.
 //
 // With the flag `depth` a complete picture is a keyframe, for displays that reproject it (hello
 // {display: "local"}). Its header goes on: 28 u32 bytes of the JPEG, 32 u32 camera cuts so far, 36
@@ -15,9 +15,8 @@
 // axes to the right, up and forward, 100 f32 half of the picture's height at a depth of 1, 104 f32
 // x, y of its middle there, 112 f32 unit. Behind the JPEG follow disparities in that unit, as
 // frame/disparity_code.h has them. With the flag `around`, too, it is a wide view in few pixels,
-// for what keyframes do not show. With the flag `layer` it is the part of a view where something
-// moves, to be laid over keyframes with the flag `still` until the next one: where its disparity is
-// 0 there is nothing.
+// for places that keyframes do not show. With the flag `layer` it is a dynamic layer, to be laid
+// over keyframes with the flag `still` until the next one: pixels with a disparity of 0 are empty.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -31,9 +30,9 @@
 
 namespace wellspring::wire {
 
-// Whole numbers in binary messages, byte by byte, so that the layout is little-endian on every
-// machine and no pointer need be aligned; and what every binary message has in common: four bytes
-// that name its kind, and the length of its header.
+// Writes and reads whole numbers in binary messages, byte by byte, so that the layout is
+// little-endian on every machine and no pointer need be aligned; and the common part of every
+// binary message: four bytes that name its kind, and the length of its header.
 
 template <class T>
 void put(std::span<uint8_t> bytes, size_t at, T value) {
@@ -55,8 +54,8 @@ inline void put_envelope(std::span<uint8_t> bytes, const Magic& magic, size_t he
   put(bytes, header_length_at, uint16_t(header_bytes));
 }
 
-// What follows the header of a message of that kind, whose header is at least as long as `least`
-// (longer: a later version's, whose additions are skipped); none: it is no such message.
+// Returns the bytes behind the header of a message of that kind, whose header is at least as long
+// as `least` (longer: a later version's, whose additions are skipped); none: it is no such message.
 inline std::optional<std::span<const uint8_t>> get_payload(std::span<const uint8_t> bytes,
                                                            const Magic& magic, size_t least) {
   if (bytes.size() < least || !std::equal(magic.begin(), magic.end(), bytes.begin()))
@@ -67,11 +66,11 @@ inline std::optional<std::span<const uint8_t>> get_payload(std::span<const uint8
 }
 
 inline constexpr uint8_t packet_still =
-    1;  // the visitor stands still and this is the refined picture
+    1;  // the visitor stands still, and this is the refined picture
 inline constexpr uint8_t packet_complete = 2;  // complete picture, not a part
-inline constexpr uint8_t packet_depth = 4;     // complete, and where its pixels are
-inline constexpr uint8_t packet_around = 8;    // with depth: what lies around, in fewer pixels
-inline constexpr uint8_t packet_layer = 16;    // with depth: what moves, over what stands still
+inline constexpr uint8_t packet_depth = 4;     // complete, and with the depth of its pixels
+inline constexpr uint8_t packet_around = 8;    // with depth: the surroundings, in fewer pixels
+inline constexpr uint8_t packet_layer = 16;  // with depth: what moves, laid over what stands still
 
 struct PacketHeader {
   uint32_t frame = 0, seq = 0;
@@ -83,10 +82,11 @@ inline constexpr size_t packet_header_bytes = 28;
 
 struct PicturePart {
   uint16_t x = 0, y = 0, width = 0, height = 0;  // pixels from the upper left
-  uint32_t bytes = 0;                            // of its JPEG
+  uint32_t bytes = 0;                            // length of its JPEG
   bool operator==(const PicturePart&) const = default;
 };
-// A keyframe tells the view that it was drawn for, in metres of the exhibit, and what its depth is.
+// Holds the view for which a keyframe was drawn, in metres of the exhibit, and how its depth is
+// stored.
 struct KeyframeHeader {
   uint32_t color_bytes = 0, cuts = 0;
   uint16_t width = 0, height = 0;
@@ -99,34 +99,34 @@ struct KeyframeHeader {
 };
 inline constexpr size_t keyframe_header_bytes = 116;
 
-inline constexpr size_t max_parts = 16;  // of a picture
+inline constexpr size_t max_parts = 16;  // most parts of a picture
 inline constexpr size_t parts_header_bytes(size_t parts) {
   return packet_header_bytes + 2 + 12 * parts;
 }
 
-// A whole binary message, ready to be sent; shared, never changed after it is made.
+// A packet is a whole binary message, ready to be sent; shared, never changed after it is made.
 using Packet = std::vector<uint8_t>;
 
 // Writes the header over the first 28 bytes of `packet` (which must be at least that long).
 void write_packet_header(const PacketHeader& header, std::span<uint8_t> packet);
-// Likewise over the first parts_header_bytes() of it.
+// Writes both headers over the first parts_header_bytes() of `packet`.
 void write_packet_header(const PacketHeader& header, std::span<const PicturePart> parts,
                          std::span<uint8_t> packet);
-// Likewise over the first keyframe_header_bytes of it.
+// Writes both headers over the first keyframe_header_bytes of `packet`.
 void write_packet_header(const PacketHeader& header, const KeyframeHeader& keyframe,
                          std::span<uint8_t> packet);
-// Empty when the bytes are no picture message (short, other magic, header length < 28 or past the
-// end; parts that are past the end, or not within the picture; a keyframe of no size, or whose
-// view or unit is no finite number).
+// Holds a packet as read; read_packet() returns none if the bytes are no picture message (short,
+// other magic, header length < 28 or past the end; parts that are past the end, or not within the
+// picture; a keyframe of no size, or whose view or unit is no finite number).
 struct PacketView {
   PacketHeader header;
-  std::vector<PicturePart> parts;          // of one that is not complete
-  std::optional<KeyframeHeader> keyframe;  // of one with depth
+  std::vector<PicturePart> parts;          // parts of a picture that is not complete
+  std::optional<KeyframeHeader> keyframe;  // for a picture with depth
   std::span<const uint8_t> payload;
 };
 std::optional<PacketView> read_packet(std::span<const uint8_t> bytes);
 
-// A piece of an utterance's sound as a binary message, little-endian: 0 magic WSA1, 4 u32
+// Makes binary messages with a piece of an utterance's sound, little-endian: 0 magic WSA1, 4 u32
 // utterance, 8 u32 first sample of this piece within the utterance, 12 u64 server time in
 // microseconds at which that sample is to sound (the clock of pictures: it goes with the picture of
 // the same time), 20 u32 samples of the whole utterance, 24 u8 channels (1), 25 u8 flags (1: heard

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of Prometheus' text format (version 0.0.4), appended to a text. Names get the prefix
+// Appends lines of Prometheus' text format (version 0.0.4) to a text. Names get the prefix
 // wellspring_; those that end in _total are counters, all others gauges.
 #pragma once
 #include <charconv>
@@ -13,7 +13,7 @@
 
 namespace wellspring::wire {
 
-// A number in as few digits as it needs in its own type; whole ones without an exponent.
+// Holds a number in as few digits as it needs in its own type; whole ones without an exponent.
 struct MetricValue {
   std::string text;
   template <class Number>
@@ -38,17 +38,18 @@ struct MetricValue {
   }
 };
 
-// Quotes, backslashes and line ends of a value become apostrophes. One without a value is left out.
+// Holds a label: quotes, backslashes and line ends of its value become apostrophes. A label without
+// a value is left out.
 struct MetricLabel {
   std::string_view name;
   std::string value;
 };
 
-// The comments with which a family of samples begins.
+// Appends the comments with which a family of samples begins.
 void begin_metric(std::string& out, std::string_view name, std::string_view help);
 void add_sample(std::string& out, std::string_view name, std::initializer_list<MetricLabel> labels,
                 const MetricValue& value);
-// A family of one sample without labels.
+// Appends a family of one sample without labels.
 void add_metric(std::string& out, std::string_view name, std::string_view help,
                 const MetricValue& value);
 

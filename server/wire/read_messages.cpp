@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of browsers and kiosks, out of text.
+// Reads messages of browsers and kiosks from text.
 #include "wire/read_messages.h"
 
 #include <algorithm>
@@ -221,8 +221,8 @@ using nlohmann::json;
 
 namespace {
 
-// Takes the fields that a message lists out of an object: the kinds of fields that there are.
-// Absent ones keep the message's defaults.
+// Takes the fields that a message lists out of an object; each function reads one kind of field.
+// Absent fields keep the message's defaults.
 class MessageReader {
  public:
   explicit MessageReader(Fields& fields) : fields_(fields) {}
@@ -230,7 +230,7 @@ class MessageReader {
   void text(const char* name, std::string& value, const char*, Need need = Need::optional) {
     fields_.text(name, value, need);
   }
-  // What was sealed here before (wire/tokens.h).
+  // A text that this server sealed before (wire/tokens.h).
   void token(const char* name, std::string& value, const char*) {
     fields_.text(name, value, Need::optional, max_token_bytes);
   }
@@ -253,7 +253,7 @@ class MessageReader {
               Need need = Need::optional) {
     read(value, [&](auto& v) { return fields_.number(name, low, high, v, need); });
   }
-  // Null says nothing.
+  // A number; null counts as absent.
   void number_or_null(const char* name, double low, double high, std::optional<double>& value,
                       const char* about) {
     if (!fields_.is_null(name)) number(name, low, high, value, about);
@@ -282,7 +282,7 @@ class MessageReader {
               Need need = Need::optional) {
     fields_.vector(name, limit, value, need);
   }
-  // In a picture: both numbers from 0 to 1.
+  // A place in a picture: both numbers from 0 to 1.
   void place(const char* name, std::optional<vec2>& value, const char*,
              Need need = Need::optional) {
     vec2 place{0};
@@ -290,13 +290,13 @@ class MessageReader {
     if (place.x < 0 || place.y < 0) return fields_.fail(name, "must be of numbers from 0 to 1");
     value = place;
   }
-  // In the world: each number at most `limit`, of either sign.
+  // A place in the world: each number at most `limit`, of either sign.
   void spot(const char* name, double limit, std::optional<dvec3>& value, const char*,
             Need need = Need::optional) {
     dvec3 place{0};
     if (fields_.vector(name, limit, place, need)) value = place;
   }
-  // Metres a second: so is its length.
+  // A speed in metres a second: its length is at most `limit`, too.
   void speed(const char* name, double limit, vec3& value, const char*, Need need = Need::optional) {
     dvec3 speed{0};
     if (!fields_.vector(name, limit, speed, need)) return;
@@ -328,7 +328,7 @@ bool read_if(const std::string& type, Fields& fields, BrowserMessage& message) {
   return true;
 }
 
-// Into whichever of the messages is of that type; false: none is.
+// Reads the message of that type; false: there is none.
 template <class... Messages>
 bool read_one_of(const std::string& type, Fields& fields, std::variant<Messages...>& message) {
   return (read_if<Messages>(type, fields, message) || ...);

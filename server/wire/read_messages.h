@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads checked fields out of one JSON object; for the readers of this folder. The first thing
-// wrong is kept in `error` with the field's full name and turns every later call into nothing, so a
-// reader asks for its fields one after the other and looks at the error once.
+// Reads checked fields out of one JSON object; for the readers of this folder. The first fault is
+// kept in `error` with the field's full name and turns every later call into nothing, so a reader
+// asks for its fields one after the other and looks at the error once.
 #pragma once
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -17,10 +17,11 @@ namespace wellspring::wire {
 
 class Fields {
  public:
-  // `prefix` names the object in messages ("people[2]."). Both are borrowed by the caller's scope.
+  // `prefix` names the object in messages ("people[2]."). `object` and `error` are borrowed and
+  // must live longer.
   Fields(const nlohmann::json& object, std::string prefix, std::optional<WireError>& error);
 
-  // True when the field is there and good; the value is written only then.
+  // These return true if the field is there and good; the value is written only then.
   bool number(const char* name, double low, double high, double& value, Need need = Need::optional);
   bool number(const char* name, double low, double high, float& value, Need need = Need::optional);
   bool whole(const char* name, double low, double high, double& value, Need need = Need::optional);
@@ -30,23 +31,24 @@ class Fields {
   bool switch_or_number(const char* name, double low, double high,
                         std::optional<std::variant<bool, float>>& value,
                         Need need = Need::optional);
-  // At most max_name_bytes, no control characters; required ones must not be empty.
+  // Reads a text of at most `most_bytes`, without control characters; a required one must not be
+  // empty.
   bool text(const char* name, std::string& value, Need need = Need::optional,
             size_t most_bytes = max_name_bytes);
-  // One of `words`; with Need::optional also the empty string.
+  // Reads one of `words`; with Need::optional also the empty string.
   bool word(const char* name, std::initializer_list<const char*> words, std::string& value,
             Need need = Need::optional);
-  // An array of exactly `count` numbers, each within +-limit.
+  // Reads an array of exactly `count` numbers, each within +-limit.
   bool numbers(const char* name, int count, double limit, double* values,
                Need need = Need::optional);
   bool vector(const char* name, double limit, vec2& value, Need need = Need::optional);
   bool vector(const char* name, double limit, vec3& value, Need need = Need::optional);
   bool vector(const char* name, double limit, dvec3& value, Need need = Need::optional);
-  // The member itself when it is there and of that type.
+  // These return the member itself if it is there and of that type.
   const nlohmann::json* object(const char* name);
   const nlohmann::json* array(const char* name, size_t max_size);
 
-  bool is_null(const char* name) const;  // it is there and null
+  bool is_null(const char* name) const;  // the field is there and null
   void fail(const std::string& name, const std::string& what);
   bool good() const { return !error_; }
 
@@ -60,8 +62,8 @@ class Fields {
   std::optional<WireError>& error_;
 };
 
-// The object of a message whose size, syntax, depth and count of values are good and which has a
-// "type" of type string.
+// Holds the object of a message whose size, syntax, depth and count of values are good and which
+// has a "type" of type string.
 struct Envelope {
   nlohmann::json object;
   std::string type;
@@ -74,7 +76,7 @@ std::variant<Envelope, WireError> open_envelope(std::string_view text,
                                                 size_t* values = nullptr);
 WireError too_large(size_t most_bytes);
 
-// A piece of a stranger's text made fit for a message of ours: short, no control characters.
+// Quotes a piece of a stranger's text for a message of ours: short, no control characters.
 std::string short_quote(std::string_view text);
 
 }  // namespace wellspring::wire

@@ -40,7 +40,7 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(blank) + 1 - begin);
 }
 
-// Adds a token of `place`.
+// Adds a token that stands at `place`.
 void add(std::vector<Token>& tokens, Token token, const std::string& file,
          const std::string& place) {
   if (token.secret.size() < least_token_bytes)
@@ -73,7 +73,7 @@ std::vector<Token> read_file(const std::string& file) {
   return tokens;
 }
 
-// The variable's value, which is overwritten where it stands: /proc/PID/environ shows that place.
+// Returns the variable's value, and overwrites it in its memory, which /proc/PID/environ shows.
 std::string take_variable(const char* variable) {
   char* value = getenv(variable);
   if (!value) return {};
@@ -129,7 +129,7 @@ static_assert(crypto_auth_KEYBYTES == 32);
 std::string encode(const uint8_t* bytes, size_t size) {
   std::string text(sodium_base64_encoded_len(size, letters), '\0');
   sodium_bin2base64(text.data(), text.size(), bytes, size, letters);
-  text.pop_back();  // its terminating zero
+  text.pop_back();  // the terminating zero
   return text;
 }
 
@@ -154,8 +154,8 @@ bool read_key(const std::string& file, std::array<uint8_t, 32>& key) {
   return whole;
 }
 
-// Under a name of its own, then by its name: nobody sees it half written, and none is replaced but
-// one that is cut off. False: errno says why.
+// Writes the key under a temporary name, then gives it its name: nobody sees it half written, and
+// no key is replaced except one that is cut off. False: errno says why.
 bool write_key(const std::string& file, const std::array<uint8_t, 32>& key, bool replaces) {
   std::string fresh = file + ".XXXXXX";
   const int out = mkostemp(fresh.data(), O_CLOEXEC);

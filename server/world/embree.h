@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place that knows which Embree this is: 3 (contexts carry flags) or 4 (arguments carry
-// contexts). Only world*.cpp include it.
+// Hides which Embree this is: 3 (contexts carry flags) or 4 (arguments carry contexts). Only
+// world*.cpp include it.
 #pragma once
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -22,9 +22,9 @@ inline RTCIntersectArguments intersect_arguments(Context& context, bool coherent
   arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   return arguments;
 }
-// Scenes are built with it where rays may bring a filter of their own.
+// Scenes are built with this flag so that rays may bring a filter of their own.
 constexpr RTCSceneFlags ray_filter_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
-// `filter` is asked after the geometry's own.
+// Traces a ray; `filter` is asked after the geometry's own.
 inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray,
                        RTCFilterFunctionN filter = nullptr) {
   RTCIntersectArguments arguments = intersect_arguments(context, false);

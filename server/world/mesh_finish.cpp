@@ -16,7 +16,7 @@ void gather(std::vector<T>& values, const std::vector<uint32_t>& from) {
   values = std::move(result);
 }
 
-// Vertex i of the result is vertex from[i] of the mesh.
+// Replaces the vertices: vertex i of the result is vertex from[i] of the mesh.
 void gather_vertices(Mesh& mesh, const std::vector<uint32_t>& from) {
   gather(mesh.positions, from);
   gather(mesh.normals, from);
@@ -41,8 +41,8 @@ vec3 any_perpendicular(vec3 n) {
   return normalize(cross(n, other));
 }
 
-// Along u over a triangle, weighted by its area; `determinant` tells which way round the picture
-// lies.
+// Returns the direction of u over a triangle, weighted by its area; `determinant` tells which way
+// round the picture lies.
 dvec3 face_tangent(const Mesh& mesh, const std::vector<vec2>& uv, const uvec3& t,
                    double& determinant) {
   dvec3 e1 = dvec3(mesh.positions[t.y]) - dvec3(mesh.positions[t.x]);
@@ -104,8 +104,8 @@ int repair_normals(Mesh& mesh) {
 
 std::vector<uint32_t> make_tangents(Mesh& mesh, int uv_set) {
   const std::vector<vec2>& uv = mesh.uv[uv_set];
-  // Side 0 and 1: vertices seen from faces whose picture is not mirrored, and from those where it
-  // is.
+  // Holds sides 0 and 1 of a vertex: of faces whose picture is not mirrored, and of those whose
+  // picture is.
   struct Sides {
     dvec3 sum[2] = {dvec3(0), dvec3(0)};
     char used[2] = {0, 0};

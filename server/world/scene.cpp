@@ -4,7 +4,7 @@
 namespace wellspring::world {
 
 Material repainted(const Material& m, const Repaint& change) {
-  constexpr float most = 1e9f;  // as of a file's
+  constexpr float most = 1e9f;  // the bound for files
   Material made = m;
   bool colors = is_finite(vec3(change.base_color)) && std::isfinite(change.base_color.w);
   if (colors) made.base_color = glm::clamp(m.base_color + change.base_color, vec4(0), vec4(1));
@@ -19,7 +19,7 @@ Material repainted(const Material& m, const Repaint& change) {
 Material dimmed(const Material& m, float brightness) {
   Material made = m;
   made.emission *= brightness;
-  // Its colour is its light.
+  // An unlit material's colour is its light.
   if (m.unlit) made.base_color = vec4(vec3(m.base_color) * brightness, m.base_color.w);
   return made;
 }

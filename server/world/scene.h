@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What exists: immutable once made, shared by every visitor and every thread. Plain data; indices,
-// not pointers. Positions are relative to `origin`, so that a scene far from zero keeps its
-// precision.
+// Describes all that exists in a scene: immutable once made, shared by every visitor and every
+// thread. Plain data; indices, not pointers. Positions are relative to `origin`, so that a scene
+// far from zero keeps its precision.
 #pragma once
 #include <limits>
 #include <memory>
@@ -14,47 +14,47 @@
 
 namespace wellspring::world {
 
-// Light that is no surface: KHR_lights_punctual and the environment. Emissive surfaces are found by
-// their material (light/sample/lights.h gathers them).
+// Defines light that is no surface: KHR_lights_punctual and the environment. Emissive surfaces are
+// found by their material (light/sample/lights.h gathers them).
 
 enum class PunctualType : uint8_t { point, spot, directional };
 
-// Photometric units are taken as radiometric one to one: 1 candela is 1 W/sr, 1 lux is 1 W/m^2 per
-// channel.
+// Holds a punctual light. Photometric units are taken as radiometric one to one: 1 candela is 1
+// W/sr, 1 lux is 1 W/m^2 per channel.
 struct PunctualLight {
   std::string name;
   PunctualType type = PunctualType::point;
   vec3 position{0};          // point, spot
-  vec3 direction{0, 0, -1};  // the way the light travels: spot, directional; unit length
+  vec3 direction{0, 0, -1};  // direction in which the light travels: spot, directional; unit length
   vec3 intensity{1};         // point, spot: W/sr; directional: W/m^2 on a facing surface
   float range = std::numeric_limits<float>::infinity();
   float inner_cone = 0, outer_cone = pi / 4;  // radians from the axis
 };
 
-// What is switched together: a chandelier with all its candles, the spots of a show-case. Nothing
-// belongs to two lamps. How one comes into a scene: world/load/lamp.h.
+// A lamp is what is switched together: a chandelier with all its candles, the spots of a show-case.
+// Nothing belongs to two lamps. Lamps come into a scene by world/load/lamp.h.
 struct Lamp {
   std::string name;
-  std::vector<int> lights;     // of Scene::lights
-  std::vector<int> materials;  // of Scene::materials: what these emit; nothing else is made of them
+  std::vector<int> lights;     // indices into Scene::lights
+  std::vector<int> materials;  // indices into Scene::materials; only the lamp's surfaces have them
 };
 
-// A disc at infinity, equally bright all over: the sun. No radiance: none.
+// Holds a disc at infinity, equally bright all over: the sun. No radiance: there is no sun.
 struct SunDisc {
   vec3 direction{0, 1, 0};  // towards it, unit
   vec3 radiance{0};
   float angular_radius = 0;  // radians, at most pi / 2
 };
 
-// Light from infinity. No image: `radiance` from everywhere. With an image: latitude-longitude, +Y
-// up, its middle column towards -Z, times `radiance`.
+// Holds light from infinity. No image: `radiance` from everywhere. With an image:
+// latitude-longitude, +Y up, its middle column towards -Z, times `radiance`.
 struct Environment {
   vec3 radiance{0};
   int image = -1;
-  SunDisc sun{};  // on top of the rest
+  SunDisc sun{};  // added to the rest
 };
 
-// What a surface is made of: glTF 2.0 metallic-roughness (appendix B) with
+// Describes the material of a surface: glTF 2.0 metallic-roughness (appendix B) with
 // KHR_materials_transmission, ior, volume, emissive_strength, specular, clearcoat, sheen,
 // anisotropy, dispersion and unlit. Factors are linear. Ambient occlusion maps are not used: a path
 // tracer finds occlusion itself.
@@ -90,7 +90,7 @@ struct Material {
   float clearcoat = 0, clearcoat_roughness = 0;
   TextureRef clearcoat_texture;            // R
   TextureRef clearcoat_roughness_texture;  // G
-  TextureRef clearcoat_normal_texture;     // none: the coat is smooth, whatever lies beneath
+  TextureRef clearcoat_normal_texture;     // none: the coat is smooth, whatever lies below it
   float clearcoat_normal_scale = 1;
   vec3 sheen_color{0};
   float sheen_roughness = 0;
@@ -98,22 +98,22 @@ struct Material {
   TextureRef sheen_roughness_texture;             // A
   float anisotropy = 0, anisotropy_rotation = 0;  // 0..1; radians from the tangent
   TextureRef anisotropy_texture;                  // RG: direction, B: strength
-  // World::repaint() may change its colours and how its pictures lie: nothing may be concluded from
-  // those.
+  // World::repaint() may change its colours and how its pictures lie: no conclusions may be drawn
+  // from these.
   bool repaints = false;
 };
 
-// Whether its surfaces enclose a medium in which light is bent and tinted: it is met from both
-// sides.
+// Returns whether the material's surfaces enclose a medium in which light is bent and tinted: then
+// they are met from both sides.
 inline bool encloses_medium(const Material& m) {
   return m.transmission > 0 && m.thickness > 0 && m.metallic < 1;
 }
 
-// How a material looks for a while, told by what is added to it.
+// Holds how a material looks for a while, as what is added to it.
 struct Repaint {
   vec4 base_color{0};
   vec3 emission{0};
-  mat3 uv{0.0f};  // to the matrices of all its pictures' coordinates
+  mat3 uv{0.0f};  // added to the matrices of all its pictures' coordinates
   bool operator==(const Repaint&) const = default;
 };
 
@@ -127,13 +127,14 @@ void each_texture(M& m, Body&& body) {
                     &m.normal_texture, &m.clearcoat_normal_texture})
     body(*use);
 }
-// `m` changed so: colours stay within their ranges, what is not finite changes nothing.
+// Returns `m` with these changes: colours stay within their ranges, numbers that are not finite
+// change nothing.
 Material repainted(const Material& m, const Repaint& change);
-// The same with its own light times `brightness`.
+// Returns `m` with its own light times `brightness`.
 Material dimmed(const Material& m, float brightness);
 
-// Indexed triangles of one material. `normals` is never empty (made from the faces if the file had
-// none); uv, colors and tangents are empty or as long as positions.
+// Holds indexed triangles of one material. `normals` is never empty (made from the faces if the
+// file had none); uv, colors and tangents are empty or as long as positions.
 struct Mesh {
   std::string name;
   std::vector<vec3> positions;
@@ -151,17 +152,18 @@ struct Instance {
   uint32_t object = 0;  // index into Scene::objects; the render cache never blends across objects
 };
 
-// A glTF camera or an exhibit's viewpoint.
+// Holds a glTF camera or an exhibit's viewpoint.
 struct Viewpoint {
   std::string name;
   dvec3 position{0};  // absolute world coordinates
   float yaw = 0;      // radians about +Y, 0 looks down -Z, positive turns left
   float pitch = 0;    // positive looks up
-  float roll = 0;     // positive leans to its left, about the line of sight, after yaw and pitch
-  float fov = 1.0f;   // vertical, radians
+  // Positive leans to the viewer's left, about the line of sight, after yaw and pitch.
+  float roll = 0;
+  float fov = 1.0f;  // vertical, radians
 };
 
-// Of the file's tree of nodes: what hangs together.
+// Holds a node of the file's tree, which tells what hangs together.
 struct SceneNode {
   std::string name;
   int parent = -1;  // index into Scene::nodes
@@ -169,11 +171,11 @@ struct SceneNode {
 
 struct SceneMotion;  // world/motion/scene_motion.h
 
-// What the animations of one of the scene's files can move.
+// Places what the animations of one of the scene's files can move.
 struct PlacedMotion {
   std::shared_ptr<const SceneMotion> of;
-  dmat4 to_world{1};           // absolute world coordinates of the file's
-  std::vector<int> instances;  // of each mover, its place in Scene::instances; -1: taken out
+  dmat4 to_world{1};           // from the file's to absolute world coordinates
+  std::vector<int> instances;  // each mover's index in Scene::instances; -1: taken out
 };
 
 struct Scene {
@@ -181,33 +183,35 @@ struct Scene {
   dvec3 origin{0};  // absolute world position of this scene's (0, 0, 0)
   std::vector<Image> images;
   std::vector<Texture> textures;
-  std::vector<Material> materials;  // never empty: 0 is the default where a file had none
+  std::vector<Material> materials;  // never empty: 0 is the default for a file without any
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<std::string> objects;  // names; objects[0] is "" (nothing)
-  // Of objects and lights the node of the file that each comes from, as far as there is one.
+  // The file's nodes, and the node from which each object and light comes, as far as there is one.
   std::vector<SceneNode> nodes;
   std::vector<int> object_nodes, light_nodes;
   std::vector<PunctualLight> lights;
-  std::vector<Lamp> lamps;  // what of them, and of emissive materials, can be switched
-  int dynamic_lights = 0;   // that move or change over it, and are none of `lights`
+  std::vector<Lamp> lamps;  // lights and emissive materials that can be switched
+  int dynamic_lights = 0;   // number of lights that move or change, none of them in `lights`
   Environment environment;
-  // The eye does not see the back faces of single-sided materials (glTF 2.0 section 3.9.5), but for
-  // those that enclose a medium. Shadows, reflections and bounces of light do: what a wall's back
-  // hides from light is dark, whoever looks.
+  // The eye does not see the back faces of single-sided materials (glTF 2.0 section 3.9.5), except
+  // those that enclose a medium. Shadows, reflections and bounces of light do: a place that a
+  // wall's back hides from light is dark, whoever looks.
   bool cull_back_faces = false;
   std::vector<Viewpoint> viewpoints;
-  std::vector<PlacedMotion> motions;  // where they were asked for
-  std::vector<std::string> warnings;  // what the file asks for that is not done, each said once
+  std::vector<PlacedMotion> motions;  // empty unless they were asked for
+  // Features that the file asks for and that are not done, each once.
+  std::vector<std::string> warnings;
 };
 
 struct Bounds {
   vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
 };
 Bounds scene_bounds(const Scene& scene);
-Bounds lit_bounds(const Scene& scene);      // of what is not unlit
+Bounds lit_bounds(const Scene& scene);      // bounds of all that is not unlit
 size_t triangle_count(const Scene& scene);  // instances counted
-// A light that can emit light: an emissive material in use, a punctual light or a lit environment.
+// Returns whether anything emits light: an emissive material in use, a punctual light or a lit
+// environment.
 bool has_light(const Scene& scene);
 
 }  // namespace wellspring::world

@@ -9,7 +9,7 @@
 namespace wellspring::world {
 namespace {
 
-// Metres and inverse metres.
+// Units are metres and inverse metres.
 constexpr double earth = 6.36e6, top = 6.42e6;
 constexpr double rayleigh_height = 8000, haze_height = 1200;
 const dvec3 rayleigh(5.802e-6, 13.558e-6, 33.1e-6), ozone(0.650e-6, 1.881e-6, 0.085e-6);
@@ -21,7 +21,7 @@ constexpr double ground_albedo = 0.2, eye_height = 2;
 constexpr double pi_ = 3.14159265358979;
 
 struct Air {
-  dvec3 rayleigh{0}, haze{0};  // scattered a metre
+  dvec3 rayleigh{0}, haze{0};  // share scattered a metre
   dvec3 lost{0};
 };
 
@@ -37,8 +37,8 @@ Air air_at(double height, double turbidity) {
   return air;
 }
 
-// Distance to a sphere about the Earth's centre from radius r along a direction of this cosine to
-// the vertical; negative: it is not met ahead.
+// Returns the distance to a sphere about the Earth's centre from radius r along a direction of this
+// cosine to the vertical; negative: it is not met ahead.
 double to_sphere(double r, double cosine, double sphere) {
   double b = r * cosine, d = b * b - r * r + sphere * sphere;
   if (d < 0) return -1;
@@ -49,7 +49,7 @@ bool meets_ground(double r, double cosine) {
   return cosine < 0 && r * r * (1 - cosine * cosine) < earth * earth;
 }
 
-// Share of sunlight that arrives at a height, the sun under this cosine.
+// Holds the share of sunlight that arrives at a height, the sun under this cosine.
 class SunTable {
  public:
   explicit SunTable(double turbidity) : values_(size_t(heights) * cosines) {
@@ -72,7 +72,7 @@ class SunTable {
  private:
   static constexpr int heights = 48, cosines = 257;
   std::vector<dvec3> values_;
-  static double cosine_of(int j) {  // dense about the horizon
+  static double cosine_of(int j) {  // values are dense about the horizon
     double x = 2.0 * j / (cosines - 1) - 1;
     return x * x * x;
   }
@@ -90,7 +90,8 @@ class SunTable {
 };
 
 double rayleigh_phase(double cosine) { return 3 / (16 * pi_) * (1 + cosine * cosine); }
-// Henyey and Greenstein's, as Cornette and Shanks made it physical (1992).
+// Returns the phase function of Henyey and Greenstein, as Cornette and Shanks made it physical
+// (1992).
 double haze_phase(double cosine) {
   double g = haze_forward, g2 = g * g;
   return 3 / (8 * pi_) * (1 - g2) * (1 + cosine * cosine) /
@@ -99,10 +100,11 @@ double haze_phase(double cosine) {
 
 struct Atmosphere {
   double turbidity;
-  dvec3 sun;  // towards it; y is up
+  dvec3 sun;  // towards the sun; y is up
   const SunTable& sunlight;
   static constexpr int levels = 24;
-  dvec3 further[levels];  // what has scattered more than once, the same from all sides, by height
+  // Light that has scattered more than once, the same from all sides, by height.
+  dvec3 further[levels];
 
   Atmosphere(double turbidity_, dvec3 sun_, const SunTable& sunlight_)
       : turbidity(turbidity_), sun(sun_), sunlight(sunlight_) {
@@ -122,8 +124,8 @@ struct Atmosphere {
     return glm::mix(further[i], further[i + 1], x - i);
   }
 
-  // Light that scatters towards a place on `direction`; `once`: isotropic and without `further`,
-  // and then `passed` is what scatters of light that is 1 everywhere.
+  // Returns the light that scatters towards a place on `direction`; `once`: isotropic and without
+  // `further`; `passed`: gets what scatters of light that is 1 everywhere.
   dvec3 gather(double r, dvec3 direction, int steps, bool once, dvec3* passed) const {
     bool ground = meets_ground(r, direction.y);
     double length = to_sphere(r, direction.y, ground ? earth : top);
@@ -142,8 +144,8 @@ struct Atmosphere {
                : lit * (air.rayleigh * rayleigh_phase(cosine) + air.haze * haze_phase(cosine)) +
                      all * further_at(at);
       dvec3 kept = glm::exp(-air.lost * step);
-      dvec3 share =
-          (1.0 - kept) / glm::max(air.lost, dvec3(1e-20));  // of the step, as it thins out
+      // The share counts the step as light thins out in it.
+      dvec3 share = (1.0 - kept) / glm::max(air.lost, dvec3(1e-20));
       arrives += through * scatters * share;
       if (passed) *passed += through * all * share;
       through *= kept;
@@ -176,14 +178,14 @@ dvec3 towards_sun(const SkySettings& s) {
   return {std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e)};
 }
 
-// Share of the disc above the horizon.
+// Returns the share of the sun's disc above the horizon.
 double risen(double elevation) {
   double x = std::clamp(glm::radians(elevation) / sun_radius, -1.0, 1.0);
   return std::max(0.0, 0.5 + (x * std::sqrt(1 - x * x) + std::asin(x)) / pi_);
 }
 
 dvec3 sun_irradiance(const SkySettings& s, const SunTable& sunlight) {
-  // What is left above the horizon of a setting sun is seen just above it.
+  // The part of a setting sun that is left above the horizon is seen just above it.
   double cosine = std::max(std::sin(glm::radians(s.elevation)), 1e-4);
   return sunlight(earth + eye_height, cosine) * (sun_outside * s.strength * risen(s.elevation));
 }
@@ -211,7 +213,7 @@ std::vector<Daylight> eval_daylight(const SkySettings& settings,
     const Atmosphere air(now.turbidity, towards_sun(now), sunlight);
     dvec3 sky(0);
     for (int k = 0; k < rows * columns; k++) {
-      // Evenly over the ground's view of the sky: cosine of the zenith angle, squared.
+      // Directions are even over the ground's view of the sky: cosine of the zenith angle, squared.
       const double cosine = std::sqrt((k / columns + 0.5) / rows),
                    flat = std::sqrt(1 - cosine * cosine),
                    phi = 2 * pi_ * (k % columns + 0.5) / columns;
@@ -234,7 +236,7 @@ void add_sky(const SkySettings& settings, Scene& scene) {
   image.height = height;
   image.texels.resize(size_t(width) * height);
   double scale = sun_outside * settings.strength;
-  std::vector<dvec3> sky_irradiance(height / 2, dvec3(0));  // on the ground, row by row
+  std::vector<dvec3> sky_irradiance(height / 2, dvec3(0));  // irradiance on the ground, row by row
   parallel_for(height / 2, [&](int y) {
     double theta = pi_ * (y + 0.5) / height;
     for (int x = 0; x < width; x++) {

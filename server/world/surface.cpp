@@ -8,7 +8,7 @@
 namespace wellspring::world {
 namespace {
 
-// The triangle of a hit with its weights; interpolates any per-vertex list.
+// Holds the triangle of a hit with its weights; interpolates any per-vertex list.
 struct Corners {
   uvec3 index;
   vec3 weight;
@@ -23,7 +23,7 @@ Corners corners_of(const Mesh& mesh, uint32_t triangle, vec2 barycentric) {
           {1 - barycentric.x - barycentric.y, barycentric.x, barycentric.y}};
 }
 
-// Unit vector, or `otherwise` where there is no direction. Scaled first: slivers must not
+// Returns the unit vector, or `otherwise` if there is no direction. Scales first: slivers must not
 // underflow.
 vec3 rare_unit_or(vec3 v, vec3 otherwise) {
   float largest = max_component(glm::abs(v));
@@ -37,7 +37,7 @@ inline vec3 unit_or(vec3 v, vec3 otherwise) {
   return usual ? v / std::sqrt(length2) : rare_unit_or(v, otherwise);
 }
 
-// The interpolated normal, made on the winding's side, where its map was painted.
+// Returns the interpolated normal on the winding's side, for which its map was painted.
 inline vec3 shading_normal(const PlacedMesh& placed, const Corners& at, vec3 winding) {
   vec3 shading = at(placed.mesh->normals);
   if (!placed.in_place) shading = placed.normal_to_world * shading;
@@ -58,9 +58,10 @@ inline vec4 lookup(const Scene& scene, const Mesh& mesh, const Corners& at,
   return reference.texture < 0 ? vec4(1) : read_picture(scene, mesh, at, reference);
 }
 
-// Along u and v of the picture, on the winding's side; the mesh must have tangents.
+// Holds directions along u and v of the picture, on the winding's side; the mesh must have
+// tangents.
 struct TangentFrame {
-  vec3 tangent, bitangent;  // zero where the mesh gives no direction
+  vec3 tangent, bitangent;  // zero if the mesh gives no direction
 };
 
 TangentFrame tangent_frame(const PlacedMesh& placed, const Corners& at, vec3 normal) {
@@ -72,7 +73,7 @@ TangentFrame tangent_frame(const PlacedMesh& placed, const Corners& at, vec3 nor
   return {tangent, placed.mirrored ? -bitangent : bitangent};
 }
 
-// glTF 2.0 section 3.9.3: the map's normal in the frame of tangent, bitangent and normal.
+// Returns the map's normal in the frame of tangent, bitangent and normal (glTF 2.0 section 3.9.3).
 vec3 mapped_normal(const Scene& scene, const PlacedMesh& placed, const Corners& at, vec3 normal,
                    const TextureRef& texture, float scale) {
   const Mesh& mesh = *placed.mesh;
@@ -82,14 +83,15 @@ vec3 mapped_normal(const Scene& scene, const PlacedMesh& placed, const Corners& 
   return unit_or(frame.tangent * map.x + frame.bitangent * map.y + normal * map.z, normal);
 }
 
-// The side the ray came from; interpolated or mapped beyond the horizon: brought back, just above.
+// Turns a normal to the side the ray came from; one beyond the horizon, by interpolation or a map,
+// is brought back just above it.
 vec3 turned_to_viewer(vec3 normal, vec3 geometric, bool front) {
   if (!front) normal = -normal;
   float height = dot(normal, geometric);
   return height < 1e-3f ? unit_or(normal + geometric * (1e-3f - height), geometric) : normal;
 }
 
-// KHR_materials_anisotropy: the picture's direction, turned by the factor's angle.
+// Applies KHR_materials_anisotropy: the picture's direction, turned by the factor's angle.
 void resolve_anisotropy(const Scene& scene, const PlacedMesh& placed, const Corners& at,
                         vec3 normal, Surface& surface) {
   const Mesh& mesh = *placed.mesh;
@@ -140,7 +142,8 @@ void resolve_material(const Scene& scene, const PlacedMesh& placed, const Corner
     surface.specular_color *= vec3(lookup(scene, mesh, at, m.specular_color_texture));
 }
 
-// KHR_materials_clearcoat and KHR_materials_sheen. `normal`: as interpolated, before any map.
+// Applies KHR_materials_clearcoat and KHR_materials_sheen. `normal`: as interpolated, before any
+// map.
 void resolve_layers(const Scene& scene, const PlacedMesh& placed, const Corners& at, vec3 normal,
                     Surface& surface) {
   const Mesh& mesh = *placed.mesh;
@@ -166,10 +169,11 @@ void resolve_layers(const Scene& scene, const PlacedMesh& placed, const Corners&
   }
 }
 
-// A triangle without area faces everything.
+// Returns whether the winding's front faces the ray; a triangle without area faces everything.
 inline bool faces_ray(vec3 winding, vec3 direction) { return dot(winding, direction) <= 0; }
 
-// Fills `place`; `winding` is unit, towards the winding's front.
+// Holds the result of locate(), which fills `place`; `winding` is unit, towards the winding's
+// front.
 struct Side {
   vec3 winding;
   bool front;
@@ -208,16 +212,16 @@ Face bare_face(const PlacedMesh& placed, uint32_t triangle) {
       glm::max(glm::max(glm::abs(corner[0]), glm::abs(corner[1])), glm::abs(corner[2]));
   face.extent = max_component(farthest);
   if (placed.steps > 0) {
-    // Each coordinate is rounded by its own size, and only what lies along the normal counts.
+    // Each coordinate is rounded by its own size, and only the part along the normal counts.
     constexpr float least_step = 0x1p-16f;
     if (face.normal != vec3(0)) face.extent = dot(glm::abs(face.normal), farthest);
     face.extent = -std::max(placed.steps * 0x1p-23f * face.extent, least_step);
   }
-  face.flat = 0;  // as far as is known
+  face.flat = 0;  // make_face() finds out
   return face;
 }
 
-// The face of a hit, made in `own` where none is kept.
+// Returns the face of a hit, made in `own` if none is kept.
 inline const Face& face_of(const PlacedMesh& placed, uint32_t triangle, Face& own) {
   if (placed.faces) return placed.faces[triangle];
   own = bare_face(placed, triangle);
@@ -335,7 +339,7 @@ vec3 offset_origin(const SurfacePlace& place, vec3 direction) {
     bool behind = dot(place.geometric_normal, direction) < 0;
     return place.position + place.geometric_normal * (behind ? place.extent : -place.extent);
   }
-  // Their constants are for scenes of metres; in a scene of millimetres they would be a gap.
+  // The paper's constants are for scenes of metres; in a scene of millimetres they would be a gap.
   float unit = place.extent > 0 ? std::min(place.extent, 1.0f) : 1.0f;
   float near_zero = unit / 32, float_scale = unit / 65536;
   constexpr float int_scale = 256;
@@ -358,7 +362,7 @@ namespace {
 
 static_assert(sizeof(Face) == 2 * sizeof(Lanes), "a face is two rows of eight numbers");
 
-// The lane's number is taken from `bits`.
+// Takes the lowest lane's number from `bits`.
 inline int next_lane(unsigned& bits) {
   int lane = std::countr_zero(bits);
   bits &= bits - 1;
@@ -372,7 +376,7 @@ LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& dire
   static const Face nowhere{};
   LambertSurfaceLanes s;
   const Face* faces[lane_count];
-  Face own[lane_count];  // of what is not plain, as flat as it is there
+  Face own[lane_count];  // faces of lanes that are not plain, flat at the hit
   float color[3][lane_count] = {};
   for (int i = 0; i < lane_count; i++) faces[i] = &nowhere;
   Lanes u{}, v{};
@@ -419,7 +423,7 @@ LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& dire
 }
 
 Lanes3 offset_origins(const LambertSurfaceLanes& s, const Lanes3& direction) {
-  // offset_origin's constants, and its reasons.
+  // These are offset_origin's constants, for the same reasons.
   const Lanes one = all_lanes(1), zero{};
   Lanes small = lanes_min(s.extent, one), unit = s.extent > zero ? small : one;
   Lanes near_zero = unit / 32, near_step = unit / 65536 * small;
@@ -430,7 +434,7 @@ Lanes3 offset_origins(const LambertSurfaceLanes& s, const Lanes3& direction) {
     Lanes stepped = Lanes(LaneMask(p) + (p < zero ? -steps : steps));
     return lanes_abs(p) < near_zero ? p + near_step * normal : stepped;
   };
-  if (negative_lanes(s.extent < zero)) {  // of a scene: all or none
+  if (negative_lanes(s.extent < zero)) {  // in a scene all or none are below 0
     Lanes step = lanes_max(-s.extent, zero);
     return s.position + n * step;
   }

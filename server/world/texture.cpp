@@ -9,7 +9,7 @@
 namespace wellspring::world {
 namespace {
 
-// IEC 61966-2-1: 8-bit code to linear.
+// Makes the table from 8-bit codes to linear values of IEC 61966-2-1.
 std::array<float, 256> make_srgb_table() {
   std::array<float, 256> table{};
   for (int i = 0; i < 256; i++) {
@@ -82,7 +82,7 @@ inline vec3 unpack_roots(uint32_t p) {
   return root * root;
 }
 
-// The texels of the larger picture below one of the smaller, and how much of each.
+// Holds the texels of the larger picture below one of the smaller, and how much of each.
 struct Span {
   int first = 0, count = 0;
   float weight[4] = {};
@@ -173,7 +173,7 @@ LaneTaps taps(Lanes coordinate, int size, Wrap wrap) {
     coordinate -= 2 * floor_lanes(0.5f * coordinate);
     coordinate = coordinate > 1 ? 2 - coordinate : coordinate;
   }
-  // Not a number counts as 0.
+  // NaN counts as 0.
   coordinate = coordinate >= 0 ? lanes_min(coordinate, all_lanes(1)) : all_lanes(0);
   Lanes x = coordinate * float(size) - 0.5f, low = floor_lanes(x);
   LaneMask first = __builtin_convertvector(low, LaneMask), second = first + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures on surfaces. glTF 2.0 section 3.8 (samplers, sRGB) and KHR_texture_transform.
+// Defines pictures on surfaces: glTF 2.0 section 3.8 (samplers, sRGB) and KHR_texture_transform.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -12,18 +12,18 @@
 
 namespace wellspring::world {
 
-// Where a texture coordinate falls between texels (glTF 2.0 section 3.8.4).
+// Finds where a texture coordinate falls between texels (glTF 2.0 section 3.8.4).
 
 enum class Wrap : uint8_t { repeat, mirror, clamp };
 
-// The two texels on one axis and the weight of the second.
+// Holds the two texels on one axis and the weight of the second.
 struct Taps {
   int first, second;
   float weight;
 };
 
-// Where `coordinate` (texture space, any finite value) falls on an axis of `size` texels, in [0,
-// size].
+// Returns where `coordinate` (texture space, any finite value) falls on an axis of `size` texels,
+// in [0, size].
 inline float wrapped(float coordinate, int size, Wrap wrap) {
   switch (wrap) {
     case Wrap::repeat: coordinate -= std::floor(coordinate); break;
@@ -44,11 +44,11 @@ inline Taps linear_taps(float coordinate, int size, Wrap wrap) {
     if (first < 0) first += size;
     if (second >= size) second -= size;
   }
-  // Mirrored and clamped pictures meet their own edge texel there.
+  // Mirrored and clamped pictures meet their own edge texel at the border.
   return {glm::clamp(first, 0, size - 1), glm::clamp(second, 0, size - 1), x - low};
 }
 
-// A decoded image. Exactly one of `texels8` (RGBA, 4 bytes a texel) and `texels` (float RGBA,
+// Holds a decoded image. Exactly one of `texels8` (RGBA, 4 bytes a texel) and `texels` (float RGBA,
 // linear) is filled; top row first.
 struct Image {
   std::string name;
@@ -58,31 +58,31 @@ struct Image {
   std::vector<vec4> texels;
 };
 
-// An image with a way to read it.
+// Holds an image with a way to read it.
 struct Texture {
   int image = -1;
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   bool nearest = false;  // nearest texel instead of bilinear
 };
 
-// A material's use of a texture. texture < 0: none, and the factor alone counts.
+// Holds a material's use of a texture. texture < 0: none, and the factor alone counts.
 struct TextureRef {
   int texture = -1;
   int uv_set = 0;
   mat3 uv_transform{1};  // applied to (u, v, 1)
 };
 
-// Linear RGBA at (u, v). Any finite uv; non-finite uv gives texel 0. Texels that are not finite
-// read as 0. An image without texels reads as 1 everywhere.
+// Returns linear RGBA at (u, v). Any finite uv; non-finite uv gives texel 0. Texels that are not
+// finite read as 0. An image without texels reads as 1 everywhere.
 vec4 eval_texture(const Image& image, const Texture& texture, vec2 uv);
-// The linear value of an 8-bit sRGB code (IEC 61966-2-1).
+// Returns the linear value of an 8-bit sRGB code (IEC 61966-2-1).
 float decode_srgb(uint8_t code);
 
-// Pictures made smaller beforehand (Williams, "Pyramidal Parametrics", 1983), for those who look
-// once a pixel: what is far away neither sparkles nor costs a cache miss a texel.
+// Makes pictures smaller beforehand (Williams, "Pyramidal Parametrics", 1983), for code that looks
+// once a pixel: far surfaces neither sparkle nor cost a cache miss a texel.
 
-// Half the size, a quarter, and so on down to one texel; the picture itself is not repeated. Texels
-// are the roots of linear RGB in [0, 1], 8 bits each.
+// Holds a picture at half the size, a quarter, and so on down to one texel, but not the picture
+// itself. Texels are the roots of linear RGB in [0, 1], 8 bits each.
 struct TexturePyramid {
   struct Level {
     int width = 0, height = 0;
@@ -91,26 +91,26 @@ struct TexturePyramid {
   std::vector<Level> levels;
 };
 
-// Averages of linear light; a third of the picture's memory. Without levels for pictures of floats,
-// which may exceed 1, and for those read by the nearest texel, where edges are meant.
+// Makes a pyramid of averages of linear light; it takes a third of the picture's memory. There are
+// no levels for pictures of floats, which may exceed 1.
 TexturePyramid make_pyramid(const Image& image);
 
-// Which of the levels is read by a pixel that is `texels` texels of the picture wide; 0: the
-// picture itself.
+// Returns the level that a pixel reads which is `texels` texels of the picture wide; 0: the picture
+// itself.
 inline int pyramid_level(float texels) {
-  // The logarithm of the width to base 2, rounded: the exponent of the width over the root of one
-  // half.
+  // This is the logarithm of the width to base 2, rounded: the exponent of the width over the root
+  // of one half.
   int level = int(std::bit_cast<uint32_t>(texels * 1.41421356f) >> 23 & 255) - 127;
   return texels > 1 ? level : 0;
 }
 
-// Linear RGB at (u, v) as seen by a pixel that is `texels` texels of the picture wide. As
-// eval_texture() where that is less than about one and a half.
+// Returns linear RGB at (u, v) as seen by a pixel that is `texels` texels of the picture wide. Does
+// as eval_texture() if that is less than about one and a half.
 vec3 eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Texture& texture,
                   vec2 uv, float texels);
 
-// The same for eight places at once, bilinear in the roots of light where it is made smaller.
-// False: not done, because the picture is of floats, or read by the nearest texel.
+// Does the same for eight places at once, bilinear in the roots of light at smaller levels. False:
+// not done, because the picture is of floats, or read by the nearest texel.
 bool eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Texture& texture,
                   Lanes u, Lanes v, float texels, Lanes (&rgb)[3]);
 

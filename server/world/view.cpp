@@ -45,7 +45,7 @@ View make_view_towards(const Scene& scene, dvec3 eye, dvec3 target, vec3 up, flo
   vec3 forward = std::isfinite(length) && length > 0 ? vec3(line / length) : vec3(0, 0, -1);
   if (!is_finite(up) || dot(up, up) == 0) up = vec3(0, 1, 0);
   vec3 right = cross(forward, normalize(up));
-  if (dot(right, right) < 1e-8f) {  // parallel: any axis that is not
+  if (dot(right, right) < 1e-8f) {  // parallel: take any other axis
     vec3 other = std::abs(forward.z) < 0.9f ? vec3(0, 0, -1) : vec3(0, 1, 0);
     right = cross(forward, other);
   }

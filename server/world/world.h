@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where rays end: a thin wrapper of Embree (3 or 4; world/embree.h hides the difference). The
+// Finds where rays end: a thin wrapper of Embree (3 or 4; world/embree.h hides the difference). The
 // static scene is built once; moving meshes (the storyteller) are refitted each tick.
 #pragma once
 #include <cmath>
@@ -13,20 +13,20 @@
 
 namespace wellspring::world {
 
-// How bright a lamp of the scene is: 0 off, lamp_full as the scene has it.
+// Says how bright a lamp of the scene is: 0 off, lamp_full as the scene has it.
 
 using LampLevel = uint8_t;
-using LampLevels = std::vector<LampLevel>;  // of each of the scene's lamps
+using LampLevels = std::vector<LampLevel>;  // one for each of the scene's lamps
 inline constexpr LampLevel lamp_full = 255;
 
-// Times the scene's own light; exactly 0 and 1 at the ends. The square of the level, so that steps
-// in the dark are small, too.
+// Returns the factor of the scene's own light; exactly 0 and 1 at the ends. The square of the
+// level, so that steps in the dark are small, too.
 inline float brightness_of(LampLevel level) {
   const float share = float(level) / float(lamp_full);
   return share * share;
 }
 
-// The level of that brightness, 0 to 1.
+// Returns the level of that brightness, 0 to 1.
 inline LampLevel level_of(float brightness) {
   return LampLevel(std::lround(float(lamp_full) * std::sqrt(brightness)));
 }
@@ -36,17 +36,17 @@ struct Ray {
   float t_min = 0;
   vec3 direction{0, 0, -1};
   float t_max = std::numeric_limits<float>::infinity();
-  // It comes from the eye, straight or through thin panes: for it back faces are not there
-  // (PlacedMesh::one_sided). view_ray() says so; light is stopped by both sides.
+  // The ray comes from the eye, straight or through thin panes: it passes back faces
+  // (PlacedMesh::one_sided). view_ray() sets it; light is stopped by both sides.
   bool from_eye = false;
 };
 
-// Rays side by side, as vector units want them; t_min is 0.
+// Holds rays side by side, as vector units want them; t_min is 0.
 struct RayPacket {
   static constexpr int lanes = 16;
   alignas(64) float origin_x[lanes], origin_y[lanes], origin_z[lanes];
   alignas(64) float direction_x[lanes], direction_y[lanes], direction_z[lanes], t_max[lanes];
-  uint32_t from_eye = 0;  // a bit a lane, as in Ray; packets of occluders have no use for it
+  uint32_t from_eye = 0;  // a bit a lane, as in Ray; not used for occluders
 };
 
 struct Hit {
@@ -57,19 +57,20 @@ struct Hit {
   bool valid() const { return instance != 0xffffffffu; }
 };
 
-// Triangles of thin transmitting materials that a ray passed, each once, in no order.
+// Holds triangles of thin transmitting materials that a ray passed, each once, in no order.
 struct PanesPassed {
   static constexpr int most = 16;
   Hit hits[most];
   int count = 0;
-  bool more = false;  // than fit: the ray was taken for blocked
+  bool more = false;  // more triangles than fit: the ray was taken for blocked
 };
 
-// Rays this thread has traced so far, nearest hits and occluders alike: for measurements.
+// Returns how many rays this thread has traced so far, nearest hits and occluders alike: for
+// measurements.
 uint64_t rays_traced();
 
-// What shading wants of a triangle that stands still, in one cache line, world space. Places are
-// corner + edge1 * barycentric.x + edge2 * barycentric.y.
+// Holds what shading needs of a triangle that stands still, in one cache line, world space. Places
+// are corner + edge1 * barycentric.x + edge2 * barycentric.y.
 struct alignas(64) Face {
   vec3 corner;
   float extent;  // SurfacePlace
@@ -80,32 +81,33 @@ struct alignas(64) Face {
   vec3 normal;      // unit, towards the side the winding faces; 0: a triangle without area
 };
 
-// All there is to know about an instance of a World, in one place for the shading loop.
+// Holds all about an instance of a World, in one place for the shading loop.
 struct PlacedMesh {
   const Mesh* mesh = nullptr;
   const Material* material = nullptr;
   uint32_t object = 0;
   bool moving = false;
-  bool in_place = false;  // its vertices are in world space as they are
+  bool in_place = false;  // its vertices are in world space already
   bool mirrored = false;  // its winding is turned round (gltf::is_mirrored())
   mat4 to_world{1};
   // Inverse transpose of the upper 3x3 up to a positive factor: normalise after using it.
   mat3 normal_to_world{1};
-  const Face* faces = nullptr;  // of its triangles; null: it moves, or is one of very many copies
-  uint32_t paints = 0;          // how often its material was repainted
-  bool one_sided = false;       // the eye does not see its back faces (Scene::cull_back_faces)
-  // Its triangles are so small where it is that world coordinates are too coarse for them: the tree
-  // and faces have them relative to its place, to_world[3] (world/world_build.h).
+  // One for each triangle; null: it moves, or is one of very many copies.
+  const Face* faces = nullptr;
+  uint32_t paints = 0;     // how often its material was repainted
+  bool one_sided = false;  // the eye does not see its back faces (Scene::cull_back_faces)
+  // Its triangles are so small for its place that world coordinates are too coarse for them: the
+  // tree and faces have them relative to to_world[3] (world/world_build.h).
   bool apart = false;
-  float steps = 0;  // not 0: SurfacePlace::extent counts so many steps of a coordinate
+  float steps = 0;  // not 0: SurfacePlace::extent counts this many steps of a coordinate
 };
 
-// A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest
+// Holds a scene with moving meshes. Instances [0, scene.instances.size()) are the scene's; the rest
 // are `moving`, whose vertices are already in world space. Built once per exhibit; not copyable.
 class World {
  public:
   // Borrows `scene` for its lifetime. `moving` meshes keep their triangle count for ever.
-  // moving_object[i] is the object id samples of moving[i] carry (append the name to scene.objects
+  // moving_object[i] is the object id of samples of moving[i] (append the name to scene.objects
   // first).
   World(const Scene& scene, std::vector<Mesh> moving = {},
         std::vector<uint32_t> moving_object = {});
@@ -122,51 +124,53 @@ class World {
   const mat3& normal_to_world(uint32_t instance) const;  // as in PlacedMesh
   bool any_apart() const;                                // PlacedMesh::apart
   bool is_moving(uint32_t instance) const;
-  Bounds moving_bounds() const;  // of all moving meshes that are visible; empty: low above high
+  // Bounds of all moving meshes that are visible; empty: low above high.
+  Bounds moving_bounds() const;
   bool is_visible(uint32_t instance) const;           // false: moving, and hidden by show()
   const PlacedMesh& placed(uint32_t instance) const;  // all of the above at once
 
-  // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit()
-  // afterwards, while no ray is being traced. A vertex that is not finite stays where it was.
-  // Tangents, where the mesh has them, are found anew. `mirrored`: the triangles show their front
-  // where they are clockwise.
+  // Replaces a moving mesh's vertices (same counts); show() shows or hides it. Call commit()
+  // afterwards, while no ray is being traced. A vertex that is not finite stays where it was. If
+  // the mesh has tangents, they are computed anew. `mirrored`: clockwise triangles show their
+  // front.
   void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals,
             bool mirrored = false);
   void show(int moving, bool visible);
   void commit();
-  // Changes how a material looks that `repaints`, on the meshes that move; the scene's own stays as
+  // Changes how a material that `repaints` looks on the meshes that move; the scene's own stays as
   // it is. The change counts from the scene's, not from the last one. While no ray is being traced.
   void repaint(int material, const Repaint& change);
-  uint64_t paints() const;  // how often anything was repainted
+  uint64_t paints() const;  // number of repaints so far
 
-  // The scene's lamps, by their numbers; all are full at first. While no ray is being traced.
-  // Lights have to be told: light/known/lamps.h.
+  // Dims the scene's lamps, by their numbers; all are full at first. While no ray is being traced.
+  // Lights have to be updated, too: light/known/lamps.h.
   void set_lamp(int lamp, LampLevel level);
   const LampLevels& lamp_levels() const;
 
-  // Nearest hit. Surfaces with alpha are passed through where their alpha says so (mask: cut-off;
-  // blend: stochastically, decided by a hash of the ray and the hit, so that a replay agrees).
-  // Rays of the eye pass back faces of what is one_sided: who meets one is traced again, so that
-  // where none is seen this costs a look at the hit's normal.
-  // Thread-safe between commits. A ray that is not finite hits nothing.
+  // Returns the nearest hit. Rays pass surfaces with alpha where their alpha says so (mask:
+  // cut-off; blend: stochastically, decided by a hash of the ray and the hit, so that a replay
+  // agrees). Rays of the eye pass back faces of instances that are one_sided: a ray that meets one
+  // is traced again, so that other rays only pay for a look at the hit's normal. Thread-safe
+  // between commits. A ray that is not finite hits nothing.
   Hit intersect(const Ray& ray) const;
-  // Anything between t_min and t_max? Alpha as above. Glass counts as opaque.
+  // Returns whether anything lies between t_min and t_max. Alpha as above. Glass counts as opaque.
   bool occluded(const Ray& ray) const;
-  // The same, but thin transmitting materials are passed and told: what they let through is the
-  // caller's to say.
+  // Does the same, but rays pass thin transmitting materials, which `panes` gets: the caller finds
+  // how much light they let through.
   bool occluded(const Ray& ray, PanesPassed& panes) const;
-  // `count` coherent rays at once; results are those of intersect().
+  // Traces `count` coherent rays at once; results are those of intersect().
   void intersect_many(const Ray* rays, Hit* hits, int count) const;
-  // Bit i of the answer: occluded(ray i), for the rays whose bit is set in `active`. Pays where
-  // rays from neighbouring places go to one light: measured 2.8 times as fast as one by one.
+  // Returns occluded(ray i) as bit i, for the rays whose bit is set in `active`. Pays if rays from
+  // neighbouring places go to one light: measured 2.8 times as fast as one by one.
   uint32_t occluded_packet(const RayPacket& rays, uint32_t active) const;
-  // One by one: intersect() and occluded() of the rays whose bit is set in `active`, with less to
-  // do around each. Pays where rays have nothing in common. hits[i] is ray i's.
+  // These call intersect() and occluded() one by one for the rays whose bit is set in `active`,
+  // with less work around each. Pays if rays have nothing in common. hits[i] is ray i's.
   void intersect_each(const RayPacket& rays, uint32_t active, Hit* hits) const;
   uint32_t occluded_each(const RayPacket& rays, uint32_t active) const;
-  // Triangles that the unit direction `way` crosses between `before` metres before `place` and
-  // `after` behind it (Hit::t from there); as wide as that they may pass beside it. At most `most`
-  // of them, in no order; those nearly parallel to `way` do not count, nor does alpha.
+  // Finds triangles that the unit direction `way` crosses between `before` metres before `place`
+  // and `after` behind it (Hit::t from there); the line may pass beside a triangle by as much as
+  // the larger of these. Returns at most `most`, in no order; triangles nearly parallel to `way` do
+  // not count, nor does alpha.
   int find_near(vec3 place, vec3 way, float before, float after, Hit* hits, int most) const;
 
  private:

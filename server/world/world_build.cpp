@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From meshes to Embree scenes.
+// Builds Embree scenes from meshes.
 #include "world/world_build.h"
 
 #include <algorithm>
@@ -74,28 +74,30 @@ bool passes(const Scene& scene, const PlacedMesh& placed, uint32_t instance, uin
 
 namespace {
 
-// Nearer to the origin a float's step is below a thirtieth of a millimetre.
+// Metres; nearer to the origin a float's step is below a thirtieth of a millimetre.
 constexpr float near_enough = 256;
-// Triangles that are so many steps (2^-23 of the largest coordinate) across show none of them. Rays
-// would start as far as 256 steps off them otherwise (offset_origin).
+// Triangles that are so many steps (2^-23 of the largest coordinate) across show no steps.
+// Otherwise rays would start as far as 256 steps off them (offset_origin).
 constexpr float fine_steps = 1024;
 // An instance that reaches as far as a fourth of its distance gains too little.
 constexpr float compact = 0.25f;
-// A position's error in steps. Its corner is rounded, and so are sum and the next ray's origin, by
-// half a step in each of three directions: twice 0.87. What is not apart is as inexact as its
-// corners.
+// Bounds a position's error in steps. A corner of an apart instance is rounded, and so are sum and
+// the next ray's origin, by half a step in each of three directions: twice 0.87. A surface that is
+// not apart is as inexact as its corners.
 constexpr float apart_steps = 3, usual_steps = 8;
 
-// Smallest across of the mesh's triangles, were they all alike: from their number and its size.
+// Returns whether an instance must be kept apart: from the size of the mesh's triangles, were they
+// all alike, by their number and the mesh's size.
 bool is_apart(const Mesh& mesh, const Bounds& box, const mat4& to_world) {
   if (mesh.triangles.empty() || !(box.low.x <= box.high.x)) return false;
   const vec3 half = 0.5f * (box.high - box.low), middle = 0.5f * (box.high + box.low);
-  vec3 reach(0);  // of the box in the world
+  vec3 reach(0);  // half size of the box in the world
   for (int i = 0; i < 3; i++) reach += glm::abs(vec3(to_world[i])) * half[i];
   const float radius = glm::length(reach);
   const vec3 turned = mat3(to_world) * middle;
   const float largest = max_component(glm::abs(turned + vec3(to_world[3])) + reach);
-  const float off = glm::length(turned) + radius;  // its farthest point from its own origin
+  // Distance of its farthest point from its own origin.
+  const float off = glm::length(turned) + radius;
   if (!(largest > near_enough) || !std::isfinite(largest) || off > compact * largest) return false;
   const float across = 2 * radius / std::sqrt(float(mesh.triangles.size()));
   return across < fine_steps * 0x1p-23f * largest;
@@ -128,12 +130,14 @@ namespace {
 
 // Repeated meshes are copied into world space while all copies together stay below this many
 // triangles: measured, a flat scene is traced 1.5 times as fast, for 200 bytes a triangle. Beyond
-// it they become Embree instances.
+// this number they become Embree instances.
 constexpr size_t flat_triangle_budget = 1'000'000;
-constexpr size_t high_quality_limit = 4'000'000;  // beyond it the build trades quality for time
+// Triangles; beyond, the build trades quality for time.
+constexpr size_t high_quality_limit = 4'000'000;
 
-// Inverse transpose up to a positive factor, also for flattened (singular) transforms: the cofactor
-// matrix, which is the determinant times the inverse transpose, with the sign taken out.
+// Returns the inverse transpose up to a positive factor, also for flattened (singular) transforms:
+// the cofactor matrix, which is the determinant times the inverse transpose, with the sign taken
+// out.
 mat3 normal_matrix(const mat4& to_world) {
   mat3 m(to_world);
   float largest = 0;
@@ -176,7 +180,7 @@ RTCDevice shared_device() {
   return device;
 }
 
-// Builds the scene's tree. Embree asks from whichever thread builds.
+// Builds the scene's tree. Embree asks for cancelling from whichever thread builds.
 static void build_tree(RTCScene scene) {
   std::stop_token stop = cancel_token();
   rtcSetSceneProgressMonitorFunction(
@@ -253,8 +257,8 @@ void World::Impl::filter_shadow(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
-// A triangle geometry with its own copy of the vertices, in world space if `to_world` is given.
-// Embree has no empty buffers, so an empty mesh becomes one point, which nothing hits.
+// Makes a triangle geometry with its own copy of the vertices, in world space if `to_world` is
+// given. Embree has no empty buffers, so an empty mesh becomes one point, which nothing hits.
 RTCGeometry World::Impl::make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
                                        RTCBuildQuality quality) {
   RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -285,8 +289,8 @@ RTCGeometry World::Impl::make_geometry(const Mesh& mesh, const mat4* to_world, c
   return geometry;
 }
 
-// A tree of its own, relative to its place, so that a ray is told in those coordinates: subtracting
-// what is near loses nothing.
+// Makes a tree of its own, relative to the instance's place, so that rays reach it in those
+// coordinates: subtracting a near place loses nothing.
 RTCGeometry World::Impl::make_apart(uint32_t i, RTCBuildQuality quality) {
   const Instance& instance = scene->instances[i];
   mat4 turned = instance.to_world, moved(1);
@@ -317,7 +321,7 @@ void World::Impl::build_faces(PlacedMesh& instance, std::vector<Face>& list) {
 
 void World::Impl::build_still() {
   faces.resize(scene->instances.size());
-  // Which meshes are repeated so often that copying them would take too much? Those with
+  // Find the meshes that are repeated so often that copying them would take too much. Those with
   // the fewest triangles in all are copied first.
   std::vector<size_t> uses(scene->meshes.size(), 0);
   for (const Instance& instance : scene->instances) uses[size_t(instance.mesh)]++;
@@ -417,7 +421,7 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
     for (vec3& p : mesh.positions)
       if (!is_finite(p)) p = vec3(0);
   }
-  // Lamps are made of copies of materials, which may be dimmed.
+  // Lamps get copies of materials, which may be dimmed.
   w.lamp_levels.assign(scene.lamps.size(), lamp_full);
   for (const Lamp& lamp : scene.lamps)
     for (int material : lamp.materials)
@@ -436,7 +440,7 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
                         instance.to_world == mat4(1), gltf::is_mirrored(dmat4(instance.to_world)),
                         instance.to_world, normal_matrix(instance.to_world)});
   }
-  // What moves wears copies of materials that may change.
+  // Moving meshes get copies of materials that may change.
   auto worn = [&](int number) -> const Material* {
     const Material& own = scene.materials[size_t(number)];
     if (!own.repaints) return &own;

@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inside of a World, shared by world_rays.cpp (rays) and world_build.cpp (trees). Two Embree
-// scenes: what stands still, built once at high quality, and what moves, refitted by commit(). A
-// ray visits the still one, then the moving one if it meets its box before the hit. Measured
-// against one scene with an instance per moving mesh: no instance transform on the way to walls,
-// and commit() costs nothing that grows with the museum.
+// Holds the inside of a World, shared by world_rays.cpp (rays) and world_build.cpp (trees). Two
+// Embree scenes: one for what stands still, built once at high quality, and one for what moves,
+// refitted by commit(). A ray visits the still one, then the moving one if it meets its box before
+// the hit. Measured against one scene with an instance per moving mesh: no instance transform on
+// the way to walls, and commit() costs nothing that grows with the museum.
 #pragma once
 #include "world/embree.h"
 #include "world/world.h"
 
 namespace wellspring::world {
 
-// One device for the whole process, never released: its threads outlive every World.
+// Returns the one device for the whole process, never released: its threads outlive every World.
 RTCDevice shared_device();
 void count_rays(uint64_t more);  // for rays_traced()
 Bounds box_of(const std::vector<vec3>& positions);
 
 struct World::Impl {
-  // What a filter function needs to know about the geometry it is called for.
+  // Holds what a filter function needs of the geometry for which it is called.
   struct Tag {
     const Impl* impl;
-    uint32_t instance;  // unused inside an Embree instance, whose own id says which it is
+    uint32_t instance;  // unused inside an Embree instance, whose own id tells the instance
     bool instanced;
-    bool alpha = false;  // it has places that rays pass
+    bool alpha = false;  // rays may pass some of its places
     bool pane = false;   // it may be a thin pane somewhere
   };
   struct Query : embree::Context {
     const Ray* rays = nullptr;  // one of these two
     const RayPacket* packet = nullptr;
-    PanesPassed* panes = nullptr;  // where panes are passed and told
+    PanesPassed* panes = nullptr;  // gets the panes that a ray passes; null: panes block it
     Ray ray(unsigned i) const {
       if (rays) return rays[i];
       return {{packet->origin_x[i], packet->origin_y[i], packet->origin_z[i]},
@@ -42,27 +42,27 @@ struct World::Impl {
   std::vector<Mesh> moving;
   std::vector<PlacedMesh> placed;
   std::vector<std::pair<int, std::unique_ptr<Material>>>
-      painted;  // of the scene's materials that repaint
+      painted;  // copies of the scene's materials that repaint
   uint64_t paints = 0;
   std::vector<std::pair<int, std::unique_ptr<Material>>>
-      of_lamps;  // materials that lamps are made of
+      of_lamps;  // copies of the materials of lamps
   LampLevels lamp_levels;
-  std::vector<std::vector<Face>>
-      faces;              // of each instance of the scene, where placed points to them
-  std::vector<Tag> tags;  // reserved up front: geometries point into it
+  std::vector<std::vector<Face>> faces;  // for each instance of the scene, if placed points to them
+  std::vector<Tag> tags;                 // reserved up front: geometries point into it
   RTCScene still_scene = nullptr, moving_scene = nullptr;
-  std::vector<RTCScene> mesh_scenes;     // of the instanced meshes
+  std::vector<RTCScene> mesh_scenes;     // scenes of the instanced meshes
   std::vector<uint32_t> still_instance;  // Embree geometry id -> instance
   std::vector<RTCGeometry> moving_geometry;
   std::vector<char> visible;
   std::vector<Bounds> moving_boxes;
   std::vector<int> moving_tangent_uv;  // texture coordinates of its tangents; -1: it has none
-  std::vector<float> built_area;       // of a moving mesh's box when its tree was last built anew
-  Bounds moving_bounds;                // of all that is visible
-  bool any_moving = false;             // that is visible
+  // Area of each moving mesh's box when its tree was last built anew.
+  std::vector<float> built_area;
+  Bounds moving_bounds;     // bounds of all visible moving meshes
+  bool any_moving = false;  // a moving mesh is visible
   bool any_one_sided = false;
   bool any_apart = false;
-  bool moved = false;  // since the last commit
+  bool moved = false;  // something has moved since the last commit
 
   ~Impl() {
     for (RTCGeometry geometry : moving_geometry) rtcReleaseGeometry(geometry);
@@ -75,9 +75,9 @@ struct World::Impl {
   static void filter_culled(const RTCFilterFunctionNArguments* arguments);
   static void filter_shadow(const RTCFilterFunctionNArguments* arguments);
   static Hit hit_of(const RTCFilterFunctionNArguments* arguments, unsigned i);
-  // Whether the eye does not see what it looks at along `direction`.
+  // Returns whether the eye does not see the hit when it looks along `direction`.
   bool is_culled(const Hit& hit, vec3 direction) const;
-  // With `filter`, which every hit must pass, too.
+  // Returns the nearest hit; every hit must pass `filter`, too.
   Hit nearest(const Ray& ray, RTCFilterFunctionN filter) const;
   // Returns what the eye sees along a ray whose nearest hit is known.
   Hit seen(const Ray& ray, const Hit& hit) const {

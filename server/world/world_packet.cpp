@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays side by side. Each lane's answer is its own: what the other lanes hold does not matter.
+// Traces rays side by side. Each lane's answer is its own, whatever the other lanes hold.
 #include "world/world_packet.h"
 
 #include <bit>
@@ -12,7 +12,7 @@
 namespace wellspring::world {
 namespace {
 
-// Widest packets that the machine traces natively.
+// Returns the widest packets that the machine traces natively.
 int packet_width() {
   static int width = [] {
     RTCDevice device = shared_device();
@@ -24,7 +24,7 @@ int packet_width() {
 
 constexpr float farthest = 1e17f;  // Embree's places end at 1.84e18
 
-// The bits of `active` whose rays are finite and have a length.
+// Returns the bits of `active` whose rays are finite and have a length.
 uint32_t traceable(const RayPacket& p, uint32_t active) {
   uint32_t good = 0;
   for (int i = 0; i < RayPacket::lanes; i += lane_count) {
@@ -41,7 +41,7 @@ uint32_t traceable(const RayPacket& p, uint32_t active) {
   return active & good;
 }
 
-// The bits of `active` whose rays meet the box.
+// Returns the bits of `active` whose rays meet the box.
 uint32_t meeting(const Bounds& box, const RayPacket& p, uint32_t active) {
   if (!(box.low.x <= box.high.x)) return 0;
   float near[RayPacket::lanes], far[RayPacket::lanes];

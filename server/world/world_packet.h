@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Filling the lanes of ray packets.
+// Fills the lanes of ray packets.
 #pragma once
 #include "base/simd.h"
 #include "world/world.h"
 
 namespace wellspring::world {
 
-// Rays against boxes, slab by slab, in a form that compilers turn into vector code: std::fmin and
-// std::fmax are calls.
+// Tests rays against boxes, slab by slab, in a form that compilers turn into vector code: std::fmin
+// and std::fmax are calls.
 
 // Cuts [near, far] of a ray down to the slab [low, high] of one axis; `inverse`: 1 / direction. A
-// ray in the slab's very plane (0 times infinity) is not cut: boxes are asked whether something may
+// ray in the slab's very plane (0 times infinity) is not cut: the test is only whether the box may
 // be met.
 inline void cut_by_slab(float low, float high, float origin, float inverse, float& near,
                         float& far) {
   float a = (low - origin) * inverse, b = (high - origin) * inverse;
   float in = a < b ? a : b, out = a < b ? b : a;
-  bool known = a + b == a + b;  // else within it all along
+  bool known = a + b == a + b;  // else the ray lies in the slab's plane
   in = known ? in : near;
   out = known ? out : far;
   near = in > near ? in : near;
@@ -32,7 +32,7 @@ inline void set_ray(const Ray& ray, int lane, RayPacket& rays) {
   rays.from_eye = (rays.from_eye & ~(1u << lane)) | uint32_t(ray.from_eye) << lane;
 }
 
-// lane_count of them, from lane `first` on, none of the eye.
+// Sets lane_count rays, from lane `first` on, none of them from the eye.
 inline void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max, int first,
                      RayPacket& rays) {
   store_lanes(rays.origin_x + first, origin.x);

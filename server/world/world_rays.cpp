@@ -31,8 +31,8 @@ RTCRayHit to_embree(const Ray& ray) {
   return r;
 }
 
-// False for NaN in origin or direction, for places Embree does not accept (it ends at 1.84e18), and
-// for an empty interval.
+// Returns false for NaN in origin or direction, for places Embree does not accept (it ends at
+// 1.84e18), and for an empty interval.
 bool is_traceable(const Ray& ray) {
   constexpr float farthest = 1e17f;
   vec3 sum = glm::abs(ray.origin) + glm::abs(ray.direction);
@@ -254,7 +254,7 @@ void World::intersect_many(const Ray* rays, Hit* hits, int count) const {
   for (; i < count; i++) hits[i] = intersect(rays[i]);
 }
 
-// Triangles around a place, by Embree's point queries.
+// Finds triangles around a place by Embree's point queries.
 
 namespace {
 
@@ -268,7 +268,7 @@ struct Search {
   int most, count = 0;
 };
 
-// Where the line from `from` along `way` crosses the triangle, as far as `slack` beside it.
+// Finds where the line from `from` along `way` crosses the triangle, as far as `slack` beside it.
 bool cross_triangle(const Search& s, uint32_t instance, uint32_t triangle, Hit& hit) {
   const PlacedMesh& placed = s.world->placed(instance);
   uvec3 index = placed.mesh->triangles[triangle];
@@ -288,14 +288,15 @@ bool cross_triangle(const Search& s, uint32_t instance, uint32_t triangle, Hit& 
   double area = length(normal);
   if (!(area > 0)) return false;
   double slope = dot(normal, s.way) / area;
-  if (std::abs(slope) < 0.05) return false;  // stands across: the next ray meets it
+  // The triangle is nearly parallel to the line: the next ray meets it.
+  if (std::abs(slope) < 0.05) return false;
   double along = dot(normal, c[0]) / (area * slope);
   if (!(along >= -s.before && along <= s.after)) return false;
   glm::dvec3 at = along * s.way;
   double weight[3];
   for (int i = 0; i < 3; i++) {
     glm::dvec3 a = c[(i + 1) % 3], edge = c[(i + 2) % 3] - a;
-    // Distance to the edge times its length.
+    // This is the distance to the edge times its length.
     double inside = dot(cross(edge, at - a), normal) / area;
     if (!(inside >= -s.slack * length(edge))) return false;
     weight[i] = glm::clamp(inside / area, 0.0, 1.0);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a picture is from its reference. Sizes must agree (std::invalid_argument otherwise).
+// Measures how far a picture is from its reference. Sizes must agree (std::invalid_argument
+// otherwise).
 #pragma once
 #include "frame/frame.h"
 
 namespace wellspring::test {
 
-// Root of the mean squared difference over pixels and channels, linear radiance.
+// Returns the root of the mean squared difference over pixels and channels, linear radiance.
 double rmse(const Frame& test, const Frame& reference);
-// Mean of squared difference over (reference luminance squared + 0.01): comparable across
-// brightness.
+// Returns the mean of squared difference over (reference luminance squared + 0.01): comparable
+// across brightness.
 double relative_mse(const Frame& test, const Frame& reference);
 
 }  // namespace wellspring::test

@@ -11,7 +11,7 @@
 namespace wellspring::test {
 namespace {
 
-// One number a pixel.
+// Holds one number a pixel.
 struct Plane {
   int width = 0, height = 0;
   std::vector<float> value;
@@ -45,7 +45,8 @@ vec3 rgb_of(vec3 opponent) {
   return xyz_to_rgb * (vec3(y + opponent.y / 500, y, y - opponent.z / 200) * white);
 }
 
-// L*a*b* with a and b shrunk in the dark, where colours are hard to tell (Hunt; section 4.1).
+// Returns L*a*b* with a and b shrunk in the dark, where colours are hard to tell (Hunt;
+// section 4.1).
 vec3 lab_of(vec3 rgb) {
   constexpr float delta = 6.0f / 29;
   vec3 c = rgb_to_xyz * rgb / white;
@@ -55,7 +56,7 @@ vec3 lab_of(vec3 rgb) {
   return {lightness, 0.01f * lightness * 500 * (c.x - c.y), 0.01f * lightness * 200 * (c.y - c.z)};
 }
 
-// Distance for large differences (Abasi, Tehran and Fairchild 2020).
+// Returns the distance for large differences (Abasi, Tehran and Fairchild 2020).
 float hyab(vec3 a, vec3 b) {
   vec3 d = a - b;
   return std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z);
@@ -63,7 +64,7 @@ float hyab(vec3 a, vec3 b) {
 
 // --- Filters ---------------------------------------------------------------------------------
 
-// Taps from -radius to radius.
+// Holds taps from -radius to radius.
 struct Kernel {
   std::vector<float> tap;
   int radius() const { return int(tap.size() / 2); }
@@ -83,14 +84,16 @@ float sum(const Kernel& kernel) {
   for (float tap : kernel.tap) total += tap;
   return total;
 }
-// Positive taps sum to 1, negative ones to -1: so that a filter's answer lies within [-1, 1].
+// Makes positive taps sum to 1 and negative ones to -1, so that a filter's answer lies within [-1,
+// 1].
 void balance(Kernel& kernel) {
   float positive = 0, negative = 0;
   for (float tap : kernel.tap) (tap > 0 ? positive : negative) += tap;
   for (float& tap : kernel.tap) tap /= tap > 0 ? positive : -negative;
 }
 
-// All the filters are products of a row's and a column's. The picture's edge pixels go on for ever.
+// Filters with the product of a row's and a column's kernel, as all the filters are such products.
+// The picture's edge pixels go on for ever.
 Plane filter(const Plane& in, const Kernel& across, const Kernel& down) {
   Plane rows(in.width, in.height), out(in.width, in.height);
   parallel_ranges(in.height, 8, [&](int begin, int end) {
@@ -119,8 +122,8 @@ Plane filter(const Plane& in, const Kernel& across, const Kernel& down) {
   return out;
 }
 
-// The eye's contrast sensitivity as a filter over the picture: a sum of two Gaussians
-// a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees (equations 2 and 3, table 1).
+// The eye's contrast sensitivity is a filter over the picture: a sum of two Gaussians a sqrt(pi /
+// b) exp(-pi^2 x^2 / b), x in degrees (equations 2 and 3, table 1).
 struct Sensitivity {
   float a[2], b[2];
 };
@@ -177,7 +180,7 @@ Opponent make_opponent(const Image8& image) {
   return out;
 }
 
-// Colours as the eye makes them out at this distance, in Lab (section 4.1).
+// Returns colours as the eye makes them out at this distance, in Lab (section 4.1).
 Opponent make_seen(const Opponent& picture, float pixels_per_degree) {
   Opponent seen{blur_as_seen(picture[0], sensitivities[0], pixels_per_degree),
                 blur_as_seen(picture[1], sensitivities[1], pixels_per_degree),
@@ -192,7 +195,7 @@ Opponent make_seen(const Opponent& picture, float pixels_per_degree) {
   return seen;
 }
 
-// How much of an edge and of a point or line there is at each pixel (section 4.2).
+// Holds how much of an edge and of a point or line there is at each pixel (section 4.2).
 struct Features {
   Plane edge, point;
 };
@@ -219,7 +222,7 @@ Features make_features(const Plane& lightness, float pixels_per_degree) {
   return {magnitude(first), magnitude(second)};
 }
 
-// The colour difference over [0, 1]: what lies beyond the cut-off is squeezed (equation 5).
+// Maps the colour difference to [0, 1]: differences beyond the cut-off are squeezed (equation 5).
 float redistribute(float difference, float largest) {
   float knee = cutoff * largest;
   if (difference < knee) return difference * cutoff_error / knee;

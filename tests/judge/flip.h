@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How different two pictures look when one flips from one to the other on a screen: LDR-FLIP
-// (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, "FLIP: A Difference
-// Evaluator for Alternating Images", HPG 2020). 0: no difference to be seen, 1: black against
-// white. Pure, deterministic, all cores; tens of milliseconds for a million pixels. Sizes must
-// agree and not be 0 (std::invalid_argument otherwise).
+// Measures how different two pictures look when one flips from one to the other on a screen:
+// LDR-FLIP (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, "FLIP: A
+// Difference Evaluator for Alternating Images", HPG 2020). 0: no difference to be seen, 1: black
+// against white. It is pure, deterministic and uses all cores; it takes tens of milliseconds for a
+// million pixels. Sizes must agree and not be 0 (std::invalid_argument otherwise).
 #pragma once
 #include "frame/frame.h"
 #include "frame/tonemap.h"
@@ -11,14 +11,14 @@
 namespace wellspring::test {
 
 struct FlipSettings {
-  // Pixels a degree of the viewer's visual angle: the paper's default, a 0.7 m wide screen of 3840
-  // pixels seen from 0.7 m. Larger: finer detail is lost on the eye.
+  // Pixels a degree of the viewer's visual angle; the paper's default is a 0.7 m wide screen of
+  // 3840 pixels seen from 0.7 m. With more, finer detail is lost on the eye.
   float pixels_per_degree = 67;
 };
 
 struct FlipMap {
   int width = 0, height = 0;
-  std::vector<float> error;  // 0 to 1 for each pixel, top row first
+  std::vector<float> error;  // error of each pixel, 0 to 1, top row first
   double mean = 0;           // the paper's pooling (section 5): one number for the pair
 };
 
@@ -31,7 +31,7 @@ FlipMap eval_flip(const Image8& test, const Image8& reference, const FlipSetting
 FlipMap eval_flip(const Frame& test, const Frame& reference, const Tonemap& display = {},
                   const FlipSettings& settings = {});
 
-// The mean alone.
+// Returns the mean alone.
 double flip(const Frame& test, const Frame& reference, const Tonemap& display = {});
 
 }  // namespace wellspring::test

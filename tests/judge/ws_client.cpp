@@ -10,8 +10,8 @@ namespace wellspring::test {
 
 static constexpr size_t max_answer_bytes = 64 << 20;  // one message from the server
 
-// Every call starts an operation and turns the io_context until that one is done or its time is
-// over. A read that is still waiting then goes on in the next call.
+// Does the work of WsClient: every call starts an operation and runs the io_context until that one
+// is done or its time is over. A read that is still waiting then goes on in the next call.
 struct WsClient::Impl {
   net::io_context io{1};
   websocket::stream<beast::tcp_stream, false> ws{io};
@@ -42,7 +42,7 @@ struct WsClient::Impl {
     start([result](error_code ec) { *result = ec; });
     if (run(timeout, [&] { return result->has_value(); })) return **result;
     drop();
-    run(1, [&] { return result->has_value(); });  // the operation lets go of what it borrowed
+    run(1, [&] { return result->has_value(); });  // the operation releases what it borrowed
     return beast::error::timeout;
   }
 

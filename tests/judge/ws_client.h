@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A WebSocket client for our own programs and tests: one connection, one thread, calls that block
-// up to a given time. Knows no message; wire/json.h and wire/packet.h do.
+// Connects to a WebSocket for our own programs and tests: one connection, one thread, calls that
+// block up to a given time. It knows no messages; wire/json.h and wire/packet.h do.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -31,7 +31,7 @@ class WsClient {
   enum class Got { message, nothing, closed };
 
   WsClient();
-  ~WsClient();  // drops the connection; close() before is the polite way
+  ~WsClient();  // drops the connection; close() before ends it politely
   WsClient(WsClient&&) noexcept;
   WsClient& operator=(WsClient&&) noexcept;
 
@@ -40,18 +40,18 @@ class WsClient {
   // again.
   void connect(const WsTarget& target, double timeout = 5);
 
-  // False: the connection is gone, or the message could not be handed to the kernel in time (then
-  // the connection is dropped, since a half-written message cannot be taken back).
+  // Sends a text. False: the connection is gone, or the message could not be handed to the kernel
+  // in time (then the connection is dropped, since a half-written message cannot be taken back).
   bool send_text(std::string_view text, double timeout = 5);
 
-  // The next message, within `timeout` seconds (0: only what is there already). After `nothing` the
-  // connection is as before; after `closed` close_code() and close_reason() tell what the server
-  // said.
+  // Receives the next message, within `timeout` seconds (0: only what is there already). After
+  // `nothing` the connection is as before; after `closed` close_code() and close_reason() return
+  // the server's.
   Got receive(WsMessage& message, double timeout);
 
   void close(double timeout = 2);  // with the closing handshake
   bool connected() const;
-  std::string subprotocol() const;  // the one that the server chose
+  std::string subprotocol() const;  // subprotocol that the server chose
   int close_code() const;           // 0: none was received
   std::string close_reason() const;
 

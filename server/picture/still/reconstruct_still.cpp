@@ -20,7 +20,7 @@ struct GuidePass {
   const Lights& lights;
   const View& view;
   vec2 place;
-  bool first;  // of the passes
+  bool first;  // whether this is the first pass
   GuidePlanes& planes;
   std::vector<uint8_t>& followed;
 
@@ -33,7 +33,7 @@ struct GuidePass {
   void follow(const VisibleRun& run, uint64_t polished, size_t begin) const;
 };
 
-// Rays at what the run shows of polished surfaces.
+// Sends rays to polished surfaces that the run shows.
 void GuidePass::follow(const VisibleRun& run, uint64_t polished, size_t begin) const {
   Ray rays[RasterRun::most];
   Guide guides[RasterRun::most];
@@ -133,7 +133,7 @@ void finish_reconstruction(const StillSamples& samples, const Denoiser& denoiser
 
 namespace {
 
-// Pixel k of a square, in an order of its own, so that no direction is preferred.
+// Returns pixel k of a square, in an order of the square's own, so that no direction is preferred.
 ivec2 pixel_of_square(uint64_t seed, int column, int row, int k) {
   constexpr uint8_t orders[8][4] = {{0, 3, 1, 2}, {0, 3, 2, 1}, {1, 2, 0, 3}, {1, 2, 3, 0},
                                     {2, 1, 0, 3}, {2, 1, 3, 0}, {3, 0, 1, 2}, {3, 0, 2, 1}};
@@ -142,13 +142,13 @@ ivec2 pixel_of_square(uint64_t seed, int column, int row, int k) {
   return {2 * column + (pixel & 1), 2 * row + (pixel >> 1)};
 }
 
-// Sample i of the view's sequence: where, and how often that pixel has had its turn.
+// A sample of the view's sequence: its pixel, and how often that pixel has had its turn.
 struct Turn {
   ivec2 pixel;
   uint64_t before;
 };
 struct Turns {
-  int columns, rows;  // of squares
+  int columns, rows;  // number of squares
   uint64_t step;
   uint64_t seed;
   Turns(const View& view, uint64_t seed)
@@ -202,7 +202,7 @@ uint64_t plan_still(const View& view, uint64_t first, int count, uint64_t seed,
     const size_t pixel = y * size_t(view.width) + x;
     const int known = pixel < kept.count.size() ? kept.count[pixel] : 0;
     const uint64_t weight = image.weight[y / weight_cell * cells + x / weight_cell];
-    // Not all of those that count less than one in the same turn.
+    // Pixels that count less than one do not all have a sample in the same turn.
     const uint64_t phase = mix64(seed ^ pixel) % weight_one, done = turn.before * weight + phase;
     int samples = int((done + weight) / weight_one - done / weight_one);
     samples = std::min(samples, most_still_samples - known);

@@ -45,15 +45,15 @@ void accumulate_drawn(const std::function<bool(uint32_t)>& moves, bool changes, 
 
 namespace {
 
-constexpr int square_side = 8;  // pixels a side of what takes one share of the mean
-// Samples of a pixel from which on they tell their own noise: two that agree by chance say nothing.
+constexpr int square_side = 8;  // pixels a side of a square that takes one share of the mean
+// Samples of a pixel from which on they show their own noise: two that agree by chance say nothing.
 constexpr int least_judged = 8;
 constexpr int rows_at_once = 8;
 
 int squares(int extent) { return (extent + square_side - 1) / square_side; }
 
-// Sums over pixels: by how much the mean and the picture differ, squared, how much of that is the
-// mean's own noise, and how many pixels tell.
+// Sums over pixels: the squared difference of the mean and the picture, how much of it is the
+// mean's own noise, how many pixels show this, and all pixels.
 struct Difference {
   float squared = 0, noise = 0, judged = 0, pixels = 0;
   void add(const Difference& other) {
@@ -75,8 +75,8 @@ Difference difference_of(const StillSamples& samples, const std::vector<vec3>& c
   return {dot(apart, apart) * (1 / 3.0f), deviation * deviation / float(n), 1, 1};
 }
 
-// The mean's share with the least error, where that of the other is what the two differ by beyond
-// the mean's noise, over 3x3 squares.
+// Finds the mean's share with the least error, over 3x3 squares; the picture's error is taken to be
+// what the two differ by beyond the mean's noise.
 void find_shares(const StillSamples& samples, const std::vector<vec3>& color, ivec2 size,
                  std::vector<float>& shares) {
   const int columns = squares(size.x), rows = squares(size.y);
@@ -99,7 +99,7 @@ void find_shares(const StillSamples& samples, const std::vector<vec3>& color, iv
     }
 }
 
-// Between the middles of squares, shares pass from one to the other.
+// Returns the share at a pixel: it changes gradually between the middles of squares.
 float share_at(const std::vector<float>& shares, int columns, int rows, int x, int y) {
   float across = (float(x) + 0.5f) / square_side - 0.5f,
         down = (float(y) + 0.5f) / square_side - 0.5f;

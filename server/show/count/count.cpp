@@ -12,7 +12,7 @@ void count(Show& show, const char* what, const std::string& thing, double by) {
 
 namespace {
 
-// A tag is whatever a browser says: only those that the exhibit speaks are told apart.
+// Returns the exhibit's language that a tag names, else "other". A tag is whatever a browser says.
 std::string known_language(const Exhibit& exhibit, const std::string& tag) {
   const std::string main = tag.substr(0, tag.find('-'));
   for (const std::string& one : exhibit.languages)
@@ -29,7 +29,7 @@ int riding(const Visitor& visitor) {  // index of the tour; -1: none
 
 void count_visit(Show& show, Visitor& visitor, bool goes_on) {
   if (goes_on) visitor.counted_tour = riding(visitor);
-  if (goes_on || visitor.kiosk) return;  // of a kiosk guests are counted, not its screen
+  if (goes_on || visitor.kiosk) return;  // at a kiosk its guests are counted, not its screen
   count(show, "visits");
   count(show, "languages", known_language(show.exhibit, visitor.lang));
 }

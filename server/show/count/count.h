@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds to the day's sums of a show (Show::sums), in memory. By what, and the key after the
-// exhibit's id:
+// Adds to the day's sums of a show (Show::sums), in memory. These are the sums, and the key after
+// the exhibit's id:
 //
 //   visits                        (the exhibit alone)  pages of visitors that have said hello
 //   languages                     tag of the exhibit's that was said there, or "other"
@@ -15,17 +15,19 @@
 
 namespace wellspring::show {
 
-inline constexpr double dwell_distance = 3;   // metres
-inline constexpr double dwell_at_most = 600;  // seconds without a move: nobody is taken to be there
+inline constexpr double dwell_distance = 3;  // metres
+// seconds without a move, after which nobody is taken to be there
+inline constexpr double dwell_at_most = 600;
 
 void count(Show& show, const char* what, const std::string& thing = "", double by = 1);
 
-// When the page has said hello. `goes_on`: it was there before, and its tour goes on.
+// Counts a visit when its page has said hello. `goes_on`: it was there before, and its tour goes
+// on.
 void count_visit(Show& show, Visitor& visitor, bool goes_on);
-// Every tick, after the visitor was moved: where, and what became of the tour. `finished`: it has
-// just ended by itself.
+// Counts where the visitor is, and what became of the tour. Call it every tick, after the visitor
+// was moved. `finished`: the tour has just ended by itself.
 void count_place(Show& show, Visitor& visitor, bool finished, double seconds);
-// When the visitor has gone for good.
+// Counts what a visitor leaves unfinished, when the visitor has gone for good.
 void count_leaving(Show& show, Visitor& visitor);
 
 }  // namespace wellspring::show

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The renderer's work from tick to tick: takes what it has finished, and carries out what was
-// decided (show/draw/decide.h) on the renderer. By the tick alone; never waits, but for draw_now().
+// Drives the renderer from tick to tick: takes what it has finished, and carries out on it what was
+// decided (show/draw/decide.h). By the tick alone; never waits, but for draw_now().
 #pragma once
 #include "show/draw/decide.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {
 
-// What the renderer has finished. Returns whether it may be given the next: asked once a tick, as
-// what it finishes later in the tick has not been taken.
+// Takes what the renderer has finished. Returns whether the renderer may be given the next: call it
+// once a tick, as what is finished later in the tick has not been taken.
 bool take_finished(Show& show);
-// `decision` is of show.visitors in their order, while the renderer is idle. `waiting` visitors
-// share the time.
+// Carries out a decision on show.visitors in their order, while the renderer is idle. `waiting`
+// visitors share the time.
 void carry_out(Show& show, const Decision& decision, int waiting);
-// All that are due, one after the other, while the tick waits: where nothing is drawn in the
-// background.
+// Draws all pictures that are due, one after the other, while the tick waits: for shows that draw
+// nothing in the background.
 void draw_now(Show& show, int waiting);
 
 }  // namespace wellspring::show

@@ -8,23 +8,24 @@
 namespace wellspring::show {
 namespace {
 
-constexpr double unmeasured_light = 0.4;  // of the display's time, for who moves
-constexpr double least_light = 0.25;      // of the time goes to light, whatever is drawn
-constexpr double least_samples = 1000;    // a picture, however slow the machine
+constexpr double unmeasured_light = 0.4;  // share of the display's time, for moving visitors
+constexpr double least_light = 0.25;      // share of the time that goes to light, whatever is drawn
+constexpr double least_samples = 1000;    // samples of a picture, however slow the machine
 constexpr double most_a_pixel = 0.5;
-constexpr double aimed_share = 0.0625;  // of the samples at rest
-constexpr float nearly_none = 0.1f;     // of the picture's pixels
+constexpr double aimed_share = 0.0625;  // share of the samples at rest
+constexpr float nearly_none = 0.1f;     // share of the picture's pixels
 constexpr float most_known = 0.5f;      // likewise
 constexpr double settled_after = 2;     // seconds
 constexpr float keyframe_scales[] = {1, 0.75f, 0.5f, 0.375f};
 constexpr double shortest_period = 1 / 30.0;  // seconds from keyframe to keyframe
-// FLIP, in the mean of the picture, that a keyframe's age may add, and what a picture adds that is
+// FLIP, in the mean of the picture: what a keyframe's age may add, and what a picture adds that is
 // wrong all over (cache.warp, stroll and orbit at 300 ms) or as soft as the wide keyframe.
 constexpr float borne = 0.0135f, of_uncovered = 0.45f, of_turned_to = 0.1f;
 constexpr double least_local_period = 1 / 10.0, most_local_period = 1 / 3.0;
-constexpr double sample_share = 0.3;  // of that time, at least
-constexpr double climbing = 0.7;      // of the time allowed, when a larger keyframe is drawn again
-constexpr float most_uncovered = 0.2f;  // of a picture's width, by a tour's turn
+constexpr double sample_share = 0.3;  // share of that time, at least
+// share of the time allowed, at which a larger keyframe is drawn again
+constexpr double climbing = 0.7;
+constexpr float most_uncovered = 0.2f;  // share of a picture's width that a tour's turn may uncover
 
 }  // namespace
 
@@ -33,7 +34,7 @@ int sample_budget(double seconds, size_t pixels, const DrawingCosts& costs, bool
   if (!stands) display = costs.light_seconds > 0 ? costs.light_seconds : unmeasured_light * display;
   double tracing = std::max(seconds + costs.display_seconds - display - costs.drawing_seconds,
                             least_light * seconds);
-  // Who stands gains by light what fewer pictures cost; who moves, by pictures.
+  // Visitors who stand gain by light what fewer pictures cost; those who move, by pictures.
   if (stands)
     tracing =
         std::max(tracing, least_light / (1 - least_light) * (display + costs.drawing_seconds));
@@ -48,7 +49,7 @@ double keyframe_cost(float scale) { return double(scale); }
 
 double longest_period(const Ageing& ageing) {
   const float error = of_uncovered * ageing.uncovered + of_turned_to * ageing.turned_to;
-  if (!(error > 0)) return most_local_period;  // or it is not known
+  if (!(error > 0)) return most_local_period;  // nothing ages, or it is not measured
   return std::clamp(double(borne / error), least_local_period, most_local_period);
 }
 
@@ -75,11 +76,11 @@ namespace {
 
 constexpr double on_time = 0.0005;   // seconds that a picture may come too early
 constexpr double longest_gap = 0.5;  // seconds without a picture until a walker comes first
-// Of reconstructions.
+// These decide about reconstructions.
 constexpr double first_after = 0.5;     // seconds at rest
-constexpr double least_a_pixel = 0.25;  // a pixel: of fewer it makes no better picture
+constexpr double least_a_pixel = 0.25;  // samples a pixel: from fewer it makes no better picture
 constexpr double growth = 1.4;          // times as many samples as in the pass before
-constexpr double most_share = 0.35;     // of the time goes to passes
+constexpr double most_share = 0.35;     // share of the time that goes to passes
 
 bool moves(const VisitorDrawState& state, const RendererState& renderer) {
   return renderer.background && !state.stands;
@@ -89,7 +90,7 @@ bool is_busy(int index, const VisitorDrawState& state, const RendererState& rend
   return state.at_work && index != renderer.drawn;
 }
 
-// Who has waited longest of those whom `wants` names; -1: nobody.
+// Returns who has waited longest of those whom `wants` names; -1: nobody.
 template <class Wants, class Since>
 int longest_waiting(std::span<const VisitorDrawState> states, const Wants& wants,
                     const Since& since) {
@@ -108,14 +109,15 @@ int next_to_pose(double now, std::span<const VisitorDrawState> states,
   return longest_waiting(states, wants, [](const VisitorDrawState& one) { return one.posed_at; });
 }
 
-// Of those who want a picture: whose is drawn next, -1: nobody's, and the least renderer's time
-// that any of them has had.
+// Holds whose picture is drawn next, -1: nobody's, and the least renderer's time that any of those
+// has had who want a picture.
 struct NextPicture {
   int visitor = -1;
   double served = 0;
 };
 
-// Where others wait, those whose picture stays do without more samples.
+// Finds whose picture is drawn next. While others wait, visitors whose picture stays do without
+// more samples.
 NextPicture next_to_draw(double now, std::span<const VisitorDrawState> states,
                          const RendererState& renderer) {
   auto wants = [&](int i) {
@@ -127,7 +129,8 @@ NextPicture next_to_draw(double now, std::span<const VisitorDrawState> states,
   auto since = [&](const VisitorDrawState& one) {
     return std::pair(served(one), std::max(one.drawn_at, one.came_at));
   };
-  // Whose last keyframe was of no use, since it was drawn for another view, has waited as well.
+  // A visitor whose last keyframe was of no use, since it was drawn for another view, has waited as
+  // well.
   auto without = [](const VisitorDrawState& one) { return std::max(one.shown_at, one.came_at); };
   auto too_long = [&](int i) {
     const VisitorDrawState& state = states[size_t(i)];
@@ -174,7 +177,7 @@ bool wants_picture(double now, const VisitorDrawState& state, const RendererStat
   if (state.new_place) return true;
   const bool walks = moves(state, renderer);
   if ((state.unshown || state.in_pass) && !walks) return false;
-  // Other light, or the storyteller came or went: who rests sees it at once.
+  // The light changed, or the storyteller came or went: a visitor at rest sees it at once.
   bool changed = state.other_light || state.drew_moving != state.sees_moving;
   if (!walks && changed) return true;
   double rate = walks ? state.picture_rate : state.drawing_rate;
@@ -191,7 +194,7 @@ bool wants_pass(double now, const VisitorDrawState& state, const RendererState& 
   if (!renderer.background || !renderer.can_reconstruct || renderer.in_pass) return false;
   if (!state.stands || now - state.moved_at < first_after || rest.samples < least_a_pixel)
     return false;
-  // What moves is not in it.
+  // A reconstruction does not show moving things.
   if (state.drew_moving && !state.backdrop) return false;
   if (!rest.reconstructed) return true;
   double pause = rest.passed_seconds * (1 / most_share - 1);

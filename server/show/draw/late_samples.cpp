@@ -21,7 +21,7 @@ bool request_samples(Show& show) {
   Renderer& renderer = show.renderer;
   renderer.brokers.clear();
   renderer.seconds = 0;
-  Visitor* first = nullptr;  // who sees another world waits for the next turn
+  Visitor* first = nullptr;  // visitors who see another world wait for the next turn
   for (Visitor& visitor : show.visitors) {
     if (visitor.picture.broker_seconds <= 0) continue;
     if (!first) go_on_in_world_of(show, *(first = &visitor));
@@ -61,16 +61,18 @@ void finish_samples(Show& show) {
 
 namespace {
 
-constexpr float predicted_share = 0.3f;  // of the samples, at most
-constexpr float barely_covered = 0.1f;   // of the pixels by points
-constexpr size_t least_slice = 2048;     // samples
-// Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
+constexpr float predicted_share = 0.3f;  // share of the samples, at most
+constexpr float barely_covered = 0.1f;   // share of the pixels that points cover
+constexpr size_t least_slice = 2048;     // number of samples
+// Seconds of tracing at a time: the first while it may be given up, the second when moving things
+// are due soon.
 constexpr double longest_slice = 0.025, least_slice_seconds = 0.006;
 constexpr double spread_from = 0.8;  // samples a pixel
-constexpr float more_asked = 1.2f;   // than there is time for, by what was measured: none is idle
+constexpr float more_asked = 1.2f;   // times what is measured to fit into the time: no core is idle
 
-// Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
-// still camera's picture, waits for its own.
+// Returns whether answers may come after the picture: a walking visitor is shown those of the
+// picture before, and is shown it the sooner. A place never seen yet, or a still camera's picture,
+// waits for its own.
 bool may_be_late(const Show& show, const RenderCache& cache, const Technique& technique,
                  int samples) {
   return show.settings.late_samples && show.settings.display != Display::points &&
@@ -84,20 +86,21 @@ TransportSettings transport_of(const Show& show, const PictureJob& job) {
   return transport;
 }
 
-// Where pictures are reconstructed, the first samples serve the drawn picture that it begins with;
-// later ones are spread evenly, but for some, aimed at points, to find what changes.
+// Returns whether samples are spread evenly, but for some, aimed at points, to find what changes.
+// If pictures are reconstructed, the first samples serve the drawn picture that a reconstruction
+// begins with.
 bool spreads_samples(const PictureJob& job, const Technique& technique) {
   return job.learns && !technique.begin_pass && job.rest.samples >= spread_from &&
          !has_all_samples(job.rest);
 }
 
-// So many are traced at a time.
+// Returns how many samples are traced at a time.
 size_t slice_of_samples(const Show& show) {
   double seconds = std::clamp(show.renderer.until_moving, least_slice_seconds, longest_slice);
   return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
 }
 
-// The same view in as many pixels as there are samples.
+// Returns the same view in as many pixels as there are samples.
 View pass_view(const View& view, int samples) {
   const double pixels = double(view.width) * double(view.height);
   const double side = std::sqrt(std::min(std::max(double(samples), 1.0) / pixels, 1.0));
@@ -107,7 +110,7 @@ View pass_view(const View& view, int samples) {
   return pass;
 }
 
-// A sample for each pixel of a pass.
+// Requests a sample for each pixel of a pass.
 void plan_pass(const View& pass, uint64_t seed, uint32_t index, std::vector<Request>& requests) {
   std::vector<PixelSample> which;
   which.reserve(size_t(pass.width) * size_t(pass.height));
@@ -117,7 +120,7 @@ void plan_pass(const View& pass, uint64_t seed, uint32_t index, std::vector<Requ
   make_pixel_requests(pass, seed, which, requests);
 }
 
-// Requests of a pass belong to the pixels of `view` that their rays run through.
+// Gives requests of a pass the pixels of `view` that their rays run through.
 void name_pixels(const View& view, std::vector<Request>& requests) {
   for (Request& request : requests) {
     Projected at = project_point(view, request.ray.origin + request.ray.direction);
@@ -187,7 +190,7 @@ bool begin_samples(Show& show, const PictureJob& job, const Technique& technique
     picture.broker.ask(job.view, {&technique, transport_of(show, job)}, work.requests);
     return false;
   }
-  picture.broker.forget();  // what was asked for on the way
+  picture.broker.forget();  // answers that were still on their way
   work.pose = show.pose_number;
   if (technique.begin_pass)
     technique.begin_pass(*show.world, transport_of(show, job),
@@ -221,7 +224,8 @@ void remember_traced(const Show& show, const PictureJob& job, const Technique& t
     for (Sample& sample : work.samples) sample.glow = vec3(0);  // points show all light
   picture.cache.remember(job.view, work.requests, work.samples);
   picture.costs.samples = work.samples.size();
-  // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
+  // A picture that is drawn, not reconstructed, has a use for the samples only when it is kept for
+  // long.
   bool kept_long = !job.passing && picture.cache.is_still();
   if (!job.still || !(job.learns || kept_long)) return;
   picture.compositor.follow_changes(picture.cache);

@@ -15,14 +15,16 @@ namespace wellspring::show {
 
 namespace {
 
-constexpr double slack = 0.0015;     // seconds kept free of every period
-constexpr double least_share = 0.2;  // of a period that goes to samples, even if the rate suffers
-constexpr double least_sampling_rate = 0.75;  // a second: rarer pictures are given no more samples
+constexpr double slack = 0.0015;  // seconds kept free of every period
+// share of a period that goes to samples, even if the rate suffers
+constexpr double least_share = 0.2;
+// pictures a second: rarer ones are given no more samples
+constexpr double least_sampling_rate = 0.75;
 constexpr double predicted_pictures = 2;
-constexpr double turn_ahead_seconds = 0.3;  // for which a wide keyframe looks ahead
-constexpr double settled_samples = 8;       // a pixel, after which the reference takes over
+constexpr double turn_ahead_seconds = 0.3;  // seconds for which a wide keyframe looks ahead
+constexpr double settled_samples = 8;       // samples a pixel, after which the reference takes over
 
-// Seconds of a picture's period that are left for samples.
+// Returns the seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
   const int walkers = count_moving(show);
   if (!stands(show, visitor)) busy = std::max(busy, walkers);
@@ -30,7 +32,8 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
       (1 - moving_share(show)) / std::max(drawing_rate(show, visitor), least_sampling_rate);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
   double least = least_share * period;
-  // Where many walk, keyframes come late enough without: what one takes is what counts.
+  // If many walk, keyframes come late enough without samples: the time that one keyframe takes is
+  // what counts.
   if (walkers > 1)
     least = std::max(least / walkers, least_share * drawing_costs(show, visitor).drawing_seconds);
   return std::max((period - slack) / std::max(busy, 1) - display, least);
@@ -56,12 +59,13 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   const bool hurried = job.keep && place.camera_cuts != picture.job.camera_cuts &&
                        count_moving(show) > int(!stands(show, visitor));
   job.dynamic = visitor.dynamic;
-  // Over pictures at rest their light is put with what moves (show/draw/still_pass.h).
+  // Over pictures at rest, the light of dynamic lights is put with moving things
+  // (show/draw/still_pass.h).
   const bool put_over = job.keep && show.visibility->rasterises(now);
   job.still =
       !hurried && (job.dynamic.empty() || put_over) && show.time - place.moved_at > still_after;
   const PictureJob& before = picture.job;
-  // Of a place that was never seen, nothing is known.
+  // Nothing is found yet of a place that was never seen.
   bool seen = picture.drawn_at >= 0 && place.camera_cuts == before.camera_cuts;
   float guessed = seen ? picture.stats.filled + picture.stats.empty : 1;
   const bool points = show.settings.display == Display::points;
@@ -85,12 +89,12 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   costs.drawing_seconds *= factor, costs.light_seconds *= factor;
   job.samples =
       sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, !job.passing);
-  // When all is known, what changes is looked for.
+  // When there are all samples, changes of the light are looked for.
   if (job.samples_only && has_all_samples(picture.rest))
     job.samples = samples_to_watch(job.samples);
   double interval = 1 / drawing_rate(show, visitor);
   if (moves) {
-    // It is seen from when it is finished until the next one is.
+    // The picture is seen from when it is finished until the next one is.
     interval = std::max(interval, 0.001 * double(visitor.times.interval));
     double seen_in = 0.001 * double(visitor.times.whole) + 0.5 * interval;
     // The page goes on by itself, without waiting for the line.
@@ -103,13 +107,13 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   } else {
     job.ahead = expected_view(place.heading, now, predicted_pictures * interval);
   }
-  // A page that draws for itself turns before the server hears of it.
+  // A page that draws by itself turns before the server hears of it.
   const EyeMotion motion = motion_of(place.heading, now);
   const bool may_turn = visitor.wants.local || motion.speed + motion.turn > 0;
   if (job.passing && seen && !points && may_turn) {
     const Surroundings& around = picture.around;
     const bool here = around.camera_cuts == place.camera_cuts && !around.keyframe.empty();
-    // A turn goes on until it is there.
+    // A turn goes on until they are there.
     const View soon = expected_view(place.heading, now, turn_ahead_seconds);
     if (!here || is_elsewhere(around.keyframe.view, soon)) job.around = wide_view(soon);
   }

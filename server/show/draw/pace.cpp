@@ -12,12 +12,12 @@
 namespace wellspring::show {
 namespace {
 
-constexpr double most_skin_seconds = 0.025;  // of tracing, each time; when there are
-constexpr float enough_samples = 8;          // of a place, less, but
-constexpr double least_skin_share = 0.25;    // of that at least: it moves
-constexpr double samples_a_pixel = 0.25;     // each time, when it has none
-constexpr float large = 60e3f;               // pixels: what is larger is lit as often as ever
-constexpr double most_slower = 5;            // times least_interval
+constexpr double most_skin_seconds = 0.025;  // seconds of tracing each time, at most
+constexpr float enough_samples = 8;          // samples of a place; with more, fewer are traced
+constexpr double least_skin_share = 0.25;    // at least this share of them, as the thing moves
+constexpr double samples_a_pixel = 0.25;     // samples each time, when a place has none
+constexpr float large = 60e3f;               // pixels: larger things are lit as often as ever
+constexpr double most_slower = 5;            // times least_interval, at most
 
 }  // namespace
 
@@ -33,23 +33,25 @@ SkinPace plan_skin(float pixels, double samples_per_second, float known) {
 namespace {
 
 constexpr double still_rate = 25;    // pictures a second while only the storyteller moves
-constexpr double settling_rate = 7;  // while nothing moves: more time for samples
-constexpr double resting_rate = 4;   // when nothing in the picture changes any more
+constexpr double settling_rate = 7;  // likewise while nothing moves: more time for samples
+constexpr double resting_rate = 4;   // likewise when nothing in the picture changes any more
 constexpr double rested_rate = 0.2;  // likewise, when nothing has changed for long
 constexpr double settled_seconds = 5;
-constexpr double backdrop_rate = 4;              // pictures a second of what does not move
-constexpr double closed_rate = 1;                // before a kiosk while the house is closed
-constexpr double learning_rate = 1.5;            // of pictures before the first reconstruction,
-constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not move
-constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
-// The storyteller and all else that moves before those who stand get at most this share of the
-// time: the first while nobody walks, the second while somebody does.
+constexpr double backdrop_rate = 4;    // pictures a second without moving things
+constexpr double closed_rate = 1;      // at a kiosk while the house is closed
+constexpr double learning_rate = 1.5;  // pictures a second before the first reconstruction
+constexpr double learning_backdrop_rate = 0.75;  // likewise without moving things
+// share of the time, at most, for all visitors' warps and JPEGs
+constexpr double warping_share = 0.5;
+// Moving things in the pictures of visitors who stand get at most this share of the time: the first
+// while nobody walks, the second while somebody does.
 constexpr double most_moving_share = 0.5, least_moving_share = 0.25;
-constexpr float nearly_all = 0.999f;   // converged
-constexpr double standing_weight = 4;  // of the renderer's time, for charge_weight()
-constexpr double most_unlike = 3;      // keyframes of two visitors, in what they cost
+constexpr float nearly_all = 0.999f;   // share of converged pixels
+constexpr double standing_weight = 4;  // weight of the renderer's time, for charge_weight()
+constexpr double most_unlike = 3;      // largest ratio by which charge_weight() evens out costs
 
-// What a picture for each who moves takes: a warp takes all cores, its JPEG one.
+// Returns the seconds that a picture for each moving visitor takes: a warp takes all cores, its
+// JPEG one.
 double showing_seconds(const Show& show) {
   double milliseconds = 0;
   for (const Visitor& visitor : show.visitors)
@@ -59,7 +61,7 @@ double showing_seconds(const Show& show) {
   return 0.001 * milliseconds;
 }
 
-// Of draw_state() what does not depend on rates.
+// Returns the part of draw_state() that does not depend on rates.
 VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = visitor.picture;
   const VisitorPlace& place = visitor.place;
@@ -70,7 +72,7 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.stands = stands(show, visitor);
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
-  // The renderer brings a picture that it draws to the light of now.
+  // The renderer brings the picture that it draws to the present light.
   state.other_light = show.renderer.drawn != &visitor && (picture.lamps != visitor.lamps.lit ||
                                                           picture.hour != visitor.lamps.lit_hour);
   state.sees_moving = state.welcomed && sees_moving(show, visitor, place.last_view);
@@ -94,7 +96,7 @@ int count_backdrops(const Show& show) {
   return int(std::count_if(show.visitors.begin(), show.visitors.end(), has));
 }
 
-// Pictures a second of what moves, for each of the `backdrops` visitors who have one.
+// Returns pictures a second of moving things, for each of the `backdrops` visitors who have one.
 double moving_rate(const Show& show, const Visitor& visitor, int backdrops) {
   double seconds = 0.001 * double(visitor.times.moving) * double(std::max(backdrops, 1));
   double rate = picture_rate(show, visitor);
@@ -167,7 +169,7 @@ double picture_rate(const Show& show, const Visitor& visitor) {
                           : rests(show, visitor)                              ? resting_rate
                                                                               : settling_rate);
   } else if (show.settings.background) {
-    // The same for all, whosever warps cost most.
+    // All get the same rate, whosever warps cost most.
     if (double seconds = showing_seconds(show); seconds > 0)
       rate = std::min(rate, warping_share / seconds);
   }
@@ -177,8 +179,8 @@ double picture_rate(const Show& show, const Visitor& visitor) {
 
 namespace {
 
-// Samples that are to find changes of the light, where none was found for as long: as many in a
-// minute as in the first few seconds.
+// Returns the pictures a second whose samples are to find changes of the light: fewer the longer
+// none was found, as many in a minute as in the first few seconds.
 double watching_rate(const Show& show, const Visitor& visitor) {
   const double since = show.time - std::max(visitor.place.moved_at, visitor.picture.rest.passed_at);
   return std::clamp(resting_rate * settled_seconds / std::max(since, settled_seconds), rested_rate,
@@ -226,7 +228,7 @@ DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
   auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
   DrawingCosts costs{show.samples_per_second, seconds(times.drawing),
                      seconds(times.display + times.tonemap), seconds(times.light)};
-  // Of a newcomer's first as others' have taken.
+  // A newcomer's first picture is expected to cost what others' have cost.
   if (visitor.picture.drawn_at < 0 && costs.drawing_seconds == 0)
     costs.drawing_seconds = show.capacity->standing().cost.drawn *
                             weighed_pixels(double(visitor.wants.width) * visitor.wants.height) /
@@ -234,7 +236,7 @@ DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
   return costs;
 }
 
-// By how the visitor moves just now.
+// Returns the ageing that follows from how the visitor moves just now.
 static Ageing ageing_of(const Visitor& visitor) {
   const View& now = visitor.place.last_view;
   const EyeMotion motion = motion_of(visitor.place.heading, now);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often each visitor is shown a picture, drawn one, and drawn what moves in it; and the values
-// that the decision what is drawn next (show/draw/decide.h) is made from. Nothing here changes the
+// Finds how often each visitor is shown a picture, drawn one, and drawn its moving things; and the
+// values from which it is decided what is drawn next (show/draw/decide.h). Nothing here changes the
 // show but watch().
 #pragma once
 #include <vector>
@@ -10,53 +10,56 @@
 
 namespace wellspring::show {
 
-// Light on what moves (light/known/skin_light.h) gets few samples where it is small in all
-// pictures, and none where nobody sees it.
+// Paces the search for light on moving things (light/known/skin_light.h): few samples if they are
+// small in all pictures, and none if nobody sees them.
 
-inline constexpr double least_interval = 0.2;  // seconds: it is found no more often
+inline constexpr double least_interval = 0.2;  // seconds; skin light is found no more often
 
-// How often and by how much light on what moves is found.
+// Says how often and with how many samples light on moving things is found.
 struct SkinPace {
-  int samples = 0;      // each time; 0: nothing is traced, and nothing smoothed
+  int samples = 0;      // number each time; 0: nothing is traced, and nothing smoothed
   double interval = 0;  // seconds from one time to the next
   bool operator==(const SkinPace&) const = default;
 };
-// `pixels`: of whoever sees most of it. `known`: samples that a place has already, on average.
+// Plans the pace. `pixels`: those of the visitor who sees most of it. `known`: samples that a place
+// has already, on average.
 SkinPace plan_skin(float pixels, double samples_per_second, float known);
 
 inline constexpr double still_after = 0.25;  // seconds without motion until a picture is a still
 
-// Once a tick for every visitor, after it was moved: notices motion and camera cuts.
+// Notices motion and camera cuts. Call it once a tick for every visitor, after the visitor was
+// moved.
 void watch(const Show& show, Visitor& visitor);
-// Nothing moves for a moment, so that pictures become better instead of following.
+// Returns whether nothing has moved for a moment, so that pictures become better instead of
+// following.
 bool stands(const Show& show, const Visitor& visitor);
-// Nothing in the picture changes any more.
+// Returns whether nothing in the picture changes any more.
 bool rests(const Show& show, const Visitor& visitor);
-// More samples would make the picture of what stands still better.
+// Returns whether more samples would make the still part of the picture better.
 bool asks_for_samples(const Show& show, const Visitor& visitor);
-// Visitors who do not stand: the time is divided among them.
+// Returns the number of visitors who do not stand: the time is divided among them.
 int count_moving(const Show& show);
-// Returns how much a second of the renderer's time counts in VisitorPicture::served: more for who
-// stands; for who walks, so much that all get as many keyframes, whatever theirs cost.
+// Returns how much a second of the renderer's time counts in VisitorPicture::served: more for
+// visitors who stand; for walkers, so much that all get as many keyframes, whatever theirs cost.
 double charge_weight(const Show& show, const Visitor& visitor);
-// The visitor's browser and socket can take a picture.
+// Returns whether the visitor's browser and socket can take a picture.
 bool may_take(const Show& show, const Visitor& visitor);
 
-// Pictures a second this visitor should get.
+// Returns the pictures a second that this visitor should get.
 double picture_rate(const Show& show, const Visitor& visitor);
-// Pictures a second that should be drawn for this visitor.
+// Returns the pictures a second that should be drawn for this visitor.
 double drawing_rate(const Show& show, const Visitor& visitor);
-// The share of the time that goes to what moves in pictures at rest, of all visitors.
+// Returns the share of the time that goes to moving things in pictures at rest, of all visitors.
 double moving_share(const Show& show);
-// Until it will be due for anybody, at most a second.
+// Returns the seconds until moving things will be due for anybody, at most one.
 double seconds_to_moving(const Show& show);
 
-// What drawing for this visitor took of late, and the keyframe that this allows.
+// Return what drawing for this visitor has cost of late, and the keyframe that this allows.
 DrawingCosts drawing_costs(const Show& show, const Visitor& visitor);
 KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor);
 
-// For the decision: of one visitor, of all in their order, and of the renderer. `waiting` is the
-// caller's to fill.
+// Return the values for the decision: of one visitor, of all in their order, and of the renderer.
+// The caller fills `waiting`.
 VisitorDrawState draw_state(const Show& show, const Visitor& visitor);
 std::vector<VisitorDrawState> draw_states(const Show& show);
 RendererState renderer_state(const Show& show);

@@ -9,14 +9,14 @@
 namespace wellspring::show {
 namespace {
 
-// Of 255: less is not seen, and is sent with the fine tiles. Noise that goes is a little
-// everywhere.
-constexpr int seen_of_one = 16;    // of any byte
-constexpr double seen_of_all = 1;  // of a tile's mean
+// Differences, out of 255, below these are not seen, and are sent with the fine tiles. Noise that
+// goes is a little everywhere.
+constexpr int seen_of_one = 16;    // difference of any byte
+constexpr double seen_of_all = 1;  // mean difference of a tile
 constexpr size_t most_changed = max_parts / 2;
 
-// As many of the wanted tiles, from `next` on, as are expected to fit into that many bytes; one at
-// least. What is left is found again the next time.
+// Keeps as many of the wanted tiles, from `next` on, as are expected to fit into that many bytes;
+// one at least. The other tiles are found again the next time. Returns the expected bytes.
 double bound(const TileGrid& grid, double bytes, double bytes_per_pixel, size_t& next,
              std::vector<char>& wanted) {
   double expected = 0;
@@ -81,7 +81,7 @@ void make_parts(const Image8& newest, const PartsOrder& order, PacketHeader head
       bound(grid, order.bytes, cost(order, order.quality, order.full_chroma), has.next, changed);
   for (const ImagePart& part : cover(grid, changed, most_changed)) {
     encode(part, order.quality, order.full_chroma);
-    // What lies between things that move is not made fine with each of their pictures.
+    // A tile between moving things is not made fine with each of their pictures.
     for (size_t tile : tiles_in(grid, part)) fine[tile] = 0, has.changed_at[tile] = order.now;
   }
   const bool only_fine = parts.empty();

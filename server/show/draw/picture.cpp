@@ -19,19 +19,21 @@ namespace wellspring::show {
 
 namespace {
 
-// What resolution is decided by: follows a change of load within some three keyframes.
+// Share of a new measurement in the times that decide resolution: they follow a change of load
+// within some three keyframes.
 constexpr float soon = 0.3f;
 
-// Times measured in one resolution, as they are to be expected in another.
+// Converts times measured in one resolution to those expected in another.
 void carry_times(double factor, StageTimes& times) {
   for (float* one : {&times.drawing, &times.light, &times.whole, &times.interval})
     *one *= float(factor);
 }
 
-// As the render cache was published: points alone.
+// Returns whether pictures are as the render cache was published: points alone.
 bool shows_points(const Show& show) { return show.settings.display == Display::points; }
 
-// What moves is drawn by itself where that is little of the picture, as what it covers is kept.
+// Returns whether moving things are drawn by themselves: if they are little of the picture, as what
+// they cover is kept.
 bool draws_backdrop(const Show& show, const PictureJob& job) {
   if (!in_steps(job) || !job.moving || job.passing || shows_points(show)) return false;
   if (!show.visibility->rasterises(job.view)) return false;
@@ -40,7 +42,7 @@ bool draws_backdrop(const Show& show, const PictureJob& job) {
   return !window.empty() && may_be_laid_over(window, job.view);
 }
 
-// The light of lights that move or change, for a picture of `view`: over one at rest it is put
+// Adds the light of lights that move or change to a picture of `view`; to one at rest it is added
 // later.
 void light_dynamically(Show& show, const PictureJob& job, const View& view, Visitor& visitor) {
   DynamicImage& image = show.renderer.work.dynamic;
@@ -78,7 +80,7 @@ DrawingStep trace_more(Show& show, const PictureJob& job, const Technique& techn
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
-// The render cache as it was published. Where no point is near, nothing is shown.
+// Paints the points as the render cache was published. Nothing is shown if no point is near.
 void paint_points(RenderCache& cache, const View& view, Frame& frame) {
   fit_frame(view.width, view.height, frame);
   std::fill(frame.color.begin(), frame.color.end(), vec3(0));
@@ -133,7 +135,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   return DrawingStep::done;
 }
 
-// One visibility pass of a reconstruction's guides; the last also encodes its input.
+// Does one visibility pass of a reconstruction's guides; the last step encodes the network's input.
 DrawingStep find_guides(Show& show, const PictureJob& job, VisitorPicture& picture) {
   DrawingWork& work = show.renderer.work;
   StillPass& pass = show.pass;
@@ -176,7 +178,7 @@ void draw_picture(Show& show, const PictureJob& job, Visitor& visitor) {
     step = draw_step(show, job, step, visitor);
 }
 
-// What was drawn in the memory of somebody else's larger picture does not keep it.
+// Frees memory that came with somebody else's larger picture.
 static void fit_memory(VisitorPicture& picture) {
   auto fit = [](auto& v) {
     if (v.capacity() > v.size() + v.size() / 4) v.shrink_to_fit();
@@ -235,7 +237,7 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   picture.stats = picture.cache.stats();
   picture.cache_bytes = picture.cache.memory_bytes() + picture.compositor.memory_bytes();
   if (seen) visitor.looks.seen = seen, visitor.looks.seen_at = job.time;
-  // Else its keyframe has the colours.
+  // Otherwise its keyframe has the colours.
   if (!job.keep) std::swap(show.renderer.work.picture, picture.image);
   if (std::exchange(picture.fades_next, false) && job.keep && !picture.keyframe.empty() &&
       picture.keyframe.view == show.renderer.work.keyframe.view)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing one picture for one visitor, in three steps: make_picture_job()
+// Draws one picture for one visitor, in three steps: make_picture_job()
 // (show/draw/make_picture_job.h) decides what and how, draw_picture() does it without looking at
 // anything that the tick may change (view -> project -> attend -> plan -> trace -> remember ->
-// draw), finish_picture() takes it over. In the background the middle one runs on the renderer
+// draw), finish_picture() takes it over. In the background the middle step runs on the renderer
 // (show/state/renderer.h), for a view predicted for when it will be seen; show/draw/present.h shows
 // it. The time that is left of the visitor's share goes to samples; those of a walking visitor are
 // traced when its picture is done, and land in the next (show/draw/late_samples.h).
@@ -11,15 +11,16 @@
 
 namespace wellspring::show {
 
-// Changes nothing but what of the visitor is the renderer's, and what techniques keep in
-// show.lights. Ends early, with costs.given_up and all samples traced by then, once
+// Draws the picture. Changes nothing but the renderer's part of the visitor, and what techniques
+// keep in show.lights. Ends early, with costs.given_up and all samples traced by then, once
 // renderer.given_up is set.
 void draw_picture(Show& show, const PictureJob& job, Visitor& visitor);
-// The same step by step, between which the world may move and nothing but still_pass.h may be
-// drawn. Returns the next one; DrawingStep::done: none.
+// Does the same step by step, between which the world may move and nothing but still_pass.h may
+// draw. Returns the next step; DrawingStep::done: none.
 DrawingStep draw_step(Show& show, const PictureJob& job, DrawingStep step, Visitor& visitor);
 void finish_picture(Show& show, const PictureJob& job, Visitor& visitor);
-// Before that, where the job has something around: it is shown as soon as it is there.
+// Draws surroundings before the picture, if the job has some; they are shown as soon as they are
+// there.
 void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor);
 void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor);
 

@@ -20,20 +20,20 @@ namespace wellspring::show {
 
 namespace {
 
-constexpr double presenting = 0.012;  // seconds of a tick: then it reads what visitors ask for
+constexpr double presenting = 0.012;  // seconds of a tick; then it reads what visitors ask for
 constexpr double early = 0.0005;      // seconds that a picture may come too early
 constexpr double fade_rate = 12;      // pictures a second from one picture at rest to the next
 constexpr float most_unknown =
-    0.8f;  // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
-// Seconds until a warp that showed too little is tried again, where no new keyframe comes before:
+    0.8f;  // share of a warped picture; beyond, the one before is as near to the truth (cache.warp)
+// Seconds until a warp that showed too little is tried again, if no new keyframe comes before:
 // tried with each tick, it would take the cores from that keyframe.
 constexpr double tried_again = 0.1;
-constexpr int near_lossless = 95;  // JPEG quality of what has not changed for a moment
-// Seconds without a change until that; longer while better pictures are on their way.
+constexpr int near_lossless = 95;  // JPEG quality of tiles that have not changed for a moment
+// Seconds without a change until then; longer while better pictures are on their way.
 constexpr double quiet = 0.5, quiet_in_samples = 4;
-constexpr double refine_interval = 0.05;   // seconds between parts of it
-constexpr double most_part_bytes = 256e3;  // of one packet of parts
-constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
+constexpr double refine_interval = 0.05;   // seconds between parts of a picture at rest
+constexpr double most_part_bytes = 256e3;  // bytes of one packet of parts
+constexpr int animated_gain = 5;  // JPEG quality above that in motion while the storyteller moves
 
 // Calls make(encoder), which returns the packet, on another thread: the tick goes on meanwhile, and
 // waits before it touches the image again. pixels: as Encoder::pixels.
@@ -56,7 +56,7 @@ void encode(Visitor& visitor, int quality, double pixels, Make make) {
   });
 }
 
-// The depth comes behind the JPEG of a keyframe's packet.
+// Puts the depth behind the JPEG of a keyframe's packet.
 void add_depth(const PacketHeader& header, KeyframeHeader keyframe,
                const std::vector<float>& disparity, Packet& packet) {
   keyframe.color_bytes = uint32_t(packet.size() - keyframe_header_bytes);
@@ -64,10 +64,10 @@ void add_depth(const PacketHeader& header, KeyframeHeader keyframe,
   encode_disparity(disparity, keyframe.width, keyframe.height, keyframe.unit, packet);
 }
 
-// The image of one that stands comes anew from its keyframe, should there be another: it is not
-// kept, but for a browser that takes parts while these are made of it.
-// eighths: of the image's size, which is that of the header's. keyframe: what its packet says of
-// it, where it is one; the encoder has its disparities.
+// Encodes a complete picture. A picture at rest comes anew from its keyframe if it is needed again:
+// its image is not kept, but for a browser that takes parts while these are made of it. eighths: of
+// the image's size, which is that of the header's. keyframe: its header if it is one; the encoder
+// has its disparities.
 void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, bool full_chroma,
                      int eighths, const std::optional<KeyframeHeader>& keyframe) {
   Encoder& encoder = *visitor.shown.encoder;
@@ -90,7 +90,7 @@ void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, b
   encode(visitor, header.quality, pixels, make);
 }
 
-// Encodes a picture that comes beside a keyframe: a layer, or the wide one.
+// Encodes a picture that comes beside a keyframe: a layer, or the wide view.
 void encode_beside(Visitor& visitor, const PacketHeader& header, const KeyframeHeader& keyframe,
                    std::vector<uint8_t> rgb, std::vector<float> disparity) {
   auto make = [header, keyframe, disparity = std::move(disparity),
@@ -112,20 +112,20 @@ void encode_parts(Visitor& visitor, const PacketHeader& header, const PartsOrder
   });
 }
 
-// Whole JPEG blocks of a side.
+// Returns the side in whole JPEG blocks.
 uint16_t side_of(int side, int eighths) {
   return uint16_t(eighths == 8 ? side : std::max(side * eighths / 64 * 8, std::min(side, 16)));
 }
 
-// How much later than the pose was made for its pictures are dated: the mouth is posed for that
-// moment.
+// Notes how much later pictures are dated than the time that their pose was made for: the mouth is
+// posed for that moment.
 void note_lead(Show& show, uint64_t posed_us, uint64_t picture_us) {
   if (picture_us >= posed_us)
     show.picture_lead +=
         (std::min(1e-6f * float(picture_us - posed_us), 0.25f) - show.picture_lead) * 0.1f;
 }
 
-// The browser has a picture of this view, and takes what is new in it.
+// Returns whether the browser has a picture of this view, and takes what is new in it.
 bool takes_parts(const Show& show, const Visitor& visitor, const View& view) {
   const Image8& has = visitor.shown.encoder->has.image;
   return visitor.wants.parts && stands(show, visitor) && view == visitor.shown.view &&
@@ -133,8 +133,8 @@ bool takes_parts(const Show& show, const Visitor& visitor, const View& view) {
          has.width == view.width && has.height == view.height && !has.rgb.empty();
 }
 
-// Of pictures at rest: they are looked at for long, few a second, and yet in the way of what comes
-// next.
+// Returns the JPEG quality of pictures at rest: they are looked at for long, few a second, and yet
+// in the way of what comes next.
 int quality_at_rest(const Show& show, const Visitor& visitor, const PicturePlan& plan,
                     double pixels, bool fine) {
   const int wanted = visitor.wants.still_quality;
@@ -154,7 +154,7 @@ PacketHeader next_header(Show& show, Visitor& visitor, uint32_t seq, bool still)
   return header;
 }
 
-// A display that reprojects is told this of a keyframe.
+// Returns what a display that reprojects needs to know of a keyframe.
 KeyframeHeader keyframe_header(const Show& show, const View& view, uint32_t cuts) {
   return {.cuts = cuts,
           .width = uint16_t(view.width),
@@ -188,7 +188,7 @@ void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader 
   show.totals.pictures++;
 }
 
-// must: even if nothing has changed.
+// Sends parts; must: even if nothing has changed.
 void send_parts(Show& show, Visitor& visitor, const View& view, PacketHeader header, bool must) {
   VisitorDelivery& shown = visitor.shown;
   const FlowWishes wishes = flow_wishes(show, visitor);
@@ -221,7 +221,7 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   if (shown.sent_at > 0 && show.time > shown.sent_at)
     smooth(shown.measured_fps, float(1 / (show.time - shown.sent_at)));
   shown.sent_at = show.time;
-  // Where ticks come a little late, pictures keep their rate all the same.
+  // If ticks come a little late, pictures keep their rate all the same.
   double period = 1 / picture_rate(show, visitor);
   shown.pictured_at = std::clamp(shown.pictured_at + period, show.time - 0.5 * period, show.time);
   shown.seq = seq;
@@ -229,8 +229,8 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   visitor.picture.unshown = false;
 }
 
-// What of the last picture the browser has not, or not as fine, or that nothing is new after an
-// input: while there is no newer picture to show.
+// Sends the tiles of the last picture that the browser lacks or has less fine, or the news that
+// nothing is new after an input: while there is no newer picture to show.
 void refine(Show& show, Visitor& visitor) {
   VisitorDelivery& shown = visitor.shown;
   const Encoder& encoder = *shown.encoder;
@@ -243,8 +243,8 @@ void refine(Show& show, Visitor& visitor) {
   shown.seq = visitor.place.seq;
 }
 
-// A picture that was warped, or a keyframe, has been encoded: who asks whether there is a seat
-// needs to know what it took.
+// Notes the cost of a warped picture or a keyframe that has been encoded: the search for a seat
+// needs it.
 void note_cost(Show& show, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
   const double warping = std::exchange(visitor.shown.warp_core_seconds, 0.0);
@@ -257,7 +257,7 @@ void note_cost(Show& show, Visitor& visitor) {
 
 bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 
-// The encoder's image becomes the newest keyframe seen from `view`.
+// Warps the newest keyframe to `view`, into the encoder's image.
 bool warp(Show& show, Visitor& visitor, const View& view) {
   const double began = seconds_now(), cores_began = process_seconds_now();
   const VisitorPicture& picture = visitor.picture;
@@ -273,7 +273,7 @@ bool warp(Show& show, Visitor& visitor, const View& view) {
   return true;
 }
 
-// The last picture, once its encoder has done.
+// Notes the last picture, once its encoder has finished.
 void note_encoded(Show& show, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
   if (std::exchange(encoder.unsent, false)) note_unsent(visitor.shown.flow, encoder.frame);
@@ -299,7 +299,7 @@ void note_deliveries(Show& show, Visitor& visitor) {
   update(shown.way, shown.flow, flow_wishes(show, visitor), visitor.times.encode, show.time);
 }
 
-// Surroundings come between keyframes, and say nothing new of the visitor's input.
+// Sends the surroundings between keyframes; they say nothing new of the visitor's input.
 static void send_surroundings(Show& show, Visitor& visitor) {
   const Surroundings& around = visitor.picture.around;
   const View& view = around.keyframe.view;
@@ -314,7 +314,8 @@ static void send_surroundings(Show& show, Visitor& visitor) {
                 std::move(image.rgb), around.keyframe.disparity);
 }
 
-// A layer comes before the keyframe that is without it, and in turns with what is new of that.
+// Returns whether a layer is next: it comes before the keyframe that is without it, and in turns
+// with what is new of that keyframe.
 static bool takes_layer(const VisitorPicture& picture, const VisitorDelivery& shown) {
   const bool needs_none = !picture.backdrop && shown.has_layer && picture.unshown;
   return needs_none || (picture.layer_unsent && !(picture.unshown && shown.sent_layer));
@@ -341,11 +342,11 @@ static void send_layer(Show& show, Visitor& visitor) {
                 std::move(layer.rgb), std::move(layer.disparity));
 }
 
-// Sends the newest keyframe as it is, or what is new of it where the page has it: the page shows it
-// from where its visitor is by then.
+// Sends the newest keyframe as it is, or its news if the page has it: the page shows it from where
+// its visitor is by then.
 static void present_keyframe(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
-  picture.fade = {};  // the page passes from one to the next
+  picture.fade = {};  // the page passes from one picture to the next
   const bool stays = picture.job.still && picture.job.keep && !picture.keyframe.empty();
   visitor.shown.sent_layer = stays && takes_layer(picture, visitor.shown);
   if (visitor.shown.sent_layer) return send_layer(show, visitor);
@@ -367,8 +368,8 @@ void present(Show& show, Visitor& visitor) {
   VisitorDelivery& shown = visitor.shown;
   const PictureJob& job = picture.job;
   if (job.camera_cuts != visitor.place.camera_cuts || picture.drawn_at < 0) return;
-  // The tick does not wait for a picture that is still being encoded: others would wait, too. Where
-  // it draws itself, they do anyway.
+  // The tick does not wait for a picture that is still being encoded: others would wait, too. If
+  // the tick draws itself, they do anyway.
   if (!show.settings.background) shown.encoder->task.wait();
   if (!may_take(show, visitor) || shown.encoder->task.busy()) return;
   const View view = visitor.place.last_view;
@@ -402,13 +403,14 @@ void present(Show& show, Visitor& visitor) {
     return;
   }
   picture.fade = {};
-  if (show.renderer.posed == &visitor) return;  // reads the keyframe, and has soon done so
+  // the renderer reads the keyframe, and has soon done so
+  if (show.renderer.posed == &visitor) return;
   merge_moving(picture);
   if (warp(show, visitor, view)) {
     send(show, visitor, view, visitor.place.seq, false);
   } else if (picture.unshown && is_later(job.seq, shown.seq) && warp(show, visitor, job.expected)) {
     send(show, visitor, job.expected, job.seq,
-         false);  // so quick a turn: what can be shown of it
+         false);  // shows what can be shown of so quick a turn
   } else {
     shown.pictured_at = show.time + tried_again;
     picture.unshown = false;

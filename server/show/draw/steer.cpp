@@ -15,15 +15,15 @@
 namespace wellspring::show {
 namespace {
 
-// Of hints: radius over the picture's width, and weight. A pointer is exact, and beside its object
-// lies what is behind it. A head tells of the eyes within some 10 degrees.
+// Holds a kind of hint: radius over the picture's width, and weight. A pointer is exact, and beside
+// its object lies what is behind it. A head shows within some 10 degrees where the eyes look.
 struct HintKind {
   float radius, weight;
 };
 constexpr HintKind pointer_hint{0.02f, 1}, head_hint{0.15f, 0.5f}, shown_hint{0.04f, 0.8f};
 constexpr float far_away = 1e4f;  // metres
 
-// Mean of `scale` x `scale` pixels.
+// Averages `scale` x `scale` pixels for each pixel of a row.
 void reduce_row(const Image8& image, int scale, int y, Image8& small) {
   for (int x = 0; x < small.width; x++)
     for (int c = 0; c < 3; c++) {
@@ -36,7 +36,7 @@ void reduce_row(const Image8& image, int scale, int y, Image8& small) {
     }
 }
 
-// Of the middle of such pixels, or of the first around it with a point.
+// Returns the object of the middle of such pixels, or of the first around it with a point.
 uint32_t find_object(const PointCache& points, const PointImage& image, int x, int y, int around) {
   for (int away = 0; away <= around; away++)
     for (ivec2 step : {ivec2(1, 1), ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1)}) {
@@ -48,7 +48,7 @@ uint32_t find_object(const PointCache& points, const PointImage& image, int x, i
   return 0;
 }
 
-// Where a direction or place is seen in that picture, if it is.
+// Adds a hint where a place is seen in that picture, if it is.
 void add_hint(const SeenPicture& seen, vec3 place, HintKind kind, std::vector<AttentionHint>& to) {
   Projected at = project_point(seen.view, place);
   AttentionHint hint{vec2(at.x, at.y) / float(seen.scale), kind.radius * float(seen.picture.width),
@@ -58,7 +58,7 @@ void add_hint(const SeenPicture& seen, vec3 place, HintKind kind, std::vector<At
     to.push_back(hint);
 }
 
-// `place`: of the visitor's picture, 0 to 1.
+// Returns a far place in the direction of `place`, which is in the visitor's picture, 0 to 1.
 vec3 place_in_picture(const View& view, vec2 place) {
   Ray ray = view_ray(view, place.x * float(view.width), place.y * float(view.height));
   return ray.origin + ray.direction * far_away;
@@ -76,7 +76,7 @@ const Person* nearest_person(const Show& show, const Visitor& visitor) {
   return nearest;
 }
 
-// Where on the screen a head is turned to: 0 to 1 within, any number beside it.
+// Returns where on the screen a head is turned to: 0 to 1 within, any number beside it.
 vec2 faced_place(const Person& person, const ScreenSize& screen, const View& rest) {
   vec2 at = vec2(person.position) +
             person.position.z * vec2(std::tan(person.rotation.x), std::tan(person.rotation.y));
@@ -97,7 +97,7 @@ AttentionCause find_cause(const Show& show, const Visitor& visitor) {
           show.known};
 }
 
-// Whose turn it is, longest ago first; null: nobody's.
+// Returns the visitor whose turn it is, longest ago first; null: nobody's.
 Visitor* next_to_analyse(Show& show, AttentionCause& cause) {
   Visitor* next = nullptr;
   for (Visitor& visitor : show.visitors) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Attention steers where samples go (Haber et al. 2001, section 3): the newest picture that was
-// drawn for a visitor, its objects, and what tells where the visitor looks, become a factor of the
+// Steers where samples go by attention (Haber et al. 2001, section 3): the newest picture that was
+// drawn for a visitor, its objects, and hints where the visitor looks, become a factor of the
 // priority of each object's pixels.
 //
 //   draw_step --note_seen()--> finish_picture --steer()--> analysis --steer()--> the next job
@@ -13,25 +13,27 @@
 
 namespace wellspring::show {
 
-inline constexpr double analysis_rate = 25;    // a second and visitor, at most
-inline constexpr int widest_seen = 320;        // pixels of the analysed picture, at most
-inline constexpr double pointer_lifetime = 5;  // seconds without news, after which it is let lie
+inline constexpr double analysis_rate = 25;  // times a second for each visitor, at most
+inline constexpr int widest_seen = 320;      // pixels of the analysed picture, at most
+// seconds without news, after which it counts no more
+inline constexpr double pointer_lifetime = 5;
 
-// Is a job's picture to be noted? By the tick.
+// Returns whether a job's picture is to be noted. By the tick.
 bool wants_seen(const Show& show, const Visitor& visitor);
-// The picture in `image`, of job.view, and the points in the visitor's cache, projected for it. By
-// the renderer.
+// Returns the picture in `image`, of job.view, made small, with the objects of the points in the
+// visitor's cache, projected for it. By the renderer.
 std::shared_ptr<const SeenPicture> note_seen(const PictureJob& job, const Image8& image,
                                              const RenderCache& cache);
 // Takes what is finished and begins what is due, for one visitor a call. By the tick; never waits
 // but without a background.
 void steer(Show& show);
 
-// Its weights and seconds: of its cause alone, the same for any number of threads.
+// Finds an analysis's weights and seconds: from its cause alone, the same for any number of
+// threads.
 void analyse(AttentionAnalysis& analysis);
-// What tells where the visitor looks, in pixels of that picture: the pointer or finger, the head of
-// who stands before a kiosk, what the storyteller shows. What is not in it, or no number, is left
-// out.
+// Returns the hints where the visitor looks, in pixels of that picture: the pointer or finger, the
+// head of whoever stands before a kiosk, what the storyteller shows. Hints that are not in the
+// picture, or no numbers, are left out.
 std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,
                                       const SeenPicture& seen);
 

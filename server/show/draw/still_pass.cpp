@@ -92,9 +92,10 @@ void watch_pass(Show& show) {
 
 namespace {
 
-constexpr int cycles = 2, first_cycles = 6;  // of smoothing; when it was not found for a while
-constexpr double a_while = 1.5;              // seconds
-constexpr int sight_rays = 64;               // that tell how large it is in a visitor's picture
+// cycles of smoothing; the latter after a while without light
+constexpr int cycles = 2, first_cycles = 6;
+constexpr double a_while = 1.5;  // seconds
+constexpr int sight_rays = 64;  // rays that find how large moving things are in a visitor's picture
 
 }  // namespace
 
@@ -108,7 +109,7 @@ void begin_skin_light(Show& show, const Visitor& visitor) {
   job.update = {};
   job.views.clear();
   float pixels = 0;
-  bool alike = true;  // all see the same of what moves
+  bool alike = true;  // all visitors see the same moving things
   for (const Visitor& one : show.visitors) {
     const View& view = one.place.last_view;
     if (!one.welcomed || !sees_moving(show, one, view)) continue;
@@ -147,7 +148,8 @@ void finish_skin_light(Show& show) {
 
 namespace {
 
-// The light of lights that move on what stands still in the visitor's picture, and on what moves.
+// Finds the light of moving lights on still surfaces in the visitor's picture, and on moving
+// things.
 void light_picture(Show& show, VisitorPicture& picture) {
   Renderer& renderer = show.renderer;
   DynamicImage& image = renderer.work.dynamic;
@@ -198,19 +200,19 @@ void finish_moving(Show& show, Visitor& visitor) {
   const bool is_first = picture.posed_at < 0;
   picture.posed_at = renderer.posed_at;
   MovingPicture& moving = renderer.work.moving;
-  // Else all of it is drawn anew.
+  // Otherwise the whole picture is drawn anew.
   const bool layer = renderer.posed_layer, relit = !renderer.posed_lights.empty();
   const PictureWindow& moves = layer ? moving.layer.window : moving.window;
   picture.backdrop &= relit || may_be_laid_over(moves, moving.view);
   if (!picture.backdrop) return;
-  // An empty one says that nothing moves any more.
+  // An empty layer says that nothing moves any more.
   picture.layer_unsent = layer && (!moves.empty() || visitor.shown.has_layer);
   float& smoothed = visitor.times.moving;
   float milliseconds = float(1000 * renderer.posed_seconds);
   smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
   std::swap(moving, picture.moving);
   picture.job.time_us = renderer.posed_us;
-  // A page that has what does not move in it need not hear of that again.
+  // A page that has the still part of the picture need not get it again.
   if (!layer || relit || is_first) picture.unshown = true;
   show.totals.posed++;
 }

@@ -24,10 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
-constexpr float too_dark = 30;   // an exposure beyond says that the light is not meant to be all
-constexpr float lamp_light = 3;  // W/m^2 on a wall, of lamps that are added
+constexpr float too_dark = 30;   // a larger exposure says that the light is not meant to be all
+constexpr float lamp_light = 3;  // W/m^2 on a wall, for added lamps
 constexpr double one_degree = 3.14159265358979323846 / 180;
-constexpr SkySettings day{48, 155, 3, 0.2};  // behind the left shoulder of who sees the front
+// behind the left shoulder of a visitor who sees the front
+constexpr SkySettings day{48, 155, 3, 0.2};
 
 double round_to(double value, double unit) { return std::round(value / unit) * unit + 0.0; }
 
@@ -54,14 +55,14 @@ bool shares_node(const gltf::Clip& a, const gltf::Clip& b) {
   return false;
 }
 
-// The exhibit while it is made.
+// Makes the exhibit, and holds it meanwhile.
 struct Maker {
   const std::string id, model;
   const fs::path folder;
   Exhibit exhibit;
   ProposedViews proposed;
   double scale = 1;
-  json lamps = json::array();  // places of lamps that are added
+  json lamps = json::array();  // places of added lamps
   json manifest;
   std::vector<std::string> told;
 
@@ -97,7 +98,7 @@ struct Maker {
     return !exposure || *exposure > too_dark;
   }
 
-  // The model's own light where it has enough, else a sky, else lamps.
+  // Keeps the model's own light if there is enough, else adds a sky, else lamps.
   void find_light() {
     bool has_lamps = !exhibit.scene.lights.empty();
     if ((has_lamps || proposed.is_room) && has_light(exhibit.scene) && !is_dark()) {
@@ -118,7 +119,7 @@ struct Maker {
     told.push_back("it has no lamps and the sky does not come in: lamps were added (lamps.gltf)");
   }
 
-  // One over each viewpoint, half way to the ceiling.
+  // Adds a lamp over each viewpoint: 0.7 of the way to the ceiling, 2 m at most.
   void add_lamps() {
     World world(exhibit.scene);
     for (const Viewpoint& view : proposed.views) {
@@ -160,7 +161,7 @@ struct Maker {
     return list;
   }
 
-  // What moves plays by itself; of clips that pull at the same nodes the first.
+  // Lets animations play by themselves; of clips that pull at the same nodes, only the first.
   json animations() {
     json list = json::array();
     std::vector<const gltf::Clip*> played;
@@ -247,17 +248,17 @@ namespace {
 
 constexpr float degree = pi / 180;
 constexpr int grid = 14;    // places along either side of a room
-constexpr int around = 12;  // directions tried at each
+constexpr int around = 12;  // directions tried at each place
 constexpr float room_fov = 60 * degree, object_fov = 40 * degree;
-constexpr float headroom = 0.15f;   // metres over the eye
-constexpr float elbow_room = 0.5f;  // around it
+constexpr float headroom = 0.15f;   // metres of free height over the eye
+constexpr float elbow_room = 0.5f;  // metres of free space around the eye
 constexpr float closed = 0.7f;      // share of the directions in which a room has walls
 constexpr float least_room = 2.5f;  // metres from wall to wall
-constexpr float farthest = 12;      // metres beyond which seeing farther is not better
+constexpr float farthest = 12;      // metres; seeing farther is not better
 constexpr size_t most_views = 4;
 constexpr int columns = 12, rows = 7;  // rays of a view
 
-// A place in a room and how good its best view is.
+// Holds a place in a room and how good its best view is.
 struct Stand {
   vec3 eye{0};
   float yaw = 0, worth = 0;
@@ -265,7 +266,7 @@ struct Stand {
 
 Hit look(const World& world, vec3 from, vec3 way) { return world.intersect({from, 1e-4f, way}); }
 
-// Nothing is nearer than elbow room, and walls are nearly all around.
+// Returns whether nothing is nearer than elbow room, and walls are nearly all around.
 bool is_in_room(const World& world, vec3 eye) {
   constexpr int count = 48;
   int walls = 0;
@@ -281,7 +282,7 @@ bool is_in_room(const World& world, vec3 eye) {
   return float(walls) > closed * count && !is_in_solid(world, eye, inside);
 }
 
-// How much there is to see: far walls, many things, little emptiness.
+// Returns how much there is to see: far walls, many things, little emptiness.
 float worth_of(const World& world, vec3 eye, float yaw) {
   View view = make_view(world.scene(), world.scene().origin + dvec3(eye), yaw, -4 * degree,
                         room_fov, columns, rows);
@@ -297,7 +298,7 @@ float worth_of(const World& world, vec3 eye, float yaw) {
   return sum / (columns * rows) * (1 + 0.05f * float(std::min<size_t>(seen.size(), 12)));
 }
 
-// Eyes over every floor below (x, z) that leaves room for a visitor.
+// Adds eyes over every floor below (x, z) that leaves room for a visitor.
 void find_stands(const World& world, vec3 from, float eye_height, std::vector<Stand>& stands) {
   vec3 place = from;
   for (int floors = 0; floors < 8; floors++) {
@@ -339,7 +340,8 @@ std::vector<Viewpoint> propose_inside(const World& world, const Bounds& box, flo
                 eye_height, stands);
   }
   if (stands.size() < 3) return {};
-  // The best, then those that are good and far from the ones there are, or look the other way.
+  // Chooses the best stand, then those that are good and far from the chosen ones, or look the
+  // other way.
   std::vector<Stand> chosen;
   const float reach = glm::length(size);
   while (chosen.size() < most_views) {

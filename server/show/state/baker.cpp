@@ -18,10 +18,12 @@ namespace wellspring::show {
 namespace {
 
 constexpr double look_every = 0.05, save_every = 120, at_a_time = 1;  // seconds
-constexpr float better = 0.97f;                                       // of the last error
-constexpr uint32_t ahead = 16;  // passes, of what visitors look at
+// a map is shown if its error is at most this share of the last one's
+constexpr float better = 0.97f;
+constexpr uint32_t ahead = 16;  // passes that tiles in view may be ahead
 
-// Does the work on all cores, or on a thread to which others leave what they do not need.
+// Does the work on all cores, or on one thread of the lowest priority, to which others leave what
+// they do not need.
 template <class Work>
 void work_on(BakerCores cores, const Work& work) {
   if (cores == BakerCores::all) return work();
@@ -29,7 +31,8 @@ void work_on(BakerCores cores, const Work& work) {
   std::thread([&, token = cancel_token()] {
     const CancelScope scope(token);
     const sched_param lowest{};
-    pthread_setschedparam(pthread_self(), SCHED_IDLE, &lowest);  // refused: only less polite
+    // if it is refused, the thread is only less polite
+    pthread_setschedparam(pthread_self(), SCHED_IDLE, &lowest);
     try {
       tbb::task_arena(1).execute(work);
     } catch (...) {
@@ -47,7 +50,7 @@ Baker::Baker(const Scene& scene, BakerSettings settings)
     const CancelScope scope(end);
     try {
       live(end);
-    } catch (const Cancelled&) {}  // before there was anything to be saved
+    } catch (const Cancelled&) {}  // nothing had to be saved yet
   });
 }
 
@@ -74,7 +77,7 @@ void Baker::look(std::vector<Ray> rays) {
   looks_ = std::move(rays);
 }
 
-// False: what visitors look at needs nothing before the rest.
+// Bakes ahead what visitors look at. Returns false if that needs nothing before the rest.
 bool Baker::go_ahead_where_looked(const BakeScene& scene, Bake& bake) {
   std::vector<Ray> rays;
   {
@@ -84,7 +87,7 @@ bool Baker::go_ahead_where_looked(const BakeScene& scene, Bake& bake) {
   return !rays.empty() && go_ahead(scene, bake, find_tiles(scene.world, bake, rays), ahead);
 }
 
-// Where it is better than what is shown.
+// Publishes the map if it is better than the one that is shown.
 void Baker::publish(const World& world, Bake& bake, uint64_t key, float& shown) {
   std::shared_ptr<const IlluminationMap> map = finish_map(world, settings_.eyes, bake);
   if (!map || map->error > better * shown) return;
@@ -111,7 +114,7 @@ void Baker::live(const std::stop_token& end) {
   bake.source = settings_.source;
   float error = bake.passes > 0 ? bake_error(bake) : 1;
   float shown = std::min(settings_.shown_error, most_sure_error);
-  uint64_t next = bake.passes + 1;  // passes after which it is looked at again
+  uint64_t next = bake.passes + 1;  // number of passes after which the map is looked at again
   double saved = seconds_now();
   auto tell = [&](bool works) {
     std::lock_guard lock(mutex_);

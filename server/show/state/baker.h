@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Illumination maps come by themselves: a thread goes on with the exhibit's bake, on all cores
-// while nobody needs them, else in what one core has to spare and first where visitors look. It
-// keeps the bake on disk and hands over a map whenever it has become better.
+// Bakes illumination maps while the show goes on: a thread works on the exhibit's bake, on all
+// cores while nobody needs them, else in the spare time of one core and first where visitors look.
+// It keeps the bake on disk and hands over a map whenever the map has become better.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -17,40 +17,42 @@
 namespace wellspring::show {
 
 struct BakerSettings {
-  std::string file;            // without its ending: .bake is what goes on, .maps what is shown
+  // path without ending: .bake is the unfinished bake, .maps the map that is shown
+  std::string file;
   std::string source;          // the exhibit's folder
-  std::vector<vec3> places;    // scene coordinates: where eyes will be
-  std::vector<vec3> eyes;      // and wherever they may be
-  double least_error = 0.004;  // of the mean light: good enough for ever
-  BakeSettings bake;           // of one that is begun
-  float shown_error = 1;       // of the map that is shown already; 1: nobody knows
-  std::shared_ptr<const IlluminationMap> known;  // on which walks end, all lamps full; may be null
+  std::vector<vec3> places;    // expected places of eyes, in scene coordinates
+  std::vector<vec3> eyes;      // all places where eyes may be
+  double least_error = 0.004;  // share of the mean light; the bake ends at this error
+  BakeSettings bake;           // settings of a bake that begins anew
+  float shown_error = 1;       // error of the map that is shown already; 1: not known
+  // map on which walks end, all lamps full; may be null
+  std::shared_ptr<const IlluminationMap> known;
 };
 
 struct BakerStatus {
-  bool works = false;  // at the moment, on all cores
+  bool works = false;  // whether it bakes at the moment, on all cores
   uint64_t passes = 0;
-  float error = 1;  // of what is known so far; 1: nothing is
+  float error = 1;  // error of the bake so far, share of the mean light; 1: nothing is baked
 };
 
 enum class BakerCores : uint8_t {
   none,
-  spare,  // what other threads leave of one
+  spare,  // the spare time of one core
   all,
 };
 
 class Baker {
  public:
   Baker(const Scene& scene, BakerSettings settings);  // borrows the scene
-  ~Baker();  // what has been found is saved; tenths of a second
+  ~Baker();                                           // saves the bake; takes tenths of a second
   Baker(const Baker&) = delete;
   Baker& operator=(const Baker&) = delete;
 
-  // From now on; within a tenth of a second.
+  // Sets the cores that it may use from now on; it obeys within a tenth of a second.
   void allow(BakerCores cores) { cores_ = cores; }
-  // Visitors look along these rays (scene coordinates). The newest replace those before.
+  // Takes the rays along which visitors look (scene coordinates). The newest replace those before.
   void look(std::vector<Ray> rays);
-  // A better map than the last one taken, or null.
+  // Returns a better map than the last one taken, or null.
   std::shared_ptr<const IlluminationMap> take();
   BakerStatus status() const;
 
@@ -69,7 +71,7 @@ class Baker {
   std::jthread thread_;
 };
 
-// When the show last told its baker where visitors look, and took a map: show time.
+// Holds the show times when the show last gave its baker the visitors' rays, and took a map.
 struct BakerLooks {
   double told_at = -1e9, took_at = -1e9;
 };

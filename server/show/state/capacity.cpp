@@ -9,19 +9,21 @@
 namespace wellspring::show {
 namespace {
 
-constexpr double usable = 0.85;        // of the cores: sockets, ticks and the system take the rest
-constexpr double keyframe_rate = 3;    // a second for each visitor: the floor under load, at most
-constexpr double local_rate = 2;       // the same for pages that go on by themselves in between
-constexpr double keyframe_cost = 0.5;  // of one of full resolution, with its samples, then
+constexpr double usable = 0.85;  // share of the cores; sockets, ticks and the system take the rest
+// keyframes a second for each visitor, the floor under load, at most
+constexpr double keyframe_rate = 3;
+constexpr double local_rate = 2;  // likewise for pages that draw by themselves in between
+// cost then, over that of a keyframe of full resolution with its samples
+constexpr double keyframe_cost = 0.5;
 constexpr double fixed_pixels = 30e3;
 constexpr double bytes_a_pixel = 64, fixed_bytes = 1e6;
-// This share of the cores is given beyond all of them to who comes from an address that has no
-// seat. Everybody has so much less then.
+// A newcomer from an address that has no seat may take this share of the cores beyond all of them.
+// Everybody then has so much less.
 constexpr double spare_cores = 0.25;
-constexpr double kept_memory = 1.0 / 8;  // of the memory, for such newcomers
-constexpr int kept_seats = 8;            // one in so many is for them
-constexpr int guessed = 30;              // pictures that the first guess counts for
-constexpr int remembered = 400;          // pictures that the mean goes over
+constexpr double kept_memory = 1.0 / 8;  // share of the memory, for such newcomers
+constexpr int kept_seats = 8;            // one seat in so many is for such newcomers
+constexpr int guessed = 30;              // number of pictures that the first guess counts for
+constexpr int remembered = 400;          // number of pictures that the mean goes over
 
 }  // namespace
 
@@ -97,8 +99,9 @@ double Capacity::cores_of(SeatSize size) const {
   return cores_a_pixel(cost(), settings_.rate, size.local) * weighed_pixels(size.pixels);
 }
 
-// For who comes from an address without seats no other one counts for more than all the cores: the
-// first visitor of a slow machine may have taken more.
+// Returns the cores that visitors take. For a newcomer from an address without seats, no other
+// address counts for more than all the cores: the first visitor of a slow machine may have taken
+// more.
 double Capacity::taken_cores(bool from_elsewhere) const {
   double most = 0;
   for (const auto& [address, part] : parts_) most = std::max(most, cores_of(part));

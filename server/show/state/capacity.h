@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many visitors a machine serves at once, by what their pictures are found to cost, and by the
-// memory that they take. One for all exhibits of a process: whoever is shown pictures has a Seat;
-// newcomers for whom there is none wait (museum/reception.h), and whoever wants larger pictures
-// asks anew. All calls may come from any thread.
+// Finds how many visitors a machine serves at once, by the measured cost of their pictures and by
+// the memory that they take. One Capacity serves all exhibits of a process: whoever is shown
+// pictures has a Seat; newcomers who get none wait (museum/reception.h), and whoever wants larger
+// pictures asks anew. All calls may come from any thread.
 //
-// Seats are shared among addresses: who comes from one that has none may take a little more than
-// what is kept for all, so that no address keeps others out, however much it takes.
+// Seats are shared among addresses: a newcomer from an address without seats may take a little more
+// than others may, so that no address keeps others out, however much it takes.
 #pragma once
 #include <map>
 #include <memory>
@@ -15,47 +15,49 @@
 namespace wellspring::show {
 
 struct CapacitySettings {
-  double rate = 15;   // pictures a second that everybody is to have who walks
-  int most = 1000;    // visitors, whatever they cost; an address gets seven eighths of these seats
-  double cores = 0;   // of the machine; 0: those that this process may use
+  double rate = 15;  // pictures a second for everybody who walks
+  // visitors at most, whatever they cost; one address gets seven eighths of these seats
+  int most = 1000;
+  double cores = 0;   // cores of the machine; 0: those that this process may use
   double memory = 0;  // bytes for all visitors; 0: memory_share of what this process may use
 };
 inline constexpr double memory_share =
-    0.6;  // exhibits, sockets and what nobody counts have the rest
+    0.6;  // the rest is for exhibits, sockets and what is not counted
 
-// Core-seconds of processor time for each pixel of the visitor's picture: of one that is shown
-// (warped and encoded), of a keyframe of that size, and of encoding that for a page that draws by
-// itself. A machine that is busy with other programs so admits as many as before.
+// Holds core-seconds of processor time for each pixel of the visitor's picture: for one that is
+// shown (warped and encoded), for a keyframe of that size, and for encoding the keyframe for a page
+// that draws by itself. A machine that is busy with other programs thus admits as many visitors as
+// before.
 struct PictureCost {
   double shown = 2.5e-8, drawn = 1e-7, sent = 1.2e-8;
   bool operator==(const PictureCost&) const = default;
 };
 
-// Tells what somebody's pictures are. local: the page draws by itself.
+// Holds the size of somebody's pictures. local: the page draws by itself.
 struct SeatSize {
   double pixels = 0;
   bool local = false;
   SeatSize(double pixels, bool local = false) : pixels(pixels), local(local) {}
 };
 
-// Cores that visitors take who walk all the time, for each pixel of their pictures; see
+// Returns the cores that visitors take who walk all the time, for each pixel of their pictures; see
 // weighed_pixels().
 double cores_a_pixel(const PictureCost& cost, double rate, bool local);
-// What a picture costs besides its pixels, as more of these.
+// Adds to the pixels what a picture costs besides, expressed in pixels.
 double weighed_pixels(double pixels);
-// Bytes that a visitor takes, about: as picture_memory() finds it, and some.
+// Returns about how many bytes a visitor takes: a little more than picture_memory() finds.
 double visitor_bytes(double pixels);
 
 class Capacity;
 
-// A visitor's room, until it is destroyed.
+// A seat is a visitor's share of the machine, until it is destroyed.
 class Seat {
  public:
   ~Seat();
   Seat(const Seat&) = delete;
   Seat& operator=(const Seat&) = delete;
-  // The visitor's pictures are these from now on; false: there is no room for more pixels, and
-  // nothing has changed.
+  // Gives the visitor pictures of this size from now on. Returns false if there is no room for more
+  // pixels; then nothing changes.
   bool resize(SeatSize size);
 
  private:
@@ -68,29 +70,30 @@ class Seat {
   const std::shared_ptr<Capacity> capacity_;
   SeatSize size_;
   const std::string address_;
-  const bool always_;  // whether there is room or not
+  const bool always_;  // whether it was given without regard to room
 };
 
 class Capacity : public std::enable_shared_from_this<Capacity> {
  public:
   explicit Capacity(const CapacitySettings& settings = {});
-  // What a picture of so many pixels took, in core-seconds.
+  // Each notes what a picture of so many pixels took, in core-seconds.
   void note_shown(double pixels, double seconds);
   void note_drawn(double pixels, double seconds);
   void note_sent(double pixels, double seconds);
-  // Null: there is none for so large a picture. The first visitor always gets one. An empty address
-  // shares with nobody.
+  // Returns null if there is no room for so large a picture. The first visitor always gets a seat.
+  // An empty address shares with nobody.
   std::unique_ptr<Seat> find_seat(SeatSize size, const std::string& address = {});
-  std::unique_ptr<Seat> give_seat(SeatSize size);  // whether there is one or not
-  int seats_of(const std::string& address) const;  // taken
+  std::unique_ptr<Seat> give_seat(SeatSize size);  // gives one, whether there is room or not
+  int seats_of(const std::string& address) const;  // number of taken seats
   struct Standing {
-    int seats = 0;                 // taken
-    double busy = 0, cores = 0;    // that they take if all of them walk; that there are for it
+    int seats = 0;  // number of taken seats
+    // cores that visitors take if all of them walk; cores that there are
+    double busy = 0, cores = 0;
     double bytes = 0, memory = 0;  // likewise
     PictureCost cost;
   };
   Standing standing() const;
-  // How many visitors with such pictures there are seats for, with those who are there.
+  // Returns how many visitors with such pictures there are seats for, including present ones.
   int seats_for(SeatSize size) const;
 
  private:
@@ -100,13 +103,13 @@ class Capacity : public std::enable_shared_from_this<Capacity> {
     int count = 0;
     void note(double sample);
   };
-  struct Part {  // what some visitors have together
+  struct Part {  // sums over some visitors
     int seats = 0;
     double shown_weight = 0, local_weight = 0;  // weighed pixels of either kind of picture
     double bytes = 0;
     void add(SeatSize size, int count);
   };
-  // All with the lock held.
+  // All these are called with the lock held.
   double cores_of(SeatSize size) const;
   double cores_of(const Part& part) const;
   bool fits(SeatSize size, const std::string& address) const;

@@ -5,7 +5,8 @@
 
 namespace wellspring::show {
 
-// A second, to a page that draws by itself: keyframes of a walk, and layers of what moves.
+// Limits, a second, for a page that draws by itself: keyframes of a walk, and layers of moving
+// things.
 static constexpr double most_keyframes = 10, most_layers = 25;
 
 FlowWishes flow_wishes(const Show& show, const Visitor& visitor) {

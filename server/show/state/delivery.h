@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a visitor's pictures may be at the moment.
+// Finds what a visitor's pictures may be at the moment.
 #pragma once
 #include "show/state/show.h"
 
 namespace wellspring::show {
 
-// What this visitor would get, were it not for line, encoder and decoder.
+// Returns what this visitor would get if line, encoder and decoder set no limit.
 FlowWishes flow_wishes(const Show& show, const Visitor& visitor);
 PicturePlan picture_plan(const Show& show, const Visitor& visitor);
 

@@ -18,7 +18,7 @@ vec3 above_feet(const Teller& teller, float height) {
   return vec3(teller.storyteller.placement * vec4(0, height, 0, 1));
 }
 
-// Metres to the teller's head for who may see it, else nobody_near.
+// Returns metres to the storyteller's head if the visitor may see it, else nobody_near.
 float distance_to_head(const Show& show, const Visitor& visitor, const Teller& teller) {
   if (!visitor.welcomed || &teller_of(show, visitor) != &teller) return nobody_near;
   View view = view_of(show, visitor);
@@ -26,7 +26,7 @@ float distance_to_head(const Show& show, const Visitor& visitor, const Teller& t
   const vec3 head = above_feet(teller, head_height);
   const Kiosk* kiosk = kiosk_of(show, visitor);
   if (!kiosk || kiosk->audience.guests.empty()) return glm::length(view.position - head);
-  // The screen is a window: who stands before it sees her from there.
+  // The screen is a window: guests who stand before it see the storyteller from there.
   float nearest = nobody_near;
   for (const Guest& guest : kiosk->audience.guests)
     nearest = std::min(nearest, glm::length(guest.head - head));

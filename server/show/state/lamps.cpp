@@ -23,7 +23,7 @@ const LightChange& change_between(Show& show, const LampLevels& before, const La
   return switches.steps.back().change;
 }
 
-// The light on what moves, guessed from another state's until samples say more.
+// Returns the light on moving things, guessed from another state's until there are samples.
 SkinLight changed_skin(Show& show, const LampLevels& before, const LampLevels& after) {
   SkinLight skin = show.skin;
   if (skin.places.empty()) return skin;
@@ -42,8 +42,8 @@ void switch_world(Show& show, const LampLevels& lamps) {
 
 void look_anew(VisitorPicture& picture) {
   picture.rest = {};
-  picture.stats.converged = 0;  // who rests looks again,
-  picture.job.settled = false;  // and first at what is soon to be known
+  picture.stats.converged = 0;  // a visitor at rest needs samples again,
+  picture.job.settled = false;  // first by the quicker technique
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
     look_anew(visitor.picture);
     visitor.picture.fades_next = true;
     if (!first) continue;
-    // Points know their light by itself, not in multiples of what maps know.
+    // So far points hold the light itself, not multiples of a map's light.
     visitor.picture.cache.clear();
   }
 }
@@ -99,7 +99,7 @@ void begin_lamps(Show& show) {
 }
 
 namespace {
-// Whose wishes count.
+// Returns the lamps of the visitor whose wishes count: the leader's, if there is one.
 const VisitorLamps& wishes_of(const Show& show, const Visitor& visitor) {
   const Visitor* leader = leader_of(show, visitor);
   return (leader ? *leader : visitor).lamps;
@@ -163,7 +163,7 @@ void light_lamps(Show& show, Visitor& visitor) {
   lamps.lit_hour = hour_of(show, visitor);
   if (first) return;
   lamps.lit_at = show.time;
-  visitor.picture.around = {}, visitor.picture.fade = {};  // they show another light
+  visitor.picture.around = {}, visitor.picture.fade = {};  // both show another light
   look_anew(visitor.picture);
 }
 
@@ -195,7 +195,7 @@ void follow_lamps(Show& show, Visitor& visitor) {
     const LightChange& change = change_between(show, picture.lamps, lit);
     picture.cache.relight([&](const RenderCache::Surface& at, vec3& kept, vec3& added) {
       if (!change.changes(at.place, at.normal, kept, added)) return false;
-      // What counts in multiples of a map's light changes with the map.
+      // Light that counts in multiples of a map's light changes with the map.
       if (at.object < show.mapped.size() && show.mapped[at.object]) kept = vec3(1), added = vec3(0);
       return true;
     });
@@ -240,7 +240,7 @@ void add_changing(const Show& show, const LampLevels& lit, double time, DynamicL
 DynamicLights dynamic_lights_of(const Show& show, const Visitor& visitor, double time) {
   DynamicLights lights;
   add_held_lights(show.exhibit, teller_of(show, visitor).held, time, first_carried, lights);
-  // Lamps and hour as pictures show them, which follow what is wanted.
+  // Lamps and hour are as pictures show them; they follow the visitor's wishes.
   const VisitorLamps& now = visitor.lamps;
   const std::optional<Day>& day = show.exhibit.day;
   if (!now.lit.empty() && day && now.lit_hour && now.lit[size_t(day->lamp)] > 0)

@@ -17,7 +17,7 @@ namespace wellspring::show {
 
 namespace {
 
-// The storyteller as it stands when it has just come.
+// Puts the storyteller as it stands when it has just come.
 void enter(const Show& show, Teller& teller) {
   const StorytellerPlace& place = show.exhibit.storytellers[teller.index];
   teller.storyteller = {};
@@ -43,11 +43,11 @@ void change_storyteller(const Show& show, Teller& teller, size_t storyteller_ind
 
 namespace {
 
-// Light that this machine has baked, or that the package carries, whichever is better; else that of
-// another scene, as far as its things stand where they stood.
+// Returns light that this machine has baked, or that the package carries, whichever is better; else
+// light of another scene, as far as its things stand where they stood.
 LoadedMap find_maps(const Show& show) {
   const uint64_t key = hash_scene(show.exhibit.scene);
-  const World& world = *show.world;  // its still things are the scene's
+  const World& world = *show.world;  // still objects are those of the scene
   LoadedMap own, shipped = load_map(world, shipped_light(show.exhibit.folder), key);
   if (!show.settings.cache.empty())
     own = load_map(world, show.settings.cache + "/" + show.exhibit.id + ".maps", key);
@@ -57,8 +57,8 @@ LoadedMap find_maps(const Show& show) {
   return worth(own) < worth(shipped) ? own : shipped;
 }
 
-// Techniques need light before the first sample: baked before, or coarse. Returns what pictures
-// show of it.
+// Prepares the light that techniques need before the first sample: baked before, or coarse. Returns
+// the maps that pictures show.
 std::shared_ptr<const IlluminationMap> prepare(Show& show) {
   const bool keeps_light = show.lights.tables->plan.uses(TransportPart::kept_light);
   LoadedMap loaded;
@@ -76,7 +76,7 @@ std::shared_ptr<const IlluminationMap> prepare(Show& show) {
   return loaded.map ? loaded.map : show.lights.known;
 }
 
-// Pictures show `maps`; a baker finds better ones.
+// Makes pictures show `maps`, and begins a baker that finds better ones.
 void begin_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   const ShowSettings& settings = show.settings;
   const bool used = settings.display != Display::points && show.technique->uses_maps &&

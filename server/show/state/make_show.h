@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The beginning of a show, and of a storyteller.
+// Begins a show, and puts storytellers into it.
 #pragma once
 #include <memory>
 
@@ -8,11 +8,12 @@
 namespace wellspring::show {
 
 // Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a
-// tour that cannot be walked. Seconds; may be cancelled (base/worker.h).
+// tour that cannot be walked. Takes seconds; may be cancelled (base/worker.h).
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 
-// Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet
-// and greets anew. Nothing happens when it is there already. It is seen from the next picture on.
+// Puts another storyteller in place of the present one, which falls silent. The new one knows
+// nobody yet and greets anew; it is seen from the next picture on. Does nothing if it is there
+// already.
 void change_storyteller(const Show& show, Teller& teller, size_t storyteller_index);
 
 }  // namespace wellspring::show

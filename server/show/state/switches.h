@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lamps of a running exhibit and its hour of the day as values: how they are wanted, and how
-// the world is lit (show/state/lamps.h).
+// Holds the lamps of a running exhibit and its hour of the day as values: how they are wanted, and
+// how the world is lit (show/state/lamps.h).
 #pragma once
 #include <map>
 #include <optional>
@@ -11,40 +11,41 @@
 
 namespace wellspring::show {
 
-// What became of the light between two states of the lamps.
+// Holds how the light changes between two states of the lamps.
 struct LightStep {
   LampLevels before, after;
   LightChange change;
 };
 
-// What is known of the light in one state of the lamps.
+// Holds the light in one state of the lamps, as far as it has been found.
 struct KnownLight {
   Lights lights;
   SkinLight skin;
 };
 
 struct Switches {
-  std::vector<char> wanted;  // of each of the exhibit's lamps: the house's, for who has not
-                             // switched it for themselves
-  LampLevels lit;            // as the world is
-  Lights all;                // made while all were full; empty where there are none
-  std::shared_ptr<const LampCells> cells;  // of all lamps' light; null: nobody keeps any
-  // Of the other states in which somebody sees the world, while the world is in `lit`.
+  // the house's wish for each of the exhibit's lamps, for visitors who have not switched it for
+  // themselves
+  std::vector<char> wanted;
+  LampLevels lit;  // levels in the world
+  Lights all;  // lights that were made while all lamps were full; empty if the exhibit has no lamps
+  std::shared_ptr<const LampCells> cells;  // light of all lamps; null: none is kept
+  // Light in the other states in which somebody sees the world, while the world is in `lit`.
   std::map<LampLevels, KnownLight> others;
-  // While visitors have yet to follow: of each pair of states, one for all.
+  // Changes that visitors have yet to follow: one for each pair of states, for all visitors.
   std::vector<LightStep> steps;
 };
 
-// A visitor's own.
+// Holds a visitor's own wishes, and what is shown of them.
 struct VisitorLamps {
-  std::vector<char>
-      own;  // of each of the exhibit's lamps: whether it is the visitor's own wish, not the house's
-  std::vector<char> wish;      // of those
-  std::optional<double> hour;  // of the day, the visitor's own wish; nothing: the exhibit's
-  // As the visitor's pictures are to show them.
+  // for each of the exhibit's lamps: whether the visitor's own wish counts, not the house's
+  std::vector<char> own;
+  std::vector<char> wish;      // those wishes
+  std::optional<double> hour;  // hour of the day, the visitor's own wish; none: the exhibit's
+  // These are the lamps and the hour that the visitor's pictures are to show.
   LampLevels lit;  // empty: none yet
   std::optional<double> lit_hour;
-  double lit_at = -1e9;  // show time of the last change of that
+  double lit_at = -1e9;  // show time of their last change
 };
 
 }  // namespace wellspring::show

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One browser's visit, in parts, each of which is what one room of the show works on.
+// Holds one browser's visit, in parts; each folder of the show works on one of them.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -30,15 +30,15 @@
 
 namespace wellspring::show {
 
-// A storyteller as those see her who share her: who of the exhibit's it is, how she is, what she
-// says. The house has one, for kiosks and for visitors who only look on. A visitor who calls her,
-// hides her or asks for a story gets one of their own, so that nobody takes her from anybody. Of
-// all of them there is one figure in the world, which is posed before each picture as its visitor's
-// own teller is.
+// Holds a storyteller as the visitors see it who share it: which of the exhibit's it is, how it is,
+// what it says. The house has one, for kiosks and for visitors who only look on. A visitor who
+// calls the storyteller, hides it or asks for a story gets one of their own, so that nobody takes
+// it from anybody. All of them share one figure in the world, which is posed before each picture as
+// the visitor's storyteller is.
 
 struct Teller {
-  uint64_t number = 0;  // Link::id of the visitor who called her first; 0: the house's
-  size_t index = 0;     // of Exhibit::storytellers
+  uint64_t number = 0;  // Link::id of the visitor who first called it; 0: the house's
+  size_t index = 0;     // index into Exhibit::storytellers
   Storyteller storyteller;
   StorytellerState mind;
   Pose pose;
@@ -50,33 +50,33 @@ struct Teller {
   Mood agent_mood = Mood::idle;
 };
 
-// What a browser that takes parts has on its screen, while its visitor stands
+// Holds what a browser that takes parts has on its screen while its visitor stands
 // (show/draw/parts.h).
 
 struct BrowserPicture {
-  Image8 image;                    // before it was encoded; empty: the next one is complete
-  std::vector<uint8_t> quality;    // JPEG's, of each tile; 0: it is not there in full size
-  std::vector<double> changed_at;  // seconds, of each tile: when its content last did
+  Image8 image;                  // picture before it was encoded; empty: the next one is complete
+  std::vector<uint8_t> quality;  // JPEG quality of each tile; 0: the tile is not there in full size
+  std::vector<double> changed_at;  // seconds when the content of each tile last changed
   size_t next = 0, next_fine = 0;  // tiles at which the next parts begin
-  bool pending = false;  // some tiles could be finer, or are not quite what was drawn last
+  bool pending = false;  // whether some tiles could be finer, or are not quite what was drawn last
 };
 
-// What a visitor has ordered and what is not carried out yet (show/answer/orders.h).
+// Holds what a visitor has ordered and what is not carried out yet (show/answer/orders.h).
 
 struct WaitingOrder {
   BrowserMessage message;
-  bool late = false;  // since an earlier tick
+  bool late = false;  // it waits since an earlier tick
 };
 
 struct VisitorOrders {
   std::vector<WaitingOrder> waiting;                                 // oldest first
-  std::array<RateBound, std::variant_size_v<BrowserMessage>> spent;  // of each kind
+  std::array<RateBound, std::variant_size_v<BrowserMessage>> spent;  // one for each kind of message
 };
 
-// Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
+// Holds milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {
   float display = 0, light = 0, trace = 0, drawing = 0, tonemap = 0, warp = 0, encode = 0;
-  float moving = 0;    // what moves in a picture at rest
+  float moving = 0;    // drawing moving things over a picture at rest
   float whole = 0;     // from a picture's order until it can be shown
   float interval = 0;  // from one picture drawn to the next, while the visitor moves
 };
@@ -85,100 +85,104 @@ inline void smooth(float& value, float sample, float share = 0.1f) {
   value += (sample - value) * share;
 }
 
-// The JPEG made while the next tick begins.
+// Makes the JPEG while the next tick begins.
 struct Encoder {
   Image8 image;
-  std::vector<float> disparity;  // of a keyframe, until it is encoded
-  BrowserPicture has;            // of a browser that takes parts
-  uint32_t frame = 0;            // of the last picture
-  bool unsent = false;           // nothing had changed: it was none
-  double pixels = 0;  // of it, as they count for bytes; 0: of parts, which tell nothing of others
+  std::vector<float> disparity;  // a keyframe's, until it is encoded
+  BrowserPicture has;            // screen of a browser that takes parts
+  uint32_t frame = 0;            // number of the last picture
+  bool unsent = false;           // nothing had changed: no picture was sent
+  // pixels of the last picture, as they count for bytes; 0: parts, which say nothing of others
+  double pixels = 0;
   int quality = 0;
   bool full_chroma = false;
   float milliseconds = 0;
   double processor_seconds = 0;
   size_t bytes = 0;
-  size_t memory_bytes = 0;  // of all this and of what it makes, when it last ended
+  size_t memory_bytes = 0;  // bytes of all this and of what it makes, when it last ended
   Worker task;              // the last member: a picture may be half made
 };
 
-// What the visitor was sent, and how it goes down (show/draw/present.h).
+// Holds what the visitor was sent, and how well line and browser take it (show/draw/present.h).
 struct VisitorDelivery {
   std::unique_ptr<Encoder> encoder = std::make_unique<Encoder>();
-  uint32_t frame_number = 0;     // of the last picture; 0: none yet
-  uint32_t seq = 0;              // that it showed
-  View view;                     // that it showed
-  double sent_at = -1e9;         // show time of it
-  double pictured_at = -1e9;     // when it was due
-  double warp_core_seconds = 0;  // for the last; 0: it was drawn for its view
-  bool lost = false;             // the browser has not what it was sent
-  bool has_still = false;        // its keyframe is of a picture at rest, and parts of such fit it
-  bool has_layer = false;        // what moves was laid over it (packet_layer)
-  bool sent_layer = false;       // that was the last to be sent
-  double refine_at = -1e9;       // when more of a picture at rest may be sent
+  uint32_t frame_number = 0;     // number of the last picture; 0: none yet
+  uint32_t seq = 0;              // input that it showed
+  View view;                     // view that it showed
+  double sent_at = -1e9;         // show time when it was sent
+  double pictured_at = -1e9;     // show time when it was due
+  double warp_core_seconds = 0;  // core-seconds for warping the last; 0: it was drawn for its view
+  bool lost = false;             // the browser lacks what it was sent
+  // its keyframe shows a picture at rest, and parts of such pictures fit it
+  bool has_still = false;
+  bool has_layer = false;   // moving things were laid over the keyframe (packet_layer)
+  bool sent_layer = false;  // a layer was the last to be sent
+  double refine_at = -1e9;  // show time when more of a picture at rest may be sent
   Flow flow;
   GiveWay way;
   float measured_fps = 0;
 };
 
-// A group's visit (show/answer/groups.h).
+// Holds a group's visit (show/answer/groups.h).
 struct VisitorGroup {
-  std::string leads, follows;  // the group's code; empty: no group
-  bool away = false;           // has walked off by themselves
+  std::string leads, follows;  // code of the group; empty: none
+  bool away = false;           // the visitor has walked off by themselves
   vec2 look{0};                // yaw and pitch from where the leader looks
   double looked_at = -1e9;     // show time of the last turn
 };
 
-// Whether anybody is there (show/answer/idle.h). In seconds.
+// Holds whether anybody is there (show/answer/idle.h). Times are in seconds.
 struct VisitorPresence {
-  Hello hello;         // by which the visit began, or went on
-  double quiet = 0;    // since anything was done
-  double hidden = -1;  // that the page has been so; below 0: it is seen
-  bool asked = false;  // whether somebody is still there
+  Hello hello;         // message by which the visit began, or went on
+  double quiet = 0;    // since the visitor did anything
+  double hidden = -1;  // since the page was hidden; below 0: it is seen
+  bool asked = false;  // the visitor was asked whether they are there
 };
 
 struct Visitor {
   std::shared_ptr<Link> link;
-  std::unique_ptr<Seat> seat;  // of the machine's capacity; null: nobody counts
+  std::unique_ptr<Seat> seat;  // share of the machine's capacity; null: not counted
   VisitorPresence presence;
   bool welcomed = false, left = false;
   double came_at = 0;  // show time
   bool kiosk = false;
   std::string lang = "en";
-  std::string name;             // of a kiosk, as its page says it; may be empty
-  std::string id;               // of the visit, over all its links; empty: not told yet
-  std::string told;             // of the visit, that its page keeps (show/answer/come_back.h)
-  double told_at = -1e9;        // show time of that
-  KioskTouch screen;            // of a kiosk's; touched: since the last step of the kiosk
-  int64_t loaded_night = 0;     // of a kiosk's: HouseState::night when its page was loaded
+  std::string name;  // name of a kiosk, as its page says it; may be empty
+  std::string id;    // id of the visit, over all its links; empty: none yet
+  std::string
+      told;  // last record of the visit that its page was sent to keep (show/answer/come_back.h)
+  double told_at = -1e9;        // show time when it was sent
+  KioskTouch screen;            // a kiosk's screen; touched: since the last step of the kiosk
+  int64_t loaded_night = 0;     // HouseState::night when a kiosk's page was loaded
   double state_sent_at = -1e9;  // show time of the last state message
   VisitorSound hearing;         // show/answer/sound.h
-  std::unique_ptr<Teller> own_teller;  // since they called her; null: the house's
+  std::unique_ptr<Teller> own_teller;  // since the visitor called it; null: the house's
   VisitorLamps lamps;
   DynamicLights dynamic;    // lights that move or change, as they are now
-  std::vector<Play> plays;  // of each animation, their own; empty: they have touched none
+  std::vector<Play> plays;  // the visitor's own, for each animation; empty: none was touched
   VisitorGroup group;
   VisitorOrders orders;
   VisitorPlace place;  // show/visit
-  WindowEye window;    // of a kiosk's page
+  WindowEye window;    // eye before a kiosk's screen
   PictureWishes wants;
   VisitorAttention looks;  // show/draw/steer.h
   VisitorPicture picture;  // show/draw
   VisitorDelivery shown;   // show/draw/present.h
   StageTimes times;
-  int counted_tour = -1;  // show/count
-  View posed;             // was told to the page (pose_message())
+  int counted_tour = -1;  // tour that is counted as begun; -1: none (show/count)
+  View posed;             // view that the page was sent (pose_message())
   double posed_at = -1e9;
 };
 
-// Gets pictures: has said hello, and its page is not hidden.
+// Returns whether the visitor gets pictures: it has said hello, and its page is not hidden.
 inline bool is_shown(const Visitor& visitor) {
   return visitor.welcomed && visitor.presence.hidden < 0;
 }
 
-// All memory that pictures of one visitor take, between them; its encoder's as noted there, the
-// rest as it is: not while the renderer is at work on it. Bounded by the picture's size: at most 64
-// MB (of 10^6 bytes) at 1280x720 while the visitor walks, 64 MiB at rest.
+// Returns all memory, in bytes, that pictures of one visitor take between them; its encoder's as
+// noted there, the rest as it is: not while the renderer is at work on it. It is bounded by the
+// picture's size: at most 64 MB (of 10^6 bytes) at 1280x720 while the visitor walks, 64 MiB at
+// rest.
 size_t picture_memory(const Visitor& visitor);
 
 }  // namespace wellspring::show

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of where one visitor looks, and the analysis of that which is under way
+// Holds what is found out about where one visitor looks, and the analysis that is under way
 // (show/draw/steer.h).
 #pragma once
 #include <cstdint>
@@ -15,41 +15,41 @@
 
 namespace wellspring::show {
 
-// A drawn picture, made small, and the object that each of its pixels shows; 0: none.
+// Holds a drawn picture, made small, and the object that each of its pixels shows; 0: none.
 struct SeenPicture {
-  View view;      // that was drawn
-  int scale = 1;  // pixels of it a side of one of these
+  View view;      // view that was drawn
+  int scale = 1;  // pixels of the drawn picture along a side of one of these
   Image8 picture;
   std::vector<uint32_t> object;
 };
 using ObjectWeights = std::vector<float>;  // RenderCache::set_weights()
 
-// What an analysis is made of; equal ones have equal answers.
+// Holds what an analysis is made from; equal ones have equal answers.
 struct AttentionCause {
   std::shared_ptr<const SeenPicture> seen;
-  std::vector<AttentionHint> hints;  // in pixels of that
+  std::vector<AttentionHint> hints;  // places in pixels of that picture
   float task_weight = 0;
-  std::vector<char> known;  // objects that need no samples: nobody's attention makes them better
+  std::vector<char> known;  // objects that need no samples: attention would not make them better
   bool operator==(const AttentionCause&) const = default;
 };
 
 struct VisitorAttention {
-  std::optional<vec2> pointer;              // 0 to 1, from the upper left of the visitor's picture
-  double pointed_at = -1e9;                 // show time of it
-  std::shared_ptr<const SeenPicture> seen;  // the newest; null: none
-  double seen_at = -1e9;                    // show time of its job
-  AttentionCause cause;                     // of the last analysis
-  double analysed_at = -1e9;                // show time of its beginning
+  std::optional<vec2> pointer;  // place, 0 to 1 from the upper left of the visitor's picture
+  double pointed_at = -1e9;     // show time when it pointed there
+  std::shared_ptr<const SeenPicture> seen;       // newest picture; null: none
+  double seen_at = -1e9;                         // show time of its job
+  AttentionCause cause;                          // cause of the last analysis
+  double analysed_at = -1e9;                     // show time of its beginning
   std::shared_ptr<const ObjectWeights> weights;  // null: all are 1
 };
 
-// One for all visitors, who take turns.
+// Holds the analysis, which is one for all visitors, who take turns.
 struct AttentionAnalysis {
-  uint64_t visitor = 0;  // link id of whose it is; 0: none is under way
+  uint64_t visitor = 0;  // link id of the visitor whose analysis is under way; 0: none
   AttentionCause cause;
-  std::shared_ptr<const ObjectWeights> weights;  // what came out
-  double seconds = 0;                            // that it took
-  // What it keeps from one to the next.
+  std::shared_ptr<const ObjectWeights> weights;  // its result
+  double seconds = 0;                            // seconds that it took
+  // Memory that is kept from one analysis to the next:
   SaliencyWork work;
   SaliencyMap saliency;
   TaskWork task;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is kept of one visitor for drawing its pictures (show/draw): the light that is known, the
-// picture that was drawn last, and what is laid over it. The renderer's (show/state/renderer.h)
-// while `at_work`, but for what the tick asks: when it was drawn, for what, and whether it was
-// sent.
+// Holds what is kept of one visitor for drawing its pictures (show/draw): light, the picture that
+// was drawn last, and what is laid over it. It belongs to the renderer (show/state/renderer.h)
+// while `at_work`, but for what the tick asks: when the picture was drawn, for what, and whether it
+// was sent.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -18,80 +18,83 @@
 
 namespace wellspring::show {
 
-// From one picture at rest to the next, better one of the same view the eye is led gradually: a cut
-// would be seen as a flicker.
+// Fades from one picture at rest to the next, better one of the same view: a cut would be seen as a
+// flicker.
 
 struct Fade {
-  Image8 from;  // what was shown; empty: nothing fades
+  Image8 from;  // picture that was shown before; empty: nothing fades
   View view;
   double began = 0;  // show time
 };
 
-// What the keyframe shows passes into what is shown from `time` on.
+// Begins to fade, at `time`, from what the keyframe shows to what is shown from then on.
 void begin_fade(const Keyframe& shown, double time, Fade& fade);
-// How much of the newer picture is shown: 0 to 1; 1 of another view.
+// Returns the share of the newer picture, 0 to 1; 1 if the view is another one.
 float fade_share(const Fade& fade, const View& view, double time);
-// Mixes what was shown into a picture of its size, in display codes.
+// Mixes the picture that was shown before into one of the same size, in display codes.
 void mix_fade(const Fade& fade, float share, Image8& image);
 
-// As the visitor's page asks for it.
+// Holds what the visitor's page asks for.
 struct PictureWishes {
   int width = 1280, height = 720;
   float fps = 0;                              // 0: the show's
   double bandwidth = 0;                       // bytes a second for pictures; 0: no limit
   bool saver = false;                         // nothing is sent that can be done without
-  bool parts = false;                         // of pictures at rest, packet.h
-  bool local = false;                         // keyframes with depth, packet.h
-  int best_quality = 82, still_quality = 92;  // of JPEGs, in motion and at rest
+  bool parts = false;                         // it takes pictures at rest in parts, packet.h
+  bool local = false;                         // it takes keyframes with depth, packet.h
+  int best_quality = 82, still_quality = 92;  // JPEG quality in motion and at rest
   bool attention = true;                      // CacheSettings::attention
-  // Of attention (attention/task.h): 0 what catches the eye, 1 what the visitor looks at.
+  // Weight for attention (attention/task.h): 0 what catches the eye, 1 what the visitor looks
+  // at.
   float task_weight = 0.5f;
 };
 
-// It shows in fewer pixels what lies around the keyframe, while somebody moves.
+// Holds a keyframe that shows in fewer pixels what lies around the main one, while somebody moves.
 struct Surroundings {
   Keyframe keyframe;         // empty: nothing
   bool unsent = false;       // the page that shows keyframes has not got it yet
-  uint32_t camera_cuts = 0;  // of the visitor, by then
-  bool drawn = false;        // since the last picture was: they take turns
+  uint32_t camera_cuts = 0;  // the visitor's camera cuts by then
+  bool drawn = false;        // drawn since the last picture was: the two take turns
 };
 
 struct VisitorPicture {
   bool at_work = false;  // a picture of this visitor is drawn or its samples are traced
-  // The light that is known.
-  LampLevels lamps;            // whose light the cache knows: see show/state/lamps.h
-  std::optional<double> hour;  // of the day, that is seen by
+  // These hold the light that has been found.
+  LampLevels lamps;            // lamps whose light the cache has: see show/state/lamps.h
+  std::optional<double> hour;  // hour of the day that pictures are drawn for
   RenderCache cache;
   Compositor compositor;
-  Broker broker;              // what is traced after its picture, for the next
-  double broker_seconds = 0;  // of all cores, for what was last asked
-  // The renderer's time that it has had, in seconds, on a clock that it shares with the others who
-  // want pictures (Renderer::served): whoever wanted none for a while begins where these are.
+  Broker broker;              // samples that are traced after the visitor's picture, for the next
+  double broker_seconds = 0;  // seconds of all cores, for what was last asked
+  // Seconds of the renderer's time that this visitor has had, on a clock that it shares with the
+  // others who want pictures (Renderer::served): a visitor who wanted none for a while begins where
+  // the others are.
   double served = 0;
   RestState rest;
-  // What was drawn last, and for what.
+  // The picture that was drawn last, and its job:
   PictureJob job;
   PictureCosts costs;
   CacheStats stats;
   double drawn_at = -1e9;  // show time of its job
   float drawn_fps = 0;
-  Image8 image;       // until it is shown
-  Keyframe keyframe;  // what pictures are warped from until the next
-  float relief = 0;   // of it: uncovered_a_metre()
+  Image8 image;       // picture, until it is shown
+  Keyframe keyframe;  // keyframe from which pictures are warped until the next
+  float relief = 0;   // uncovered_a_metre() of the keyframe
   Surroundings around;
-  Fade fade;                  // to the keyframe
+  Fade fade;                  // passes to the keyframe
   bool fades_next = false;    // the next keyframe of the same view has better light: it fades in
-  bool backdrop = false;      // the keyframe is without what moves (show/draw/still_pass.h)
-  MovingPicture moving;       // that, to be laid over it; empty: nothing
-  bool layer_unsent = false;  // its layer has not been sent
-  double posed_at = -1e9;     // show time of its job
-  BackdropSurfaces surfaces;  // of the keyframe, while lights that move shine on it
-  SettledBounce settled;      // of those of them that stay as they are
-  bool unshown = false;       // nothing of it has been sent yet
-  size_t cache_bytes = 0, memory_bytes = 0;  // of its cache; of all that is kept for its pictures
+  bool backdrop = false;      // the keyframe is without moving things (show/draw/still_pass.h)
+  MovingPicture moving;       // moving things, to be laid over the keyframe; empty: none
+  bool layer_unsent = false;  // the layer of `moving` has not been sent
+  double posed_at = -1e9;     // show time of the job of `moving`
+  BackdropSurfaces surfaces;  // surfaces of the keyframe, while lights that move shine on it
+  SettledBounce settled;      // light of those lights that stay as they are
+  bool unshown = false;       // nothing of the newest picture has been sent yet
+  // bytes of its cache; bytes of all that is kept for its pictures
+  size_t cache_bytes = 0, memory_bytes = 0;
 };
 
-// The same memory as it is now: not while the renderer is at work on it.
+// Returns the same memory as it is now. Not while the renderer is at work on it.
 size_t memory_bytes(const VisitorPicture& picture);
 
 }  // namespace wellspring::show

@@ -13,10 +13,10 @@ using Key = CameraPath::Key;
 constexpr double key_spacing = 0.25;  // metres between control points
 constexpr double key_turn = 0.14;     // radians
 constexpr double look_ahead = 1.5;    // metres in which the gaze turns to the way, and from it
-constexpr double least_walk = 3;      // shorter ways are gone with the eyes on where they lead
-constexpr double soften = 0.5;        // seconds over which the law of time is averaged
-constexpr int pieces = 8;             // of the law of time, between control points
-constexpr double level_gaze = -0.04;  // pitch of somebody who looks where he goes
+constexpr double least_walk = 3;  // metres; shorter ways are gone with the eyes on where they lead
+constexpr double soften = 0.5;    // seconds over which the law of time is averaged
+constexpr int pieces = 8;         // samples of the law of time between control points
+constexpr double level_gaze = -0.04;  // pitch of somebody who looks where they go
 
 Key operator+(const Key& a, const Key& b) {
   return {a.position + b.position, a.yaw + b.yaw, a.pitch + b.pitch, a.roll + b.roll,
@@ -26,15 +26,16 @@ Key operator*(const Key& a, double s) {
   return {a.position * s, a.yaw * s, a.pitch * s, a.roll * s, a.fov * s};
 }
 
-// Control point i of the spline that begins and ends at its first and last key, at rest there.
+// Returns control point i of the spline that begins and ends at its first and last key, at rest
+// there.
 const Key& control(const std::vector<Key>& keys, long i) {
   return keys[size_t(std::clamp<long>(i - 2, 0, long(keys.size()) - 1))];
 }
-// Its parameter runs from 0 to this.
+// Returns the end of the spline's parameter, which begins at 0.
 double length_of(const std::vector<Key>& keys) { return double(keys.size()) + 1; }
 
 struct SplinePoint {
-  Key value, slope, bend;  // and its first and second derivative by the parameter
+  Key value, slope, bend;  // the value and its first and second derivative by the parameter
 };
 
 SplinePoint eval_spline(const std::vector<Key>& keys, double u) {
@@ -61,7 +62,7 @@ double nearest_turn(double angle, double to) {
   return angle + 2 * double(pi) * std::round((to - angle) / (2 * double(pi)));
 }
 
-// Positions at equal distances along a way.
+// Returns positions at equal distances along a way.
 std::vector<dvec3> spread(const std::vector<dvec3>& eyes, size_t count) {
   std::vector<double> at{0};
   for (size_t i = 1; i < eyes.size(); i++)
@@ -94,7 +95,7 @@ std::vector<Key> make_keys(const std::vector<dvec3>& eyes, const Viewpoint& from
   double heading = double(from.yaw), last_heading = heading;
   for (size_t i = 0; i < count; i++) {
     double t = double(i) / double(count - 1), s = t * length;
-    // Where it goes: from a bit behind to a bit ahead.
+    // The heading is the way from a bit behind to a bit ahead.
     dvec3 way = points[std::min(i + 2, count - 1)] - points[i >= 2 ? i - 2 : 0];
     if (glm::length(glm::dvec2(way.x, way.z)) > 1e-6)
       heading = nearest_turn(std::atan2(-way.x, -way.z), last_heading);
@@ -125,9 +126,9 @@ std::vector<Key> make_keys(const std::vector<dvec3>& eyes, const Viewpoint& from
   return keys;
 }
 
-// The law of time: as fast as the limits allow everywhere.
+// Holds the law of time: as fast as the limits allow everywhere.
 struct Law {
-  std::vector<double> speed;  // of the parameter, at each sample of it
+  std::vector<double> speed;  // speed of the parameter, at each sample of it
   double du = 0;
 };
 
@@ -152,7 +153,8 @@ Law make_law(const std::vector<Key>& keys, const CameraLimits& limits) {
     push[i] = std::min(
         {double(limits.acceleration) / move, double(limits.turn_acceleration) / turn, 40.0});
   }
-  // The least nearby: what is averaged over time later must not lend speed to its neighbours.
+  // Each speed is the least one nearby: what is averaged over time later must not lend speed to its
+  // neighbours.
   law.speed.resize(count);
   const size_t reach = pieces;
   for (size_t i = 0; i < count; i++)
@@ -168,7 +170,8 @@ Law make_law(const std::vector<Key>& keys, const CameraLimits& limits) {
   return law;
 }
 
-// The parameter at times i * step, averaged over `soften` seconds: changes of speed are eased.
+// Returns the parameter at times i * step, averaged over `soften` seconds: changes of speed are
+// eased.
 std::vector<double> make_times(const std::vector<Key>& keys, const CameraLimits& limits,
                                double step) {
   Law law = make_law(keys, limits);
@@ -176,14 +179,14 @@ std::vector<double> make_times(const std::vector<Key>& keys, const CameraLimits&
   for (size_t i = 1; i < law.speed.size(); i++)
     at.push_back(at.back() + 2 * law.du / std::max(law.speed[i] + law.speed[i - 1], 1e-9));
   size_t window = size_t(soften / step), count = size_t(at.back() / step) + 2;
-  std::vector<double> sum{0};  // of the parameter over time; before it 0, after it the end
+  std::vector<double> sum{0};  // integral of the parameter over time; before it 0, after it the end
   double end = length_of(keys);
   size_t k = 0;
   auto place = [&](double time) {
     if (time <= 0) return 0.0;
     if (time >= at.back()) return end;
     while (k + 2 < at.size() && at[k + 1] < time) k++;
-    // Constant acceleration between samples.
+    // The acceleration is constant between samples.
     double span = at[k + 1] - at[k], t = (time - at[k]) / span, v0 = law.speed[k],
            v1 = law.speed[k + 1];
     double moved = span * (v0 * t + 0.5 * (v1 - v0) * t * t);
@@ -212,7 +215,7 @@ double place_at(const CameraPath& path, double time) {
          slope_b * (t3 - t2);
 }
 
-// How many times faster than allowed it is anywhere.
+// Returns how many times faster than allowed the camera is anywhere, at least 1.
 double excess(const CameraPath& path, const CameraLimits& limits) {
   double most = 1;
   Key before = eval_spline(path.keys, path.along.front()).value;
@@ -267,7 +270,7 @@ float turn_ahead(const CameraPath& path, double time, double seconds) {
 }
 
 namespace {
-constexpr float slow_seconds = 0.35f;  // how softly it slows down
+constexpr float slow_seconds = 0.35f;  // seconds of lag with which it slows down
 }
 
 Viewpoint advance_glide(Glide& glide, bool leaps, float dt) {

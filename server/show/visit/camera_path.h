@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera's trajectory along a way: position, yaw, pitch, roll and field of view as one cubic
-// B-spline (twice continuously differentiable; de Boor 1978), and a law of time that keeps
+// Holds the camera's trajectory along a way: position, yaw, pitch, roll and field of view as one
+// cubic B-spline (twice continuously differentiable; de Boor 1978), and a law of time that keeps
 // speed, turning and their changes comfortable everywhere, starting and ending at rest. Immutable.
 #pragma once
 #include <memory>
@@ -27,32 +27,32 @@ struct CameraPath {
   double step = 1.0 / 60, seconds = 0;
 };
 
-// `eyes`: where the eyes pass, the ends included, absolute and dense enough to be kept to; two
-// equal points: a turn on the spot. Looks where it goes in between, if that is far enough. Takes at
-// least `least_seconds`, if there is any way to go.
+// Makes the path. `eyes`: where the eyes pass, the ends included, absolute and dense enough to be
+// kept to; two equal points: a turn on the spot. The camera looks where it goes in between, if that
+// is far enough. The path takes at least `least_seconds`, if there is any way to go.
 CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& from,
                             const Viewpoint& to, const CameraLimits& limits,
                             double least_seconds = 0);
 
-// At `time` seconds from the beginning; before and after it as at its ends. Yaw is within 2 pi of
-// `to`'s.
+// Returns the view at `time` seconds from the beginning; before and after it, the view at its ends.
+// Yaw is within 2 pi of `to`'s.
 Viewpoint eval_camera_path(const CameraPath& path, double time);
 
-// Radians that it turns within `seconds` from `time` on.
+// Returns the radians that the camera turns within `seconds` from `time` on.
 float turn_ahead(const CameraPath& path, double time, double seconds);
 
-// The camera on its way to where a visitor pointed. A value advanced by time.
+// Moves the camera on its way to where a visitor pointed. A glide is a value advanced by time.
 
-// Quicker than a tour: the visitor knows where it leads.
+// A glide is quicker than a tour: the visitor knows where it leads.
 inline constexpr CameraLimits glide_limits{1.7f, 0.9f, 1.1f, 1.5f};
 
 struct Glide {
   std::shared_ptr<const CameraPath> path;  // null: it is over
-  double time = 0;                         // on the path
-  float pace = 1, most_pace = 1;           // 0..1 of the path's own speed, as of a TourRide
+  double time = 0;                         // seconds on the path
+  float pace = 1, most_pace = 1;  // shares of the path's own speed, 0 to 1, as in a TourRide
 };
 
-// Moves on by `dt` seconds, 0 to 0.25, or, where it leaps, to the end. Call while there is a path.
+// Moves on by `dt` seconds, 0 to 0.25, or, if it leaps, to the end. Call it while there is a path.
 Viewpoint advance_glide(Glide& glide, bool leaps, float dt);
 
 }  // namespace wellspring::show

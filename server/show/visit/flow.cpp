@@ -7,13 +7,14 @@
 namespace wellspring::show {
 
 namespace {
-constexpr double silence = 2;       // seconds without an acknowledgement before a trickle is sent
-constexpr double trip_window = 10;  // seconds; the smallest trip is of this one or the last
-constexpr double shortest_busy = 2e-3;    // seconds: what is shorter is not measured well
-constexpr double sure_busy = 0.1;         // seconds, likewise
+constexpr double silence = 2;  // seconds without an acknowledgement before a trickle is sent
+// seconds; the smallest trip is taken from this window and the last
+constexpr double trip_window = 10;
+constexpr double shortest_busy = 2e-3;    // seconds; shorter times are not measured well
+constexpr double sure_busy = 0.1;         // seconds; longer times are measured well
 constexpr size_t small_bytes = 1500;      // one packet of the network: its trip is the line's
-constexpr size_t telling_bytes = 2000;    // fewer do not tell a rate
-constexpr float full_chroma_size = 1.3f;  // over 4:2:0, of pictures of the castle
+constexpr size_t telling_bytes = 2000;    // fewer bytes do not say a rate
+constexpr float full_chroma_size = 1.3f;  // size over 4:2:0, for pictures of the castle
 
 void note_trip(Flow& flow, float trip, double now) {
   if (now - flow.window_began > trip_window) {
@@ -56,7 +57,7 @@ void note_delivery(Flow& flow, const Delivery& delivery) {
   flow.deliveries++;
   if (delivery.picture && !flow.acknowledges && !flow.in_flight.empty()) flow.in_flight.pop_front();
   const double trip = std::max(delivery.ended - delivery.began, 1e-4);
-  // A smaller trip is always the line's; a larger one only where nothing was in its way.
+  // A smaller trip is always the line's; a larger one only if nothing was in its way.
   const bool clear = delivery.alone && delivery.bytes <= small_bytes;
   if (clear || float(trip) < flow.line_trip) note_trip(flow, float(trip), delivery.ended);
   const double before = flow.delivered;
@@ -65,10 +66,10 @@ void note_delivery(Flow& flow, const Delivery& delivery) {
     const double from = std::max(delivery.began + double(flow.line_trip), before);
     const double busy = std::max(delivery.ended - from, shortest_busy);
     const float rate = float(double(delivery.bytes) / busy);
-    // Few bytes tell only that the line carries as much.
+    // Few bytes say only that the line carries as much.
     const bool more = flow.line_rate > 0 && rate > flow.line_rate;
     if (delivery.bytes < telling_bytes && !more) return;
-    // What took long is measured well, and a line that became slow is believed at once.
+    // A long delivery is measured well, and a line that became slow is believed at once.
     const bool sure = flow.line_rate == 0 || (rate < flow.line_rate && busy >= sure_busy);
     flow.line_rate += (rate - flow.line_rate) * (sure ? 1 : 0.5f);
   }
@@ -106,17 +107,19 @@ constexpr double least_rate = 8;    // pictures a second, before resolution fall
 constexpr double trickle_rate = 1;  // likewise, whatever happens
 constexpr int least_eighths = 2;
 constexpr float most_pressure = 3, step = 0.05f;
-constexpr double line_share = 0.85;   // of the line's rate: the rest lets its queue run empty
-constexpr double unknown_rate = 1e6;  // bytes a second of a line before it is known
-// A picture's time on the line: with its trip, far from the two trips and 100 ms it may take.
+constexpr double line_share = 0.85;   // share of the line's rate: the rest lets its queue run empty
+constexpr double unknown_rate = 1e6;  // bytes a second of a line before it is measured
+// A picture may occupy the line for these seconds, and for this share of a round trip: together
+// with its trip that stays far below the two trips and 100 ms that it may take.
 constexpr double line_seconds = 0.065, line_trips = 0.6;
-constexpr double work_share = 0.85;    // of a period, for encoding and for decoding
+constexpr double work_share = 0.85;    // share of a period, for encoding and for decoding
 constexpr double work_seconds = 0.08;  // for one picture
 constexpr double first_wait = 0.2, longest_wait = 1.6;    // seconds between probes
 constexpr double update_interval = 0.02;                  // seconds
-constexpr float probe = 0.5f;                             // that a pressure falls by
+constexpr float probe = 0.5f;                             // amount that a pressure falls by
 constexpr double failed_within = 1, forgotten_after = 4;  // seconds after a probe
-constexpr float clear_evidence = 0.5f;  // that there is room: probes need not wait
+// difference that shows that there is room: probes need not wait
+constexpr float clear_evidence = 0.5f;
 
 PicturePlan plan_at(float at, const FlowWishes& wishes) {
   const int worst = std::min(worst_quality, wishes.quality);
@@ -134,7 +137,8 @@ double bytes_of_plan(const Flow& flow, const FlowWishes& wishes, const PicturePl
   return expected_bytes(flow, counted_pixels(wishes.pixels, plan.eighths), plan.quality, false);
 }
 
-// Time for a picture's encoding or decoding, over that of one at full size and quality 50.
+// Returns the time for a picture's encoding or decoding, over that of one at full size and quality
+// 50.
 double work_of_plan(const PicturePlan& plan) {
   const double scale = plan.eighths / 8.0;
   return scale * scale * (0.6 + 0.4 * double(size_of_quality(plan.quality)));
@@ -159,7 +163,7 @@ float of_line(const Flow& flow, const FlowWishes& wishes) {
   });
 }
 
-// What takes that long as pictures are now.
+// Returns the pressure at which work that takes `seconds` as pictures are now is quick enough.
 float of_work(double seconds, const PicturePlan& now, const FlowWishes& wishes) {
   const double whole = seconds / work_of_plan(now);
   return first_that(wishes, [&](const PicturePlan& plan) {
@@ -181,7 +185,7 @@ void move(Pressure& one, float target, double now) {
     one.wait = first_wait;
   if (one.value - target > clear_evidence)
     one.wait = first_wait, one.next_probe = std::min(one.next_probe, now + first_wait);
-  // Less than a step is not worth a change that is seen, but at the end.
+  // A change of less than a step is not worth being seen, but at the end.
   if (now < one.next_probe || (target > 0 && one.value - target < 2 * step)) return;
   if (one.value > target) one.fell = now;
   one.value = std::max(target, one.value - probe);
@@ -212,7 +216,8 @@ void update(GiveWay& way, const Flow& flow, const FlowWishes& wishes, float enco
   if (now - way.updated_at < update_interval) return;
   way.updated_at = now;
   const PicturePlan plan = plan_at(pressure(way), wishes);
-  // Of a line of which nothing is known only the guess is kept to: it is no reason to give way.
+  // A line that is not measured yet is no reason to give way: only the guess of its rate is kept
+  // to.
   if (flow.line_rate > 0 || wishes.bandwidth > 0)
     move(way.pressures[0], of_line(flow, wishes), now);
   move(way.pressures[1], of_work(0.001 * double(encode_ms), plan, wishes), now);

@@ -11,8 +11,8 @@
 namespace wellspring::show {
 
 namespace {
-constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
-constexpr float level_seconds = 0.4f;  // how softly who walks comes upright
+constexpr float ease_seconds = 0.09f;  // seconds of lag with which a visitor starts and stops
+constexpr float level_seconds = 0.4f;  // seconds of lag with which a walking visitor comes upright
 constexpr float least_roll = 0.001f;   // radians
 }  // namespace
 
@@ -74,16 +74,16 @@ TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
 namespace {
 
 constexpr double motion_seconds =
-    0.05;  // in which motion is measured: inputs may come thirty times a second
-constexpr double longest_gap = 0.5;   // between two views that tell motion
-constexpr size_t most_past = 32;      // views of that time
+    0.05;  // seconds in which motion is measured: inputs may come thirty times a second
+constexpr double longest_gap = 0.5;   // seconds between two views that show motion
+constexpr size_t most_past = 32;      // number of views of that time
 constexpr float fastest = 25;         // metres a second; more is a jump
 constexpr float smallest_cut = 0.5f;  // metres
 
 constexpr float widest_turn = 0.8f;     // radians to either side
 constexpr float turned_away = 0.8f;     // radians
 constexpr float walked_away = 2;        // metres
-constexpr float wide_share = 1 / 8.0f;  // of the view's pixels
+constexpr float wide_share = 1 / 8.0f;  // share of the view's pixels
 
 }  // namespace
 
@@ -102,7 +102,7 @@ bool note_view(Heading& heading, double time, const View& view) {
     return alike(one) && time - one.time <= motion_seconds;
   };
   auto first = std::find_if(past.begin(), past.end(), of_use);
-  // Where ticks come late the last one has to do, or there would be no motion.
+  // If ticks come late the last view has to do, or there would be no motion.
   if (first == past.end() && !past.empty() && alike(past.back())) first--;
   past.erase(past.begin(), first);
   if (past.size() >= most_past) past.erase(past.begin());
@@ -111,7 +111,7 @@ bool note_view(Heading& heading, double time, const View& view) {
 }
 
 View expected_view(const Heading& heading, const View& now, double seconds) {
-  // Of a quick turn less than all views are enough.
+  // In a quick turn, fewer than all views are enough.
   for (const Heading::PastView& past : heading.past) {
     double passed = heading.past.back().time - past.time;
     if (!(passed > 0)) break;
@@ -151,14 +151,14 @@ bool is_elsewhere(const View& wide, const View& now) {
 namespace {
 
 constexpr float fov = 0.7f;                       // radians, of the picture's height
-constexpr float filled = 0.8f;                    // of the picture, by the object
-constexpr float turns = 2;                        // as far as a head would
+constexpr float filled = 0.8f;                    // share of the picture that the object fills
+constexpr float turns = 2;                        // times as far as a head would turn
 constexpr float lowest = -1.45f, highest = 0.6f;  // radians of the eye's pitch
-constexpr double nearest = 1.15, farthest = 6;    // radii
-constexpr double zoom_rate = 0.8;                 // of the logarithm of the distance, for 1 m/s
+constexpr double nearest = 1.15, farthest = 6;    // least and greatest distance, in radii
+constexpr double zoom_rate = 0.8;  // change of the logarithm of the distance a second, for 1 m/s
 constexpr float way_seconds = 0.9f;
 constexpr float turn_seconds = 0.08f;
-constexpr double margin = 1.02;  // of the sphere that is not cut
+constexpr double margin = 1.02;  // times the radius: the sphere that is not cut
 
 vec3 forward_of(vec2 look) {
   return {-std::sin(look.x) * std::cos(look.y), std::sin(look.y),
@@ -226,7 +226,7 @@ void advance_around(const Viewpoint& from, float forward, bool leaps, float dt, 
   const float ease = leaps ? 1 : 1 - std::exp(-dt / turn_seconds);
   const vec2 rest = around.wanted_look - around.look;
   const double far = around.wanted_distance - around.distance;
-  // Comes to an end, so that the picture rests.
+  // The motion comes to an end, so that the picture rests.
   const bool there = glm::length(rest) < 2e-4f && std::abs(far) < 2e-4 * around.distance;
   around.look += there ? rest : ease * rest;
   around.distance += there ? far : double(ease) * far;

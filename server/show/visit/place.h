@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where one visitor is: the place and what moves it, by its own steps or by a tour, and what of its
-// motion is remembered to tell where it is heading.
+// Holds where one visitor is: the place and what moves it, by the visitor's own steps or by a tour,
+// and the past motion that says where the visitor is heading.
 #pragma once
 #include <optional>
 #include <vector>
@@ -13,56 +13,58 @@
 
 namespace wellspring::show {
 
-// An object looked at from all sides, as if it were lifted out of its case: the eye goes round it,
-// what stands before it is cut away, and it keeps the light of its place. The visitor stays where
-// they stand meanwhile.
+// Lets a visitor look at an object from all sides, as if it were lifted out of its case: the eye
+// goes round it, what stands before it is cut away, and it keeps the light of its place. The
+// visitor stays where they stand meanwhile.
 
 struct Around {
   int point = -1;       // index into Exhibit::points; -1: nothing
-  bool leaves = false;  // goes back to where the visitor stands
-  float share = 0;      // of the way there: 0 is where the visitor stands, 1 round the object
+  bool leaves = false;  // the eye goes back to where the visitor stands
+  float share = 0;      // share of the way there: 0 is where the visitor stands, 1 round the object
   dvec3 centre{0};      // absolute
-  double radius = 0;    // metres, of a sphere around it
-  double distance = 0, wanted_distance = 0;  // of the eye from the centre, metres
+  double radius = 0;    // metres, of a sphere around the object
+  double distance = 0, wanted_distance = 0;  // metres from the centre to the eye
   vec2 look{0}, wanted_look{0};              // yaw and pitch of the eye, which looks at the centre
-  Viewpoint view;                            // as it is seen
+  Viewpoint view;                            // the object as it is seen
   float near = 0;                            // View::near
 };
 
-// Of all that belongs to the object as it stands now, relative to the scene's origin; empty: low
-// above high.
+// Returns the bounds of all that belongs to the object as it stands now, relative to the scene's
+// origin; empty: low above high.
 Bounds object_bounds(const World& world, const PointOfInterest& point);
 
-// From the side of which it is seen from `from`. `aspect`: the picture's width over its height.
+// Begins from the side of the object that is seen from `from`. `aspect`: the picture's width over
+// its height.
 void begin_around(const Exhibit& exhibit, int point, const Bounds& bounds, const Viewpoint& from,
                   float aspect, Around& around);
-// Turns it by `look`, as a visitor's head turns by that.
+// Turns the object by `look`, as a visitor's head turns by that.
 void turn_around(vec2 look, Around& around);
-// Moves on by `dt` seconds, nearer by `forward` metres a second of its own size. `from`: where the
-// visitor stands; `leaps`: at once. It ends by itself once it has gone back.
+// Moves on by `dt` seconds, nearer by `forward` metres a second of the object's own size. `from`:
+// where the visitor stands; `leaps`: at once. It ends by itself once it has gone back.
 void advance_around(const Viewpoint& from, float forward, bool leaps, float dt, Around& around);
 
-// Where a visitor is heading: what its view has done in the last moments, and where that leads by
-// when a picture that is drawn now is seen.
+// Finds where a visitor is heading: what its view has done in the last moments, and where that
+// leads by when a picture that is drawn now is seen.
 
 struct Heading {
   struct PastView {
     double time = 0;
     View view;
   };
-  std::vector<PastView>
-      past;  // of the last twentieth of a second, at most 32; at least the last one before
+  // views of the last twentieth of a second, at most 32; at least the last one before
+  std::vector<PastView> past;
 };
 
-// The view at a later `time`. True: it has leapt to another place, so that nothing of before helps.
+// Notes the view at a later `time`. Returns true if it has leapt to another place, so that nothing
+// seen before helps.
 bool note_view(Heading& heading, double time, const View& view);
 
-// Where the view is to be expected `seconds` after it was last noted, as `now`: straight on, and
-// round the same axis. Keys start and stop at once, so that motion is measured over as short a time
-// as inputs allow, which come in steps of their own; to expect less of motion the younger it is
-// gains nothing more (cache.turns.unknown).
+// Returns the view that is to be expected `seconds` after it was last noted, as `now`: straight on,
+// and round the same axis. Keys start and stop at once, so that motion is measured over as short a
+// time as inputs allow, which come in steps of their own; to expect less of motion the younger it
+// is gains nothing more (cache.turns.unknown).
 View expected_view(const Heading& heading, const View& now, double seconds);
-// By how many radians the view may turn away from there in `seconds` more or less.
+// Returns by how many radians the view may turn away from there in `seconds` more or less.
 float expected_turn(const Heading& heading, const View& now, double seconds);
 
 struct EyeMotion {
@@ -72,24 +74,24 @@ EyeMotion motion_of(const Heading& heading, const View& now);
 
 // Returns a view of all that a visitor may turn to within a moment, in an eighth of the pixels.
 View wide_view(const View& now);
-// The visitor has moved away from what such a view shows well.
+// Returns whether the visitor has moved away from what such a view shows well.
 bool is_elsewhere(const View& wide, const View& now);
 
 struct VisitorPlace {
   Viewpoint view;
-  vec3 move{0};      // as last asked for: right, up, forward
-  vec3 velocity{0};  // what the visitor does: follows `move` smoothly
-  uint32_t seq = 0;  // of the last input, camera or viewpoint message
+  vec3 move{0};      // wish as last sent: right, up, forward
+  vec3 velocity{0};  // the visitor's velocity, which follows `move` smoothly
+  uint32_t seq = 0;  // number of the last input, camera or viewpoint message
   int viewpoint =
       0;  // index of the named viewpoint last jumped to, while the visitor stays there; else -1
   TourRide tour;
   Glide glide;
-  int closer = -1;       // index into Exhibit::points: what the visitor went to look at
-  Around around;         // what is looked at from all sides, instead of from `view`
-  bool comfort = false;  // leaps instead of gliding
-  // Noticed once a tick (show/draw/pace.h).
-  View last_view;            // of the last tick
-  uint32_t camera_cuts = 0;  // to other places, so that nothing seen before helps
+  int closer = -1;       // index into Exhibit::points of what the visitor went to look at
+  Around around;         // object that is looked at from all sides, instead of from `view`
+  bool comfort = false;  // the visitor leaps instead of gliding
+  // These are noticed once a tick (show/draw/pace.h).
+  View last_view;            // view in the last tick
+  uint32_t camera_cuts = 0;  // number of cuts to other places, so that nothing seen before helps
   Heading heading;
   double moved_at = 0;  // show time of the last change of view
 };
@@ -99,9 +101,9 @@ struct VisitorPlace {
 TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
                       const Exhibit& exhibit, const TourRoads& roads,
                       const std::optional<dvec3>& person, float dt);
-// Neither on the way to anything nor looking closer at it, or round it, any more.
+// Ends being on the way to anything, and looking closer at it or round it.
 void stand(VisitorPlace& place);
-// There is then nothing left to be seen of where the visitor was.
+// Leaps to a viewpoint: a camera cut, after which nothing seen before helps.
 void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibit, int viewpoint);
 
 }  // namespace wellspring::show

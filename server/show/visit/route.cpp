@@ -11,22 +11,24 @@ namespace wellspring::show {
 
 namespace {
 
-constexpr float spacing = 0.15f;  // of the points of a way
-constexpr float thin_cost = 3;    // how much dearer a metre is where there is no room to spare
+constexpr float spacing = 0.15f;  // metres between the points of a way
+constexpr float thin_cost = 3;    // how much dearer a metre is if there is no room to spare
 constexpr int smoothing_rounds = 150;
 
 std::string name_place(vec3 p) { return fmt::format("({:.2f}, {:.2f}, {:.2f})", p.x, p.y, p.z); }
 
-// What an edge between places must keep from things so that all of it keeps the radius.
+// Returns the distance from things that an edge between places needs so that all of it keeps the
+// radius.
 float need_of(const WalkMap& map) { return map.radius + 0.71f * map.cell; }
 
 struct Open {
-  float guess = 0;  // of the whole way
+  float guess = 0;  // guessed length of the whole way
   int place = 0;
   bool operator<(const Open& other) const { return guess > other.guess; }
 };
 
-// Places from `from` to `to`; empty: none. `nearest` is the place reached that is nearest to `to`.
+// Returns places from `from` to `to`; empty: none. `nearest` is the place reached that is nearest
+// to `to`.
 std::vector<int> search(const WalkMap& map, int from, int to, int& nearest) {
   const float need = need_of(map);
   const size_t count = map.places.size();
@@ -69,7 +71,7 @@ std::vector<int> search(const WalkMap& map, int from, int to, int& nearest) {
   return way;
 }
 
-// Is the straight line free, at `keep` metres from things?
+// Returns whether the straight line is free, at `keep` metres from things.
 bool is_free(const WalkMap& map, vec3 a, vec3 b, float keep) {
   int steps = std::max(1, int(std::ceil(glm::length(b - a) / (0.5f * map.cell))));
   vec3 p = a;
@@ -81,12 +83,12 @@ bool is_free(const WalkMap& map, vec3 a, vec3 b, float keep) {
   return std::abs(p.y - b.y) < walk_step;
 }
 
-// Corners that can be cut are.
+// Cuts all corners that can be cut.
 std::vector<vec3> pull(const WalkMap& map, const std::vector<vec3>& points) {
   std::vector<vec3> pulled{points.front()};
   for (size_t i = 0; i + 1 < points.size();) {
     size_t next = i + 1;
-    // As far as can be seen: double the reach, then halve it.
+    // The next point is the farthest that can be seen: the range is halved until it is found.
     size_t low = 1, high = points.size() - 1 - i;
     while (low < high) {
       size_t middle = (low + high + 1) / 2;
@@ -110,7 +112,7 @@ std::vector<vec3> resample(const std::vector<vec3>& points) {
   return result;
 }
 
-// Every point goes towards the middle of its neighbours, unless that leads too near to something.
+// Moves every point towards the middle of its neighbours, unless that leads too near to something.
 void smooth(const WalkMap& map, std::vector<vec3>& points) {
   for (int round = 0; round < smoothing_rounds; round++)
     for (size_t i = 1; i + 1 < points.size(); i++) {
@@ -147,7 +149,7 @@ Route find_route(const WalkMap& map, vec3 from, vec3 to) {
   std::vector<vec3> points;
   for (int p : way) points.push_back(map.places[size_t(p)].ground);
   points = pull(map, points);
-  // The ends are where they are, not where the grid has a place.
+  // The route ends at the given ends, not where the grid has a place.
   auto join = [&](vec3 foot, vec3& end) {
     foot.y = end.y;
     if (clear_at(map, foot) >= map.radius) end = foot;
@@ -187,7 +189,7 @@ int nearest_of(const WalkMap& map, const std::vector<int>& places, vec3 ground) 
   int best = -1;
   float least = INFINITY;
   for (int place : places) {
-    // Another storey is farther than it looks.
+    // Another storey counts as farther than it looks.
     vec3 way = (map.places[size_t(place)].ground - ground) * vec3(1, 3, 1);
     if (float distance = dot(way, way); distance < least) least = distance, best = place;
   }
@@ -196,18 +198,19 @@ int nearest_of(const WalkMap& map, const std::vector<int>& places, vec3 ground) 
 
 namespace {
 
-constexpr int most_panes = 64;             // passed before a ray counts as lost
-constexpr float finger = 0.02f;            // of the picture's height
-constexpr float steepest_ground = 0.7f;    // cosine: what is steeper is no ground
-constexpr float storey = 20;               // metres in which ground is looked for below a place
-constexpr float largest = 3, part = 1.2f;  // metres: half of what is seen as one, and of a part
-constexpr float farthest_look = 14;        // metres from which an object is looked at
-constexpr float share = 0.75f;             // of the picture that it takes at most
-constexpr float narrowest = 0.42f;         // radians, as if one leant over it
-constexpr size_t most_looks = 240;         // places tried with rays
-constexpr size_t sample_count = 16;        // of an object's surface
+constexpr int most_panes = 64;           // panes passed before a ray counts as lost
+constexpr float finger = 0.02f;          // share of the picture's height
+constexpr float steepest_ground = 0.7f;  // cosine; steeper surfaces are no ground
+constexpr float storey = 20;             // metres in which ground is looked for below a place
+// metres: half the diagonal of what is seen as one; half a side of a part
+constexpr float largest = 3, part = 1.2f;
+constexpr float farthest_look = 14;  // metres from which an object is looked at
+constexpr float share = 0.75f;       // share of the picture that the object takes at most
+constexpr float narrowest = 0.42f;   // radians, as if the visitor leant over the object
+constexpr size_t most_looks = 240;   // places tried with rays
+constexpr size_t sample_count = 16;  // number of samples of an object's surface
 
-// A triangle: its middle, and the box around it.
+// Holds a triangle: its middle, and the box around it.
 struct SurfaceSample {
   vec3 place, normal;
   float area = 0;  // m^2
@@ -222,7 +225,8 @@ bool has(const Objects& objects, uint32_t object) {
   return object != 0 && std::ranges::find(objects, object) != objects.end();
 }
 
-// Of several that it belongs to, the one with the fewest parts.
+// Returns the point of interest that an object belongs to; of several, the one with the fewest
+// parts.
 int point_of(const Exhibit& exhibit, uint32_t object) {
   int found = -1;
   size_t fewest = SIZE_MAX;
@@ -243,14 +247,14 @@ vec3 normal_of(const World& world, const Hit& hit) {
   return length > 0 ? normal / length : vec3(0);
 }
 
-// Of a storyteller: an object that no node of the scene's files is.
+// Returns whether it is a storyteller's: an object that no node of the scene's files is.
 bool is_figure(const World& world, uint32_t instance) {
   const uint32_t object = world.object_of(instance);
   const std::vector<int>& nodes = world.scene().object_nodes;
   return world.is_moving(instance) && (object >= nodes.size() || nodes[object] < 0);
 }
 
-// Of objects, or of the part of them around `near`: its triangles.
+// Returns the triangles of objects, or of the part of them around `near`.
 std::vector<SurfaceSample> samples_of(const World& world, const Objects& objects,
                                       const std::optional<vec3>& near) {
   std::vector<SurfaceSample> samples;
@@ -282,7 +286,7 @@ Bounds bounds_of(const std::vector<SurfaceSample>& samples) {
   return bounds;
 }
 
-// Some, evenly by area: a knob of many triangles counts no more than it is large.
+// Keeps some samples, evenly by area: a knob of many triangles counts no more than it is large.
 std::vector<SurfaceSample> thin_out(const std::vector<SurfaceSample>& samples) {
   float all = 0, sum = 0;
   for (const SurfaceSample& sample : samples) all += sample.area;
@@ -292,18 +296,19 @@ std::vector<SurfaceSample> thin_out(const std::vector<SurfaceSample>& samples) {
     while (few.size() < sample_count && sum * sample_count > all * (float(few.size()) + 0.5f))
       few.push_back(sample);
   }
-  if (few.empty()) few = samples, few.resize(std::min(few.size(), sample_count));  // no area at all
+  // there is no area at all
+  if (few.empty()) few = samples, few.resize(std::min(few.size(), sample_count));
   return few;
 }
 
 struct Look {
   vec3 eye{0};
   float yaw = 0, pitch = 0;
-  float fov = 1;     // vertical, that all of it takes its share of
-  float wishes = 0;  // how good, but for what is in the way
+  float fov = 1;     // vertical, so that the whole object takes its share of it
+  float wishes = 0;  // score, but for obstacles
 };
 
-// From an eye to the middle of a box.
+// Returns the look from an eye to the middle of a box.
 Look look_from(vec3 eye, const Bounds& box, float aspect) {
   Look look{.eye = eye};
   vec3 to = 0.5f * (box.low + box.high) - eye;
@@ -324,7 +329,7 @@ Look look_from(vec3 eye, const Bounds& box, float aspect) {
   return look;
 }
 
-// 0 to 1 each: how much of the samples is seen, and how squarely.
+// Returns how much of the samples is seen, and how squarely, 0 to 1 each.
 vec2 seen_from(const World& world, vec3 eye, const Objects& objects,
                const std::vector<SurfaceSample>& samples) {
   float seen = 0, square = 0;
@@ -409,14 +414,14 @@ std::optional<Viewpoint> good_view(const Exhibit& exhibit, const World& world, c
     float around =
         std::remainder(std::atan2(eye.x - middle.x, eye.z - middle.z) - direction, 2 * pi);
     float too_wide = std::max(0.0f, look.fov / fov - 1);
-    // As large as it can be without being cut, not seen from above, and the way that it was looked
-    // at.
+    // Wishes: as large as it can be without being cut, not seen from above, and the way that it was
+    // looked at.
     look.wishes = -6 * too_wide - 0.8f * std::abs(std::log(std::min(look.fov / fov, 1.0f))) -
                   0.6f * std::abs(look.pitch) - 0.25f * std::abs(around);
     looks.push_back(look);
   }
   std::ranges::sort(looks, std::greater<>{}, &Look::wishes);
-  if (looks.size() > most_looks) {  // some of all, the best more densely
+  if (looks.size() > most_looks) {  // keeps some of all, the best more densely
     for (size_t i = 0; i < most_looks; i++) {
       float t = float(i) / float(most_looks);
       looks[i] = looks[size_t(t * t * float(looks.size() - 1))];

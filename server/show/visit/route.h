@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A way on foot from one place to another, around what stands there: A* over the walk map (Hart,
-// Nilsson, Raphael 1968) that prefers room, pulled straight and smoothed as an elastic band
+// Finds a way on foot from one place to another, around what stands there: A* over the walk map
+// (Hart, Nilsson, Raphael 1968) that prefers room, pulled straight and smoothed as an elastic band
 // (Quinlan & Khatib 1993) that never comes nearer to anything than the visitor's radius.
 #pragma once
 #include <optional>
@@ -15,40 +15,41 @@ namespace wellspring::show {
 
 struct Route {
   std::vector<vec3> points;  // on the ground, some 0.15 m apart, the ends included; empty: no way
-  std::string problem;       // why, and where
+  std::string problem;       // why there is no way, and where it ends
 };
 
-// Both ends are eyes, relative to the scene's origin; an end may stand nearer to things than the
-// radius (people lean over), by at most `lean` metres from where the way is free.
+// Finds a route. Both ends are eyes, relative to the scene's origin; an end may stand nearer to
+// things than the radius (people lean over), by at most `lean` metres from where the way is free.
 inline constexpr float lean = 0.45f;
 Route find_route(const WalkMap& map, vec3 from, vec3 to);
 
-// Places of the map that can be walked to from an eye; all of them where it stands nowhere itself.
+// Returns the places of the map that can be walked to from an eye; all of them if it stands nowhere
+// itself.
 std::vector<int> reachable_places(const WalkMap& map, vec3 eye);
-// Of these the one nearest to a point on the ground; -1: there are none.
+// Returns which of these is nearest to a point on the ground; -1: there are none.
 int nearest_of(const WalkMap& map, const std::vector<int>& places, vec3 ground);
 
-// What a visitor points at in its picture, and from where an object is seen well: from ground that
-// can be walked to, with all of it in the picture and nothing before it.
+// Finds what a visitor points at in its picture, and from where an object is seen well: from ground
+// that can be walked to, with all of the object in the picture and nothing before it.
 
-// The first surface along a ray that is neither glass nor a storyteller.
+// Returns the first surface along a ray that is neither glass nor a storyteller.
 Hit first_solid(const World& world, Ray ray);
 
 struct Pointed {
-  vec3 place{0};   // relative to the scene's origin; of the surface
-  vec3 ground{0};  // below it, on the side from which it was seen
-  int point = -1;  // index into Exhibit::points: it is part of that one
+  vec3 place{0};   // place on the surface, relative to the scene's origin
+  vec3 ground{0};  // ground below it, on the side from which it was seen
+  int point = -1;  // index into Exhibit::points of the one that it belongs to
 };
 
-// `at`: of the picture, 0 to 1 from its upper left. Objects count that are a finger's width away,
-// unless it is ground. Nothing: there is nothing to be seen.
+// Returns what lies at `at` in the picture, 0 to 1 from its upper left. Objects count that are a
+// finger's width away, unless it is ground. Nothing: there is nothing to be seen.
 std::optional<Pointed> point_at(const Exhibit& exhibit, const World& world, const View& view,
                                 vec2 at);
 
-// Of those places the view that shows object `point` best, and as near as may be to the way that
-// `from` looks at it. `near`: what of a thing of many parts is meant, if that is larger than can be
-// seen at once. `aspect`: the picture's width over its height; `fov`: the widest, radians. Nothing:
-// it cannot be seen from anywhere.
+// Returns the view from one of `places` that shows object `point` best, and as near as may be to
+// the way that `from` looks at it. `near`: the part that is meant of a thing of many parts, if that
+// is larger than can be seen at once. `aspect`: the picture's width over its height; `fov`: the
+// widest, radians. Nothing: it cannot be seen from anywhere.
 std::optional<Viewpoint> good_view(const Exhibit& exhibit, const World& world, const WalkMap& map,
                                    const std::vector<int>& places, int point,
                                    std::optional<vec3> near, const Viewpoint& from, float aspect,

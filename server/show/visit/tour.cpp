@@ -11,11 +11,11 @@ namespace wellspring::show {
 
 namespace {
 
-constexpr float pace_seconds = 0.35f;  // how softly a ride stops and goes on
+constexpr float pace_seconds = 0.35f;  // seconds of lag with which a ride stops and goes on
 constexpr float look_hold = 1.5f,
                 look_return = 0.8f;  // seconds until the gaze goes back, and its lag
 constexpr float widest_look = 2.1f, steepest = 1.45f;  // radians
-constexpr float storyteller_room = 0.35f;              // metres around her axis
+constexpr float storyteller_room = 0.35f;              // metres around the storyteller's axis
 
 const Viewpoint& view_of(const Exhibit& exhibit, int viewpoint) {
   return exhibit.viewpoints[size_t(viewpoint)].view;
@@ -25,7 +25,7 @@ bool is_at(const Viewpoint& a, const Viewpoint& b) {
   return glm::length(a.position - b.position) < 0.02;
 }
 
-// The ride's next way, from where it is.
+// Plans the ride's next way, from where it is.
 void go_to(TourRide& ride, const Exhibit& exhibit, const TourRoads& roads, int viewpoint,
            float least_seconds) {
   std::string problem;
@@ -90,7 +90,7 @@ std::shared_ptr<const CameraPath> make_leg(const Exhibit& exhibit, const TourRoa
       problem = route.problem;
       return nullptr;
     }
-    // Eyes at their height above the ground, from one end's to the other's.
+    // Eyes keep their height above the ground, which changes from one end's to the other's.
     float first = float(from.position.y - origin.y) - route.points.front().y;
     float last = float(to.position.y - origin.y) - route.points.back().y;
     eyes = {from.position};
@@ -146,7 +146,7 @@ void start_tour(TourRide& ride, Voice& narration, int tour, const Exhibit& exhib
   }
   ride.state = TourRide::State::playing;
   resume_voice(narration);
-  if (is_at(from, ride.view)) {  // only looked round
+  if (is_at(from, ride.view)) {  // the visitor only looked round
     ride.look = {std::remainder(from.yaw - ride.view.yaw, 2 * pi), from.pitch - ride.view.pitch};
     ride.looked = 0;
     return;

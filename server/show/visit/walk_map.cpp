@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::array<std::array<int, 2>, 8> around = {
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
-constexpr float head_room = 0.15f;         // above the eyes
-constexpr float knee = walk_step + 0.05f;  // what is lower does not stop anybody
+constexpr float head_room = 0.15f;         // metres above the eyes
+constexpr float knee = walk_step + 0.05f;  // metres; lower things stop nobody
 
-// The ground below a point, not farther down than `reach`; NaN: none.
+// Returns the height of the ground below a point, not farther down than `reach`; NaN: none.
 float ground_below(const World& world, vec3 from, float reach) {
   for (int passes = 0; passes < 4; passes++) {
     Hit hit = world.intersect({from, 0, {0, -1, 0}, reach});
@@ -45,7 +45,7 @@ struct Cells {
   }
 };
 
-// A new place in the column at (x, z).
+// Adds a place to the column at (x, z).
 int add_place(WalkMap& map, int x, int z, float height) {
   int p = int(map.places.size());
   WalkPlace place;
@@ -58,7 +58,7 @@ int add_place(WalkMap& map, int x, int z, float height) {
   return p;
 }
 
-// Ground that can be walked to from the seeds, whatever stands on it.
+// Finds the ground that can be walked to from the seeds, whatever stands on it.
 void flood(const World& world, const std::vector<vec3>& seeds, WalkMap& map) {
   Cells cells{map};
   std::deque<std::array<int, 3>> open;  // place, x, z
@@ -76,7 +76,7 @@ void flood(const World& world, const std::vector<vec3>& seeds, WalkMap& map) {
     for (size_t way = 0; way < around.size(); way++) {
       int nx = x + around[way][0], nz = z + around[way][1];
       if (!cells.inside(nx, nz)) continue;
-      // Steps up and down are climbed; what is higher than a step is an obstacle on the ground
+      // Steps up and down are climbed; anything higher than a step is an obstacle on the ground
       // below it.
       vec3 from(map.corner.x + float(nx) * map.cell, ground.y + knee,
                 map.corner.z + float(nz) * map.cell);
@@ -93,7 +93,7 @@ void flood(const World& world, const std::vector<vec3>& seeds, WalkMap& map) {
   }
 }
 
-// Distance from a point to a polygon in the plane of the ground; 0 inside it.
+// Returns the distance from a point to a polygon in the plane of the ground; 0 inside it.
 float distance_to(vec2 p, const vec2* corner, int count) {
   float least = 1e30f;
   bool left = true, right = true;
@@ -110,7 +110,7 @@ float distance_to(vec2 p, const vec2* corner, int count) {
   return solid && (left || right) ? 0 : least;
 }
 
-// The part of a triangle between two heights, seen from above: up to five corners.
+// Finds the part of a triangle between two heights, seen from above: up to five corners.
 int clip(const std::array<vec3, 3>& triangle, float low, float high, std::array<vec2, 8>& out) {
   std::array<vec3, 8> from, to;
   int count = 3;
@@ -190,7 +190,7 @@ WalkMap make_walk_map(const World& world, const WalkSettings& rules, const std::
   check_cancelled();
 
   Cells cells{map};
-  const int strip = 8;  // rows; of each strip one thread alone
+  const int strip = 8;  // rows; each strip is one thread's
   parallel_for((map.depth + strip - 1) / strip, [&](int s) {
     for (const Instance& instance : scene.instances) {
       const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
@@ -258,8 +258,8 @@ float ground_at(const WalkMap& map, float x, float z, float near) {
 
 namespace {
 
-constexpr float step_height = 0.4f;   // what a visitor climbs without thinking
-constexpr float fall_distance = 4;    // deeper gaps are treated as edges: no step is taken
+constexpr float step_height = 0.4f;   // metres that a visitor climbs without thinking
+constexpr float fall_distance = 4;    // metres; deeper gaps are treated as edges: no step is taken
 constexpr float settle_time = 0.12f;  // seconds for the eye to follow the ground
 
 bool blocked(const World& world, vec3 from, vec3 direction, float distance) {
@@ -267,7 +267,8 @@ bool blocked(const World& world, vec3 from, vec3 direction, float distance) {
   return world.occluded(ray);
 }
 
-// Free to go `distance` along horizontal `direction`, for a body from above step height to the eye?
+// Returns whether a body, from above step height to the eye, can go `distance` along horizontal
+// `direction`.
 bool body_fits(const World& world, vec3 eye, float eye_height, vec3 direction, float distance,
                float radius) {
   vec3 side(-direction.z, 0, direction.x);
@@ -279,7 +280,8 @@ bool body_fits(const World& world, vec3 eye, float eye_height, vec3 direction, f
   return true;
 }
 
-// Height of the ground under `eye`, relative to the scene's origin; NaN: none within reach.
+// Returns the height of the ground under `eye`, relative to the scene's origin; NaN: none within
+// reach.
 float ground_under(const World& world, vec3 eye, float eye_height) {
   Ray ray{eye, 0, {0, -1, 0}, eye_height + fall_distance};
   Hit hit = world.intersect(ray);

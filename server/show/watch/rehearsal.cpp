@@ -23,7 +23,7 @@ FolderWatch::FolderWatch(std::string folder, double still)
 
 FolderWatch::Files FolderWatch::look(const std::string& folder) {
   Files files;
-  std::error_code error;  // what goes while it is looked at is not there
+  std::error_code error;  // a file that vanishes meanwhile is not there
   fs::recursive_directory_iterator at(folder, error), end;
   while (!error && at != end) {
     const std::string name = at->path().filename().string();
@@ -58,7 +58,7 @@ bool FolderWatch::changed() {
 
 namespace {
 
-constexpr std::chrono::milliseconds pause(250);  // between looks at the files
+constexpr std::chrono::milliseconds pause(250);  // time between looks at the files
 
 void shorten(Problem& problem, const std::string& folder) {
   const std::string start = folder + "/";

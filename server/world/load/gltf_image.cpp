@@ -46,9 +46,9 @@ bool PngReader::read_head() {
 
 bool PngReader::read_texels(void* texels) {
   if (setjmp(png_jmpbuf(png_))) return false;
-  png_set_expand(png_);       // palettes, fewer than eight bits, and a colour that is transparent
-  png_set_gray_to_rgb(png_);  // where it is grey
-  png_set_add_alpha(png_, 0xffff, PNG_FILLER_AFTER);  // where it has none
+  png_set_expand(png_);       // expands palettes, fewer than eight bits, and a transparent colour
+  png_set_gray_to_rgb(png_);  // turns grey into colour
+  png_set_add_alpha(png_, 0xffff, PNG_FILLER_AFTER);  // adds alpha if there is none
   if (bits == 16) png_set_swap(png_);                 // to little-endian
   const int passes = png_set_interlace_handling(png_);
   png_read_update_info(png_, info_);
@@ -98,7 +98,8 @@ std::string problem_of(void* jpeg) {
   return std::string("picture cannot be decoded: ") + tjGetErrorStr2(jpeg);
 }
 
-// Of width and height from the header alone, so that a bomb is refused before it is unpacked.
+// Returns what is wrong with width and height, which come from the header alone, so that a bomb is
+// refused before it is unpacked.
 std::string check_size(int width, int height, int64_t texels_left) {
   if (width > image_side_limit || height > image_side_limit)
     return "picture of " + std::to_string(width) + "x" + std::to_string(height) +
@@ -107,7 +108,8 @@ std::string check_size(int width, int height, int64_t texels_left) {
   return "";
 }
 
-// Files that end too early are refused; of what else libjpeg warns, every browser shows, too.
+// Decodes a JPEG. Files that end too early are refused; others of which libjpeg only warns are
+// shown, as every browser does.
 std::string decode_jpeg_texels(std::span<const uint8_t> bytes, Image& image, int64_t texels_left) {
   const std::unique_ptr<void, CloseHandle> jpeg(tjInitDecompress());
   if (!jpeg) return problem_of(nullptr);

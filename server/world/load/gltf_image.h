@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures: PNG by libpng and JPEG by libjpeg-turbo to Image, found out by their first bytes,
-// not by their names.
+// Decodes pictures to Image: PNG by libpng, JPEG by libjpeg-turbo and WebP by libwebp, chosen by
+// their first bytes, not by their names.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ struct png_info_def;
 
 namespace wellspring::world {
 
-// PNG pictures by libpng. Rows are unpacked one after the other, so that a file takes no more
+// Reads PNG pictures by libpng. Rows are unpacked one after the other, so that a file takes no more
 // memory than its width and height say.
 
 class PngReader {
@@ -24,33 +24,34 @@ class PngReader {
   PngReader(const PngReader&) = delete;
   PngReader& operator=(const PngReader&) = delete;
 
-  // Both are called once, in this order. False: `problem` says what is wrong with the file.
+  // These two are called once, in this order. False: `problem` says what is wrong with the file.
   bool read_head();
-  // Red, green, blue and alpha of each pixel as they stand in the file, from the top: uint8_t, or
-  // uint16_t where there are 16 bits. Its colour profile and gamma are left alone, as glTF has it
-  // (2.0, section 3.8.2).
+  // Reads red, green, blue and alpha of each pixel as they stand in the file, from the top:
+  // uint8_t, or uint16_t if there are 16 bits. The file's colour profile and gamma are left alone,
+  // as glTF has it (2.0, section 3.8.2).
   bool read_texels(void* texels);
 
-  int width = 0, height = 0, bits = 0;  // of a channel; from the head
+  int width = 0, height = 0, bits = 0;  // bits: of a channel; set by read_head()
   std::string problem;
 
  private:
   static void read(png_struct_def* png, unsigned char* to, size_t count);
   static void fail(png_struct_def* png, const char* what);
 
-  std::span<const uint8_t> left_;  // of the file
+  std::span<const uint8_t> left_;  // bytes of the file that are not read yet
   png_struct_def* png_ = nullptr;
   png_info_def* info_ = nullptr;
 };
 
 constexpr int image_side_limit = 16384;
-constexpr int64_t image_texel_limit = int64_t(1) << 28;  // all pictures of a scene together
+// Texels of all pictures of a scene together.
+constexpr int64_t image_texel_limit = int64_t(1) << 28;
 
-// Eight-bit pictures keep their codes; 16-bit ones become linear floats. `texels_left` shrinks by
-// what was decoded. Returns an empty string, or what is wrong.
+// Decodes a picture: eight-bit pictures keep their codes; 16-bit ones become linear floats.
+// `texels_left` shrinks by the decoded texels. Returns an empty string, or what is wrong.
 std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image,
                          int64_t& texels_left);
-// Radiance .hdr to linear floats. Returns an empty string, or what is wrong.
+// Decodes Radiance .hdr to linear floats. Returns an empty string, or what is wrong.
 std::string decode_radiance(std::span<const uint8_t> bytes, Image& image);
 
 }  // namespace wellspring::world

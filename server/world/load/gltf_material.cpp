@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 sections 3.8 and 3.9 and the KHR_materials_ extensions.
+// Reads materials by glTF 2.0 sections 3.8 and 3.9 and the KHR_materials_ extensions.
 #include "world/load/gltf_material.h"
 
 #include <cmath>
@@ -41,7 +41,7 @@ class Materials {
   }
 
  private:
-  // A factor clamped to its range, with a warning where that changed it.
+  // Returns a factor clamped to its range, with a warning if that changed it.
   float factor(const json& object, const char* key, const std::string& where, float otherwise,
                float low, float high) {
     float value = to_float(number(object, key, otherwise));
@@ -72,8 +72,8 @@ class Materials {
     m.metallic_roughness_texture = reference(pbr, "metallicRoughnessTexture", where, false);
   }
 
-  // KHR_materials_pbrSpecularGlossiness, appendix "best practices": metalness is what makes a
-  // dielectric's 4 % and the diffuse colour explain the specular one.
+  // Converts KHR_materials_pbrSpecularGlossiness by its appendix "best practices": metalness is the
+  // value with which a dielectric's 4 % and the diffuse colour explain the specular one.
   void specular_glossiness(const json& pbr, const std::string& where, Material& m) {
     vec4 diffuse = numbers<4>(pbr, "diffuseFactor", where, vec4(1), 0, 1);
     vec3 specular = vec3(numbers<3>(pbr, "specularFactor", where, vec4(1), 0, 1));
@@ -116,7 +116,7 @@ class Materials {
     if (const json* ior = extension(object, "KHR_materials_ior")) {
       m.ior = to_float(number(*ior, "ior", 1.5));
       if (m.ior == 0) {
-        m.ior = 1000;  // 0 stands for reflecting all light at every angle: 99.6 % of it
+        m.ior = 1000;  // 0 means that all light is reflected at every angle; this reflects 99.6 %
       } else if (m.ior < 1) {
         warn(file_, place + "KHR_materials_ior", "an index of refraction below 1 is taken as 1");
         m.ior = 1;
@@ -139,7 +139,7 @@ class Materials {
     }
   }
 
-  // How the base reflects.
+  // Reads how the base reflects.
   void gloss(const json& object, const std::string& place, Material& m) {
     if (const json* specular = extension(object, "KHR_materials_specular")) {
       const std::string inner = place + "KHR_materials_specular";
@@ -159,7 +159,7 @@ class Materials {
       m.dispersion = factor(*bends, "dispersion", place + "KHR_materials_dispersion", 0, 0, 1e3f);
   }
 
-  // What lies on the base.
+  // Reads the layers on the base.
   void layers(const json& object, const std::string& place, Material& m) {
     if (const json* coat = extension(object, "KHR_materials_clearcoat")) {
       const std::string inner = place + "KHR_materials_clearcoat";
@@ -199,7 +199,8 @@ class Materials {
     return result;
   }
 
-  // translation * rotation * scale; the rotation turns the picture clockwise, v pointing down.
+  // Returns translation * rotation * scale; the rotation turns the picture clockwise, v pointing
+  // down.
   static mat3 texture_transform(const json& object) {
     vec2 offset{0}, scale{1};
     for (int i = 0; i < 2; i++) {
@@ -213,7 +214,8 @@ class Materials {
     return mat3(c * scale.x, -s * scale.x, 0, s * scale.y, c * scale.y, 0, offset.x, offset.y, 1);
   }
 
-  // Scene texture of the file's texture `index`, read as colour or as numbers; -1: none.
+  // Returns the scene texture of the file's texture `index`, read as colour or as numbers; -1:
+  // none.
   int texture(size_t index, bool srgb, const std::string& user) {
     auto [known, fresh] = textures_.try_emplace({index, srgb}, -1);
     if (!fresh) return known->second;

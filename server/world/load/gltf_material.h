@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials, textures and samplers of a glTF file. Only pictures that a material uses are opened.
+// Loads materials, textures and samplers of a glTF file. Only pictures that a material uses are
+// opened.
 #pragma once
 #include "gltf/file.h"
 #include "world/scene.h"

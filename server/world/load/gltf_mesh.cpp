@@ -12,9 +12,9 @@
 namespace wellspring::world {
 namespace {
 
-constexpr float farthest = 1e15f;  // beyond it squares of distances leave the range of float
+constexpr float farthest = 1e15f;  // metres; beyond, squares of distances leave the range of float
 
-// A primitive on its way to a mesh; positions in double until the joints have moved them.
+// Holds a primitive on its way to a mesh; positions in double until the joints have moved them.
 struct Draft {
   Mesh mesh;
   std::vector<dvec3> positions;
@@ -44,7 +44,7 @@ void apply_targets(File& file, const json& primitive, const std::vector<double>&
   }
 }
 
-// Linear blend skinning, section 3.7.3.3: weights that do not add to one are scaled to do so.
+// Skins by linear blending, section 3.7.3.3: weights that do not add to one are scaled to do so.
 void apply_skin(File& file, const json& primitive, const std::string& where,
                 const std::vector<dmat4>& joints, Draft& draft) {
   const json& attributes = primitive["attributes"];
@@ -84,7 +84,7 @@ void apply_skin(File& file, const json& primitive, const std::string& where,
   }
 }
 
-// Drops triangles with a corner at no finite place and mends the other lists where they are not
+// Drops triangles with a corner at no finite place and mends values of the other lists that are not
 // finite.
 void drop_bad_values(File& file, const std::string& where, Draft& draft) {
   Mesh& mesh = draft.mesh;
@@ -112,8 +112,8 @@ void drop_bad_values(File& file, const std::string& where, Draft& draft) {
   if (mended) warn(file, where, "texture coordinates or colours that are not finite are replaced");
 }
 
-// Where to put the mesh's own zero: where it is, unless the mesh is small against its distance from
-// it.
+// Returns the place of the mesh's own zero: the old one, unless the mesh is small against its
+// distance from it.
 dvec3 choose_centre(const Draft& draft) {
   dvec3 low(1e300), high(-1e300);
   for (const uvec3& t : draft.mesh.triangles)
@@ -125,7 +125,7 @@ dvec3 choose_centre(const Draft& draft) {
   dvec3 middle = (low + high) * 0.5, half = (high - low) * 0.5;
   double distance = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
   double size = std::max({half.x, half.y, half.z});
-  // A float, so that subtracting it from float positions is exact.
+  // The result is rounded to float, so that subtracting it from float positions is exact.
   return distance > 64 * size ? dvec3(vec3(middle)) : dvec3(0);
 }
 
@@ -137,7 +137,7 @@ std::vector<uint32_t> chosen(const std::vector<uint32_t>& values,
   return result;
 }
 
-// `from`: of each vertex the file's, kept so.
+// Keeps or makes tangents. `from`: each vertex's number in the file, kept up to date.
 void finish_tangents(File& file, const std::string& where, int tangent_uv, Mesh& mesh,
                      std::vector<uint32_t>& from) {
   bool usable = tangent_uv >= 0 && !mesh.tangents.empty();
@@ -250,8 +250,8 @@ void read_targets(File& file, const json& primitive, const std::vector<uint32_t>
   }
 }
 
-// Weights that do not add to one are scaled to do so; a vertex without any hangs on the first
-// joint, as in gltf_mesh.cpp.
+// Reads the skin's weights. Weights that do not add to one are scaled to do so; a vertex without
+// any hangs on the first joint, as in gltf_mesh.cpp.
 void read_influences(File& file, const json& primitive, const std::vector<uint32_t>& from,
                      Mover& mover) {
   const json& attributes = primitive["attributes"];

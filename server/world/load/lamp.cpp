@@ -32,7 +32,7 @@ bool emits(const Material& material) {
   return material.unlit || max_component(material.emission) > 0;
 }
 
-// Of each node of the scene: whether it or one above it has that name.
+// Returns for each node of the scene whether it or one above it has that name.
 std::vector<char> nodes_within(const Scene& scene, const std::string& name) {
   constexpr char unknown = 2;
   std::vector<char> within(scene.nodes.size(), unknown);
@@ -53,7 +53,7 @@ std::vector<char> nodes_within(const Scene& scene, const std::string& name) {
   return within;
 }
 
-// Does what has this number come from such a node?
+// Returns whether the light or object of this number comes from such a node.
 bool is_within(const std::vector<char>& within, const std::vector<int>& nodes, size_t number) {
   return number < nodes.size() && nodes[number] >= 0 && within[size_t(nodes[number])];
 }
@@ -67,7 +67,7 @@ std::vector<int> lights_within(const Scene& scene, const std::vector<char>& with
   return lights;
 }
 
-// What a lamp is going to be, and what is said about one name.
+// Gathers the parts of a lamp that one name means, and the faults of that name.
 struct Gathered {
   std::vector<int> lights;
   std::vector<size_t> instances;
@@ -94,7 +94,7 @@ struct Gathered {
   }
 };
 
-// Gives the instances of one material to the lamp: their own material, and their own meshes of it.
+// Gives the instances of one material to the lamp, with a material and meshes of their own.
 void take_instances(const std::vector<size_t>& instances, int material, Scene& scene, Lamp& lamp) {
   std::vector<char> taken(scene.instances.size(), 0);
   for (size_t i : instances) taken[i] = 1;

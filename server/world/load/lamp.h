@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps out of a scene's file: lights and what emits, named by those who furnish an exhibit.
+// Makes lamps out of a scene's file: lights and emitting things, named by the people who furnish an
+// exhibit.
 #pragma once
 #include <span>
 
@@ -9,27 +10,27 @@ namespace wellspring::world {
 
 struct LampNames {
   std::string name;
-  // Lights, and things of which something emits light, by their nodes or by nodes above these; all
+  // Names of lights, and of things of which a part emits light, or of nodes above these; all nodes
   // of a name.
   std::vector<std::string> nodes;
-  std::vector<std::string> materials;  // all that is made of them, wherever it is
+  std::vector<std::string> materials;  // everything that is made of these, wherever it is
 };
 
-// A name that is no part of a lamp.
+// Reports a name that cannot be part of a lamp.
 struct LampFault {
   bool is_material = false;
-  size_t index = 0;  // of LampNames::nodes or materials
+  size_t index = 0;  // index into LampNames::nodes or materials
   std::string what;
 };
 
-// Adds a lamp of all that is named and is no fault to the scene. Materials and meshes that it
-// shares with what is no part of it are copied, so that they are its own: the picture stays as it
-// was.
+// Adds a lamp of all names without a fault to the scene. Materials and meshes that the lamp shares
+// with other things are copied, so that it has its own: the picture stays as it was.
 std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene);
 
-// The punctual lights that a name means as LampNames::nodes has it. `fault`: why it means none.
+// Returns the punctual lights of a name, as in LampNames::nodes. `fault`: the reason if there are
+// none.
 std::vector<int> find_lights(const Scene& scene, const std::string& node, std::string& fault);
-// The lamp that a light belongs to, or -1.
+// Returns the lamp to which a light belongs, or -1.
 int lamp_of_light(const Scene& scene, int light);
 // Takes these lights out of the scene and its lamps; the others move up.
 void remove_lights(std::span<const int> lights, Scene& scene);

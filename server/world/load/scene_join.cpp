@@ -12,7 +12,7 @@
 namespace wellspring::world {
 namespace {
 
-// Farther than this from zero floats lose millimetres: the scene gets an origin of its own.
+// Metres; farther than this from zero floats lose millimetres: the scene gets an origin of its own.
 constexpr double far = 1000;
 
 template <class T>
@@ -128,7 +128,7 @@ Credit load_credit(const std::string& path, const std::string& package) {
   credit.copyright = text(asset, "copyright");
   const json* extras = find(asset, "extras");
   if (!extras || !extras->is_object()) return credit;
-  // Extras may hold anything: what is no text is passed over.
+  // Extras may hold anything: values that are no texts are passed over.
   auto read = [&](const char* key) {
     const json* value = find(*extras, key);
     return value && value->is_string() ? value->get<std::string>() : std::string();

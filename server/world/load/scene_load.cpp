@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A checked glTF file to a Scene: nodes to instances and objects, lights, cameras, and the origin.
+// Turns a checked glTF file into a Scene: nodes to instances and objects, lights, cameras, and the
+// origin.
 #include "world/load/scene_load.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace {
 
 using namespace gltf;
 
-// An instance before the origin is chosen.
+// Holds an instance before the origin is chosen.
 struct Placement {
   int mesh = 0;
   dmat4 to_world{1};
@@ -52,7 +53,7 @@ class Builder {
       scene.nodes.push_back({text(list[i], "name"), nodes_[i].parent});
   }
 
-  // Before build(): notes what clips move.
+  // Makes build() note what clips move; called before it.
   void keep_motion() { motion_.emplace(file_, nodes_); }
 
   void build() {
@@ -142,7 +143,7 @@ class Builder {
     }
   }
 
-  // Index of the new scene mesh, -1 if it has no triangles.
+  // Adds a mesh and returns its index in the scene, -1 if it has no triangles.
   int add_mesh(size_t mesh, size_t primitive, const Deformation& deformation) {
     BuiltMesh built = build_primitive(file_, mesh, primitive, deformation,
                                       tangent_uv(material_of(mesh, primitive)));
@@ -171,7 +172,7 @@ class Builder {
              "a texture without texture coordinates shows one texel everywhere");
   }
 
-  // Meshes that nothing shows are read too, so that a broken file is found out whole.
+  // Reads meshes that nothing shows, too, so that all faults of a broken file are found.
   void check_unused() {
     for (size_t m = 0; m < used_.size(); m++) {
       if (used_[m]) continue;
@@ -193,7 +194,7 @@ class Builder {
     }
   }
 
-  // Looks down the node's -Z.
+  // Adds a viewpoint that looks down the node's -Z.
   void build_camera(size_t index, size_t camera_index) {
     const json& camera = items(file_.root, "cameras")[camera_index];
     const dmat4& m = global_[index];
@@ -207,7 +208,7 @@ class Builder {
     if (std::abs(forward.y) > 0.99999) heading = dvec3(m[1]) * (forward.y < 0 ? 1.0 : -1.0);
     viewpoint.yaw = float(std::atan2(-heading.x, -heading.z));
     viewpoint.pitch = float(std::asin(glm::clamp(forward.y, -1.0, 1.0)));
-    // How far its own right lies above that of an upright camera.
+    // The roll tells how far its own right lies above that of an upright camera.
     const dvec3 right(std::cos(double(viewpoint.yaw)), 0, -std::sin(double(viewpoint.yaw)));
     const dvec3 own = cross(forward, dvec3(m[1])), up = cross(right, forward);
     viewpoint.roll = float(std::atan2(dot(own, up), dot(own, right)));
@@ -266,8 +267,8 @@ class Builder {
     light_positions_.push_back(dvec3(m[3]));
   }
 
-  // Zero, unless all there is to see lies far away from it: then a whole number of metres in its
-  // middle.
+  // Chooses the origin: zero, unless everything visible lies far away from it; then a whole number
+  // of metres in its middle.
   void choose_origin() {
     dvec3 low(1e300), high(-1e300);
     for (const Placement& p : placements_) {
@@ -302,7 +303,7 @@ class Builder {
   std::vector<char> used_;
   std::optional<MotionLoad> motion_;
   std::vector<Placement> placements_;
-  std::vector<dvec3> centres_;  // of scene_.meshes
+  std::vector<dvec3> centres_;  // centres of scene_.meshes
   std::vector<dvec3> light_positions_;
   std::map<std::tuple<size_t, size_t, std::vector<double>>, int> built_;
 };

@@ -16,7 +16,7 @@ vec3 unit_or(const dvec3& v, const vec3& otherwise) {
   return length > 1e-150 && std::isfinite(length) ? vec3(v / length) : otherwise;
 }
 
-// The inverse transpose times the determinant: for normals.
+// Returns the inverse transpose times the determinant: for normals.
 glm::dmat3 cofactor(const dmat4& m) {
   const glm::dmat3 linear(m);
   return {cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1])};
@@ -38,7 +38,7 @@ void set_face_normals(const Mesh& mesh, const std::vector<vec3>& positions,
   }
 }
 
-// How places and normals go from one space to another.
+// Holds how places and normals go from one space to another.
 struct Turn {
   dmat4 places{1};
   glm::dmat3 normals{1};
@@ -49,7 +49,7 @@ Turn make_turn(const dmat4& m) {
   return {m, mirrored * cofactor(m)};
 }
 
-// A skinned mesh's own node does not move it: section 3.7.3.
+// Returns the joints' matrices; a skinned mesh's own node does not move it: section 3.7.3.
 std::vector<dmat4> joint_matrices(const ScenePose& pose, const Mover& mover,
                                   const dmat4& to_scene) {
   std::vector<dmat4> joints;
@@ -84,7 +84,7 @@ void pose_mover(const ScenePose& pose, const Mover& mover, const dmat4& to_scene
   const size_t count = mesh.positions.size();
   positions.resize(count), normals.resize(count);
   const std::vector<dmat4> joints = joint_matrices(pose, mover, to_scene);
-  Turn turn;  // of the whole mesh, or, with a skin, of each vertex
+  Turn turn;  // for the whole mesh, or, with a skin, for each vertex
   if (joints.empty()) turn = make_turn(to_scene * node.global);
   for (size_t v = 0; v < count; v++) {
     dvec3 p(mesh.positions[v]), n(mesh.normals[v]);
@@ -112,7 +112,7 @@ void add_middle(std::vector<T>& values, uint32_t a, uint32_t b) {
   if (!values.empty()) values.push_back(0.5f * (values[a] + values[b]));
 }
 
-// A vertex between two.
+// Adds a vertex between two.
 uint32_t split(Mover& mover, uint32_t a, uint32_t b) {
   Mesh& mesh = mover.mesh;
   const uint32_t made = uint32_t(mesh.positions.size());
@@ -150,8 +150,8 @@ void subdivide(Mover& mover, double scale, double longest, size_t most_triangles
     };
     std::vector<uvec3> triangles;
     for (const uvec3& t : mesh.triangles) {
-      // Its longest edge, if that is too long. In the end all that were are halved, from both
-      // sides.
+      // Find the longest edge, if it is too long. In the end all edges that were too long are
+      // halved, from both sides.
       int worst = -1;
       double length = longest;
       for (int e = 0; e < 3; e++)

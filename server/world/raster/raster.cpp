@@ -21,15 +21,16 @@ namespace {
 constexpr int block_clusters = 32;
 constexpr int block_bits = 15;  // 32 x 128 triangles, each cut into 6 parts at most
 
-// What one core makes of a few pieces: triangles, and which of them each tile has to draw.
+// Holds what one core makes of a few pieces: triangles, and which of them each tile has to draw.
 struct Block {
   std::vector<RasterTriangle> triangles;
   std::vector<std::pair<uint32_t, uint32_t>> crossing;  // (tile, triangle)
-  std::vector<uint32_t> first;                          // of each tile in `drawn`, and the end
+  std::vector<uint32_t> first;  // each tile's first index in `drawn`, and the end
   std::vector<uint16_t> drawn;
 };
 
-// World to the picture before division: x and y in pixels from its middle, w in metres.
+// Projects the world to the picture before division: x and y in pixels from its middle, w in
+// metres.
 struct Camera {
   vec3 eye, right, down, forward;
   explicit Camera(const View& view) : eye(view.position), forward(view.forward) {
@@ -39,7 +40,7 @@ struct Camera {
   }
 };
 
-// Places of eight corners at a time.
+// Transforms the places of corners, eight at a time.
 void transform(const Camera& camera, const PlacedMesh& placed, const float* px, const float* py,
                const float* pz, uint32_t count, RasterCorners& out) {
   mat4 m = placed.in_place ? mat4(1) : placed.to_world;
@@ -63,17 +64,17 @@ void transform(const Camera& camera, const PlacedMesh& placed, const float* px, 
 
 struct Raster::Impl {
   const World& world;
-  std::vector<MeshClusters> meshes;        // of the scene's, then of what moves
-  std::vector<MeshNeighbours> neighbours;  // of the same
-  std::vector<uint32_t> mesh_of;           // of every instance
-  std::vector<uint8_t> has_alpha;          // of every instance
+  std::vector<MeshClusters> meshes;        // clusters of the scene's meshes, then of moving ones
+  std::vector<MeshNeighbours> neighbours;  // neighbours in the same meshes
+  std::vector<uint32_t> mesh_of;           // one for every instance
+  std::vector<uint8_t> has_alpha;          // one for every instance
   float near = 0;
   std::vector<RasterPiece> pieces;
-  std::vector<Bounds> moving;  // of every instance that moves
-  std::vector<Block> blocks;   // the first `used` are of this picture; memory is kept
+  std::vector<Bounds> moving;  // moving_box() of every instance
+  std::vector<Block> blocks;   // the first `used` belong to this picture; memory is kept
   size_t used = 0;
   std::vector<TilePixels> tiles;
-  std::vector<std::vector<EdgeShare>> edges, border_edges;  // of each tile
+  std::vector<std::vector<EdgeShare>> edges, border_edges;  // for each tile
 
   explicit Impl(const World& w) : world(w) {}
   void find_pieces(const View& view, const RasterSettings& settings);
@@ -83,7 +84,7 @@ struct Raster::Impl {
   const RasterTriangle& triangle_of(uint32_t number) const {
     return blocks[number >> block_bits].triangles[number & ((1u << block_bits) - 1)];
   }
-  // body(number) for all triangles of a tile, of blocks from `first` on.
+  // Calls body(number) for all triangles of a tile, of blocks from `first` on.
   template <class Body>
   void for_each(int tile, size_t first, const Body& body) const {
     for (size_t b = first; b < used; b++)
@@ -149,7 +150,7 @@ void Raster::Impl::find_pieces(const View& view, const RasterSettings& settings)
   }
 }
 
-// Takes the pieces from `first` on away that are behind what has been drawn.
+// Removes the pieces from `first` on that are hidden by what has been drawn.
 void Raster::Impl::drop_hidden(const View& view, const RasterView& raster, size_t first) {
   parallel_ranges(int(pieces.size() - first), 64, [&](int begin, int end) {
     for (size_t i = first + size_t(begin); i < first + size_t(end); i++) {
@@ -223,7 +224,7 @@ void Raster::Impl::fill_block(Block& block, std::span<const RasterPiece> of, con
   for (auto [tile, triangle] : block.crossing) block.drawn[next[tile]++] = uint16_t(triangle);
 }
 
-// True: there are see-through triangles.
+// Draws opaque triangles. True: there are see-through ones.
 bool Raster::Impl::draw_opaque(ivec2 corner, int tile, size_t first, const View& view,
                                const RasterView& raster, vec2 offset, TilePixels& pixels) const {
   bool any_veil = false;

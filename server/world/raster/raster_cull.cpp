@@ -8,7 +8,7 @@
 namespace wellspring::world {
 namespace {
 
-uint64_t spread(uint32_t x) {  // ten bits to every third place
+uint64_t spread(uint32_t x) {  // spreads ten bits to every third place
   uint64_t r = x & 0x3ffu;
   r = (r | r << 16) & 0x30000ffu;
   r = (r | r << 8) & 0x300f00fu;
@@ -21,14 +21,14 @@ float area_of(const Mesh& mesh, const uvec3& t) {
   return 0.5f * length(cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a));
 }
 
-// The power of 16 that the area is about; what has none counts as tiny.
+// Returns about the power of 16 of the area; a triangle without an area counts as tiny.
 uint32_t size_class(float area) {
   int power = area > 0 && std::isfinite(area) ? std::ilogb(area) : -140;
   return uint32_t(std::clamp(140 + power, 0, 255)) / 4;
 }
 
-// Numbers of the finite triangles, the larger ones last, those of like size along a space-filling
-// curve through their centres (Morton 1966).
+// Returns the numbers of the finite triangles, the larger ones last, those of like size along a
+// space-filling curve through their centres (Morton 1966).
 std::vector<uint32_t> sort_in_space(const Mesh& mesh) {
   Bounds box;
   auto centre = [&](const uvec3& t) {
@@ -124,12 +124,13 @@ void find_pieces(const View& view, const PlacedMesh& placed, const MeshClusters&
                  uint32_t instance, const Bounds& box, float near,
                  std::vector<RasterPiece>& pieces) {
   float up = view.tan_half_fov, side = up * float(view.width) / float(view.height);
-  // Of the border planes the farther from the axis, so that nothing in sight is left out.
+  // Both sides take the border plane that is farther from the axis, so that nothing in sight is
+  // left out.
   vec2 far_border = glm::abs(view.middle) + vec2(side, up);
   float up_norm = 1 / std::sqrt(1 + far_border.y * far_border.y),
         side_norm = 1 / std::sqrt(1 + far_border.x * far_border.x);
   vec3 to_right = right_of_middle(view), above = above_middle(view);
-  // The depth of the nearest place of a sphere, infinite where none of it is in sight.
+  // Returns the depth of the nearest place of a sphere, infinite if none of it is in sight.
   auto nearest = [&](vec3 centre, float radius) {
     vec3 d = centre - view.position;
     float w = dot(d, view.forward);
@@ -141,7 +142,7 @@ void find_pieces(const View& view, const PlacedMesh& placed, const MeshClusters&
     float away = std::max(depth, 0.1f * size) + near;
     pieces.push_back({instance, cluster, depth, area / (away * away)});
   };
-  if (placed.moving) {  // its clusters are not where they were: all of it or nothing
+  if (placed.moving) {  // its clusters have moved: all of it or nothing
     float radius = 0.5f * glm::length(box.high - box.low) * 1.001f + near;
     float depth = nearest(0.5f * box.low + 0.5f * box.high, radius);
     if (depth == INFINITY) return;
@@ -194,7 +195,7 @@ bool is_hidden(const View& view, const RasterView& raster, const Bounds& box, co
   }
   auto along = [&](vec3 axis) { return axis.x * x + axis.y * y + axis.z * z; };
   Lanes w = along(view.forward);
-  // Rounding grows with the distance of what is projected.
+  // Rounding grows with the distance of the projected corners.
   Lanes nearest = w - 1e-5f * (lanes_abs(x) + lanes_abs(y) + lanes_abs(z));
   if (negative_lanes(LaneMask(nearest > raster.near)) != 255) return false;
   float scale = 0.5f * float(view.height) / view.tan_half_fov;

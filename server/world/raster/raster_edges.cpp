@@ -8,16 +8,19 @@
 namespace wellspring::world {
 namespace {
 
-constexpr float step_tolerance = 0.01f;  // of the depth: farther apart is another surface
-constexpr float least_gap = 1 / 16.0f;   // of a pixel
-constexpr float smooth_cosine = 0.9f;    // of normals: what turns by more is a crease
+// Share of the depth; surfaces farther apart are different ones.
+constexpr float step_tolerance = 0.01f;
+constexpr float least_gap = 1 / 16.0f;  // pixels
+// Cosine between normals; a surface that turns by more has a crease.
+constexpr float smooth_cosine = 0.9f;
 
 vec3 normal_of(const RasterTriangle& t, float focal) {
   vec3 d = t.depth;  // in the eye's coordinates the plane is dot(normal, place) = 1
   return {d.y * focal, d.z * focal, d.x - d.y * t.corner.x - d.z * t.corner.y};
 }
 
-// How much nearer than the other side one's plane would be there; above 0: so it ends in between.
+// Returns how much nearer than the other side one side's plane would be there, as a share of the
+// depth; above 0: so the plane ends in between.
 float lead(const EdgeSide& of, const EdgeSide& other, float slope) {
   return of.triangle ? (of.depth + slope - other.depth) / std::max(of.depth, other.depth) : -1;
 }
@@ -28,7 +31,7 @@ bool is_smooth(const RasterTriangle& a, const RasterTriangle& b, float focal) {
   return cosine > 0 && cosine * cosine > smooth_cosine * smooth_cosine * dot(na, na) * dot(nb, nb);
 }
 
-// How much of a pixel whose middle lies so far before the edge is beyond it.
+// Returns the share of a pixel that is beyond the edge, which lies `at` pixels from its middle.
 float share_beyond(float at, float slope) {
   float high = 0.5f - at + 0.5f * slope, low = 0.5f - at - 0.5f * slope;
   if (high <= 0) return 0;
@@ -39,12 +42,12 @@ bool is_thin(const EdgeSide& side) {
   return side.triangle && side.triangle->bar && side.triangle->width * side.depth < thin_width;
 }
 
-// Does the edge cut the line rather than run along it?
+// Returns whether the edge cuts the line rather than runs along it.
 bool is_across(const EdgeLine& e, bool vertical) {
   return e.at <= 1 && (vertical ? e.slope < 1 : e.slope <= 1);
 }
 
-// What is left of a pixel between its own surface and the other.
+// Returns the share of a pixel between its own surface and the other.
 float share_between(const EdgeLine& own, const EdgeLine& other) {
   float share = share_beyond(own.at, own.slope) - share_beyond(1 - other.at, other.slope);
   return std::max(share, 0.0f);
@@ -68,7 +71,8 @@ EdgeCover find_gap(const EdgeSide& first, const EdgeSide& second, int x, int y, 
 
 EdgeCover find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
                     const SurfaceWalk& walk) {
-  // Where all lies on one wall, what is between two of its strips looks much as these do.
+  // If all lies on one wall, the surface between two of its strips looks much like these, so only
+  // surfaces apart are followed.
   bool apart =
       std::min(first.depth, second.depth) < behind_both * std::max(first.depth, second.depth);
   auto surface_end = [&](bool own) -> EdgeLine {
@@ -100,8 +104,8 @@ EdgeCover find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y,
 
 namespace {
 
-constexpr float crease_cosine = 0.9f;  // of the angle between neighbours' normals
-constexpr float slender = 4;           // so much longer than wide are parts of bars
+constexpr float crease_cosine = 0.9f;  // cosine of the angle between neighbours' normals
+constexpr float slender = 4;           // parts of bars are so many times longer than wide
 constexpr int most_steps = 8;
 
 vec3 corner_of(const Mesh& mesh, uint32_t triangle, int k) {
@@ -111,20 +115,20 @@ vec3 normal_of(const Mesh& mesh, uint32_t triangle) {
   vec3 a = corner_of(mesh, triangle, 0);
   return cross(corner_of(mesh, triangle, 1) - a, corner_of(mesh, triangle, 2) - a);
 }
-float length_of(const Mesh& mesh, uint32_t triangle) {  // of the longest edge
+float length_of(const Mesh& mesh, uint32_t triangle) {  // length of the longest edge
   float longest = 0;
   for (int k = 0; k < 3; k++)
     longest =
         std::max(longest, length(corner_of(mesh, triangle, k + 1) - corner_of(mesh, triangle, k)));
   return longest;
 }
-// The least distance from an edge to the corner on its other side.
+// Returns the least distance from an edge to the corner on its other side.
 float width_of(const Mesh& mesh, uint32_t triangle) {
   float longest = length_of(mesh, triangle);
   return longest > 0 ? length(normal_of(mesh, triangle)) / longest : 0;
 }
 
-// A number for every place that vertices are at.
+// Numbers the places of vertices; vertices at the same place get the same number.
 std::vector<uint32_t> number_places(const Mesh& mesh) {
   std::vector<uint32_t> order(mesh.positions.size()), number(order.size());
   for (uint32_t i = 0; i < order.size(); i++) order[i] = i;
@@ -212,7 +216,7 @@ EdgeLine SurfaceWalk::end_of(const RasterTriangle& t, const TriangleExit& exit, 
   uint32_t next = neighbours.over[triangle][size_t(edge)];
   if (next == MeshNeighbours::none) return exit;
 
-  // Along the way and across it, in pixels from the sampling place.
+  // Returns a place along the way and across it, in pixels from the sampling place.
   auto on_the_way = [&](vec2 at) {
     return vertical ? vec2(at.y * float(step), at.x) : vec2(at.x * float(step), at.y);
   };
@@ -229,7 +233,7 @@ EdgeLine SurfaceWalk::end_of(const RasterTriangle& t, const TriangleExit& exit, 
     return on_the_way({dot(p, right_of_middle(view)) * scale + raster.centre_x - float(x),
                        -dot(p, above_middle(view)) * scale + raster.centre_y - float(y)});
   };
-  auto corner = [&](int i) {  // of the triangle itself
+  auto corner = [&](int i) {  // corner of the triangle itself
     return on_the_way({float(t.from_x[i] + raster.centre_steps_x) / raster_steps - float(x),
                        float(t.from_y[i] + raster.centre_steps_y) / raster_steps - float(y)});
   };
@@ -237,7 +241,7 @@ EdgeLine SurfaceWalk::end_of(const RasterTriangle& t, const TriangleExit& exit, 
     float slope = (b.x - a.x) / (b.y - a.y);
     return EdgeLine{a.x - slope * a.y, std::abs(slope)};
   };
-  // The edge's ends.
+  // These are the edge's ends.
   vec2 a = corner(exit.edge), b = corner((exit.edge + 1) % 3);
   if (t.turned) std::swap(a, b);
   if ((a.y < 0) == (b.y < 0)) return exit;  // rounding
@@ -252,7 +256,7 @@ EdgeLine SurfaceWalk::end_of(const RasterTriangle& t, const TriangleExit& exit, 
     bool a_first = corner_of(mesh, triangle, shared) == a_place;
     bool past_a = (a.y < 0) != (c.y < 0);  // between a and c, else between c and b
     EdgeLine e = past_a ? line(a, c) : line(c, b);
-    if (!(e.at > end.at)) break;  // it turns away
+    if (!(e.at > end.at)) break;  // the surface turns away
     end = e;
     edge = past_a == a_first ? (shared + 2) % 3 : (shared + 1) % 3;
     (past_a ? b : a) = c, (past_a ? b_place : a_place) = c_place;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the edges of what a picture shows run between its sampling places: analytic, from the
+// Finds where the edges of a picture's surfaces run between its sampling places: analytic, from the
 // triangles themselves (after Persson, "Geometric Antialiasing Methods", GPU Pro 3, 2012).
 #pragma once
 #include <array>
@@ -16,93 +16,97 @@
 
 namespace wellspring::world {
 
-// Where a surface ends that is made of triangles narrower than a pixel: bars, tubes and mouldings,
-// of which sampling places meet one face and miss the next. The line from one sampling place
-// towards the next is followed from triangle to triangle over their common edges.
+// Finds where a surface ends that is made of triangles narrower than a pixel: bars, tubes and
+// mouldings, of which sampling places meet one face and miss the next. The line from one sampling
+// place towards the next is followed from triangle to triangle over their common edges.
 
-// Which triangles of a mesh meet along their edges, vertices being the same where their places are.
+// Holds which triangles of a mesh meet along their edges; vertices at the same place are the same.
 struct MeshNeighbours {
   static constexpr uint32_t none = 0xffffffffu;
-  // Of each triangle over its edge from corner k to the next: triangle * 4 + its own edge there. Or
-  // none: nothing, or more than one.
+  // For each triangle over its edge from corner k to the next: triangle * 4 + its own edge there.
+  // Or none: nothing, or more than one.
   std::vector<std::array<uint32_t, 3>> over;
   // The least width of a triangle and its neighbours, from edge to opposite corner, in mesh space.
   std::vector<float> width;
-  // Not 0: it is part of something long and thin; it has a crease, or its surface ends there.
+  // Not 0: the triangle is part of something long and thin; it has a crease, or its surface ends
+  // there.
   std::vector<uint8_t> bar;
 };
 MeshNeighbours find_neighbours(const Mesh& mesh);
 
-// An edge on the way from one sampling place to the next: pixels up to there, and those by which
-// that changes a pixel to the side.
+// Describes an edge on the way from one sampling place to the next: pixels up to it, and the change
+// of these a pixel to the side.
 struct EdgeLine {
   float at = 2, slope = 0;
 };
 
-// Where a triangle that covers the place (x, y) ends on the way to the neighbour at `step` along
-// the axis; beyond 1: not before there.
+// Describes the end of a triangle that covers the place (x, y) on the way to the neighbour at
+// `step` along the axis; beyond 1: it does not end before the neighbour.
 struct TriangleExit : EdgeLine {
-  int edge = 0;  // of the triangle
+  int edge = 0;  // number of the triangle's edge
 };
 TriangleExit exit_of(const RasterTriangle& t, int x, int y, int step, bool vertical,
                      const RasterView& view);
 
-// Of the picture that is drawn.
+// Follows surfaces of the picture that is drawn.
 struct SurfaceWalk {
   const World& world;
   const std::vector<MeshNeighbours>& meshes;
-  const std::vector<uint32_t>& mesh_of;  // of every instance
+  const std::vector<uint32_t>& mesh_of;  // mesh of every instance
   const View& view;
   const RasterView& raster;
   float focal;  // pixels a unit of slope
 
-  // From the place (x, y), which the triangle covers and whose `exit` is given, to where its
+  // Goes from the place (x, y), which the triangle covers and whose `exit` is given, to where its
   // surface ends or turns away on the way to the neighbour at `step` along the axis; beyond 1: it
   // does not.
   EdgeLine end_of(const RasterTriangle& t, const TriangleExit& exit, int x, int y, int step,
                   bool vertical) const;
 };
 
-// One of two neighbouring sampling places: its triangle (null: nothing there) and inverse depth.
+// Holds one of two neighbouring sampling places: its triangle (null: nothing there) and inverse
+// depth.
 struct EdgeSide {
   const RasterTriangle* triangle = nullptr;
   float depth = 0;
 };
 
-// Narrower than this, in pixels: places between sampling places are looked for (SurfaceWalk).
+// Pixels; narrower surfaces are followed between sampling places (SurfaceWalk).
 inline constexpr float thin_width = 1.5f;
 
-// How much of each of two neighbouring pixels is covered by what the other shows; at most a half.
+// Holds how much of each of two neighbouring pixels is covered by what the other shows; at most a
+// half.
 struct EdgeCover {
   float first = 0, second = 0;
 };
-// Between pixel (x, y) and the one to the right of it or, `vertical`, below. None: both show one
-// smooth surface, or the edge runs rather along the other axis.
+// Finds the edge between pixel (x, y) and the one to the right of it or, `vertical`, below. None:
+// both show one smooth surface, or the edge runs rather along the other axis.
 EdgeCover find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
                     const SurfaceWalk& walk);
 
-// The same by what is seen between the two, both of them narrow, which may be of one instance.
+// Does the same for what is seen between the two, both of them narrow, which may be of one
+// instance.
 EdgeCover find_gap(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
                    const SurfaceWalk& walk);
 
 // Half the tangent of the angle that a smooth surface may turn by (find_edge()).
 inline constexpr float smooth_bend = 0.24f;
 
-// What is worth mixing: codes between neighbours, changed codes, and a share.
+// Bounds for mixing: codes between neighbours, changed codes, and a share.
 inline constexpr float alike = 9, least_change = 0.75f, least_share = 1 / 256.0f;
-inline constexpr float behind_both = 0.97f;  // of inverse depths
+inline constexpr float behind_both = 0.97f;  // ratio of inverse depths
 
-// Goes through the tiles of a picture.
+// Finds the edges in all tiles of a picture.
 template <class TriangleOf>
 struct EdgeFinder {
   const SurfaceWalk& walk;
   const RasterView& view;
-  int columns;  // of tiles
+  int columns;  // number of tile columns
   const PixelsDiffer& differ;
   std::span<const TilePixels> tiles;
-  TriangleOf triangle_of;  // of a number in the tiles
+  TriangleOf triangle_of;  // returns the triangle of a number in the tiles
 
-  // Between two of a tile's own pixels.
+  // Finds edges between two of a tile's own pixels.
   void find_within(int tile, std::vector<EdgeShare>& found) const {
     const TilePixels& pixels = tiles[size_t(tile)];
     ivec2 size = size_of(tile);
@@ -130,7 +134,7 @@ struct EdgeFinder {
         }
       }
   }
-  // Between a pixel of the tile to the left or above and one of this tile.
+  // Finds edges between a pixel of the tile to the left or above and one of this tile.
   void find_borders(int tile, std::vector<EdgeShare>& found) const {
     ivec2 size = size_of(tile);
     for (int y = 0; tile % columns > 0 && y < size.y; y++)
@@ -149,15 +153,15 @@ struct EdgeFinder {
   Lanes codes_between(uint32_t pixel, bool vertical, int count) const {
     return differ ? differ(pixel, vertical ? uint32_t(view.width) : 1, count) : all_lanes(INFINITY);
   }
-  // Tells which of eight pixels from `place` on are thin, as the next ones are.
+  // Returns which of eight pixels from `place` on are thin, together with the next ones.
   unsigned thin_pairs(const TilePixels& pixels, int place, int next) const {
     const Kinds both =
         load_lanes<Kinds>(pixels.kind + place) & load_lanes<Kinds>(pixels.kind + place + next);
     return negative_lanes(__builtin_convertvector(both, LaneMask) << 16);
   }
-  // Of eight pixels from `place` on, those that lie with the next and the ones before and behind on
-  // one instance's smooth surface: inverse depths of planes have no second differences, and a bend
-  // shows in two of them.
+  // Returns which of eight pixels from `place` on lie with the next and the ones before and behind
+  // on one instance's smooth surface: inverse depths of planes have no second differences, and a
+  // bend shows in two of them.
   unsigned smooth_pairs(const TilePixels& pixels, int place, int next) const {
     const Kinds kind = load_lanes<Kinds>(pixels.kind + place),
                 next_kind = load_lanes<Kinds>(pixels.kind + place + next);
@@ -184,7 +188,7 @@ struct EdgeFinder {
     const Lanes codes = codes_between(pixel_at(tile1, place1), vertical, 1);
     look(tile1, place1, tile2, place2, vertical, codes[0], found);
   }
-  // The two show different triangles, and differ by so many codes.
+  // Looks at two pixels that show different triangles, and differ by so many codes.
   void look(int tile1, int place1, int tile2, int place2, bool vertical, float codes,
             std::vector<EdgeShare>& found) const {
     const TilePixels &one = tiles[size_t(tile1)], &other = tiles[size_t(tile2)];
@@ -209,7 +213,7 @@ struct EdgeFinder {
       add(find_edge(first, second, at.x, at.y, vertical, walk), b, a,
           std::max(least_change / codes, least_share));
   }
-  // The nearest pixel of the tile that shows what is behind; (-1, -1): there is none near.
+  // Returns the nearest pixel of the tile that shows what is behind; (-1, -1): there is none near.
   ivec2 find_behind(int tile, int place, float depth) const {
     constexpr int farthest = 4;
     ivec2 last = size_of(tile) - 1, from(place % tile_width, place / tile_width);

@@ -17,7 +17,8 @@ RasterPoint to_picture(const RasterCorner& c) {
   return p;
 }
 
-// Of the linear function that is f0, f1, f2 at three corners: value at the first and slopes.
+// Makes a linear function from its values f0, f1, f2 at three corners: value at the first and
+// slopes.
 struct Slopes {
   float x1, y1, x2, y2, inverse;
   vec3 operator()(float f0, float f1, float f2) const {
@@ -26,11 +27,12 @@ struct Slopes {
   }
 };
 
-// Places on an edge belong to the triangle to the right of it or below it, so to one of two.
+// Returns an edge's bias: places on an edge belong to the triangle to the right of it or below it,
+// so to one of two.
 int32_t bias_of(int32_t a, int32_t b) { return a > 0 || (a == 0 && b > 0) ? 0 : -1; }
 
-// Does the triangle cover this place? Corners in the order that leaves the inside on the inner
-// side.
+// Returns whether the triangle covers this place. Corners must be in the order that leaves the
+// inside on the inner side.
 bool covers(const RasterPoint& p0, const RasterPoint& p1, const RasterPoint& p2, int32_t x,
             int32_t y) {
   auto inside = [&](const RasterPoint& from, const RasterPoint& to) {
@@ -46,7 +48,7 @@ void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, Raste
   int32_t high_x = std::max({p0.step_x, p1.step_x, p2.step_x});
   int32_t low_y = std::min({p0.step_y, p1.step_y, p2.step_y});
   int32_t high_y = std::max({p0.step_y, p1.step_y, p2.step_y});
-  // The pixels whose sampling places lie between; shifting rounds down.
+  // These are the pixels whose sampling places lie between; shifting rounds down.
   int left = std::max((low_x + view.centre_steps_x + raster_steps - 1) >> raster_step_bits, 0);
   int right = std::min((high_x + view.centre_steps_x) >> raster_step_bits, view.width - 1);
   int top = std::max((low_y + view.centre_steps_y + raster_steps - 1) >> raster_step_bits, 0);
@@ -55,7 +57,7 @@ void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, Raste
   int64_t area = int64_t(p1.step_x - p0.step_x) * (p2.step_y - p0.step_y) -
                  int64_t(p2.step_x - p0.step_x) * (p1.step_y - p0.step_y);
   if (area == 0) return;
-  // Places are counted downwards, so that what is counterclockwise has a negative area.
+  // Places are counted downwards, so that counterclockwise triangles have a negative area.
   if (unfinished.one_sided && (area < 0) == unfinished.mirrored) return;
   if (area < 0) std::swap(p1, p2);
   if (left == right && top == bottom &&
@@ -90,8 +92,8 @@ void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, Raste
 }
 
 constexpr int planes = 5;
-// How far inside plane `i` of the visible space: in front of the eye, and within reach of the
-// centre.
+// Returns how far inside plane `i` of the visible space the corner is: in front of the eye, and
+// within reach of the centre.
 float inside(const RasterView& view, const RasterCorner& c, int i) {
   switch (i) {
     case 0: return c.w - view.near;
@@ -115,7 +117,7 @@ void project_corners(const RasterView& view, int count, RasterCorners& corners) 
     Lanes x = load_lanes(corners.x + i), y = load_lanes(corners.y + i),
           w = load_lanes(corners.w + i);
     Lanes reach = raster_reach * w;
-    // Negated, so that what is not a number is outside.
+    // The tests are negated, so that NaN is outside.
     LaneMask outside = ~LaneMask(w >= view.near) & 1;
     outside |= (~LaneMask(x <= reach) & 2) | (~LaneMask(x >= -reach) & 4);
     outside |= (~LaneMask(y <= reach) & 8) | (~LaneMask(y >= -reach) & 16);
@@ -147,7 +149,7 @@ void add_triangle(const RasterView& view, const RasterCorners& c, int i, int j, 
     return RasterCorner{c.x[n], c.y[n], c.w[n], barycentric};
   };
   RasterCorner corners[3] = {corner(i, {0, 0}), corner(j, {1, 0}), corner(k, {0, 1})};
-  // Sutherland and Hodgman, "Reentrant Polygon Clipping", 1974.
+  // Clip as in Sutherland and Hodgman, "Reentrant Polygon Clipping", 1974.
   RasterCorner polygon[2][3 + planes];
   int count = 3, side = 0;
   std::copy(corners, corners + 3, polygon[0]);
@@ -160,7 +162,8 @@ void add_triangle(const RasterView& view, const RasterCorners& c, int i, int j, 
       const RasterCorner &a = in[m], &b = in[(m + 1) % count];
       float at_a = inside(view, a, plane), at_b = inside(view, b, plane);
       if (at_a >= 0) kept[n++] = a;
-      // From the inner end, so that neighbours cut their common edge at the same place.
+      // Edges are cut from the inner end, so that neighbours cut their common edge at the same
+      // place.
       if (at_a >= 0 && at_b < 0) kept[n++] = between(a, b, at_a / (at_a - at_b));
       if (at_a < 0 && at_b >= 0) kept[n++] = between(b, a, at_b / (at_b - at_a));
     }
@@ -169,7 +172,7 @@ void add_triangle(const RasterView& view, const RasterCorners& c, int i, int j, 
   }
   for (int m = 0; m < count; m++) {
     RasterCorner& cut = polygon[side][m];
-    if (!(cut.w > 0)) return;  // rounding, of a triangle that ends at the eye
+    if (!(cut.w > 0)) return;  // rounding, for a triangle that ends at the eye
     cut.x = std::clamp(cut.x, -raster_reach * cut.w, raster_reach * cut.w);
     cut.y = std::clamp(cut.y, -raster_reach * cut.w, raster_reach * cut.w);
   }

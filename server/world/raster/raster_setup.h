@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles on their way from the eye's coordinates to pixels: clipped where they must be, their
-// edges and what is interpolated over them as linear functions of the picture place. Pixels are
-// counted from the picture's centre, x to the right, y down.
+// Takes triangles from the eye's coordinates to pixels: clips them if needed, and makes their edges
+// and interpolated values linear functions of the picture place. Pixels are counted from the
+// picture's centre, x to the right, y down.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,31 +10,32 @@
 
 namespace wellspring::world {
 
-// Subdivision of a pixel that corners are rounded to; the furthest pixel from the centre they may
-// reach.
+// Subdivision of a pixel to which corners are rounded; the furthest pixel from the centre that they
+// may reach.
 inline constexpr int raster_step_bits = 8, raster_steps = 1 << raster_step_bits;
 inline constexpr float raster_reach = 4096;
 
-// A corner before division: picture place is (x, y) / w.
+// Holds a corner before division: picture place is (x, y) / w.
 struct RasterCorner {
   float x = 0, y = 0, w = 0;
   vec2 barycentric{0};
 };
 
-// A corner after it.
+// Holds a corner after division.
 struct RasterPoint {
   float x, y, depth;  // picture place, inverse depth
   vec2 barycentric;
   int32_t step_x, step_y;  // the place, rounded
 };
 
-// Corners of many triangles; the second half is meaningless where `outside` is not 0.
+// Holds corners of many triangles; the second half is meaningless if `outside` is not 0.
 struct RasterCorners {
   static constexpr int most = 256;
   alignas(32) float x[most], y[most], w[most];
   alignas(32) float picture_x[most], picture_y[most], depth[most];
   alignas(32) int32_t step_x[most], step_y[most];
-  alignas(32) int32_t outside[most];  // a bit for each plane of the visible space that it is beyond
+  // A bit for each plane of the visible space behind which the corner is.
+  alignas(32) int32_t outside[most];
 };
 
 struct RasterTriangle {
@@ -42,9 +43,9 @@ struct RasterTriangle {
   // a * (x - from.x) + b * (y - from.y) + bias; inside: none of the three is negative.
   int32_t a[3], b[3], from_x[3], from_y[3], bias[3];
   uint32_t instance, triangle;
-  float width;  // of it and its neighbours, pixels over inverse depth
+  float width;  // least width with its neighbours, pixels over inverse depth
   bool bar;     // MeshNeighbours::bar (world/raster/raster_edges.h)
-  // Inverse depth, and it times the barycentrics: value at `corner` and slopes a pixel.
+  // Inverse depth, and inverse depth times the barycentrics: value at `corner` and slopes a pixel.
   vec2 corner;
   vec3 depth, u, v;  // value, slope along x, slope along y
   float least_depth, most_depth;
@@ -52,8 +53,8 @@ struct RasterTriangle {
   bool has_alpha;
   bool one_sided, mirrored;  // as in PlacedMesh
   bool turned;               // its corners in the mesh are the first, the third and the second
-  bool clipped;              // its corners are others than in the mesh
-  uint8_t veils;             // RasterSettings::see_through of its material
+  bool clipped;              // its corners differ from those in the mesh
+  uint8_t veils;             // its material's RasterSettings::see_through
 };
 
 struct RasterView {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The z-buffer of one tile of a picture, and how a triangle is drawn into it.
+// Holds the z-buffer of one tile of a picture, and draws triangles into it.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -12,42 +12,46 @@
 
 namespace wellspring::world {
 
-// How a picture's edges cut its pixels: what Raster finds and whoever softens edges uses.
+// Describes how a picture's edges cut its pixels: Raster finds this, and code that softens edges
+// uses it.
 
-// Of `pixel` (row after row from the picture's top left), the share that is covered by what
-// `other`, a neighbour or a pixel near, shows: above 0, at most a half. Exact where one straight
-// edge cuts it.
+// Holds the share of `pixel` (counted row after row from the picture's top left) that is covered by
+// the surface that `other`, a neighbour or a pixel near, shows: above 0, at most a half. Exact if
+// one straight edge cuts the pixel.
 struct EdgeShare {
   uint32_t pixel = 0, other = 0;
   float share = 0;
 };
 
-// By how many codes of 255 `count` pixels side by side (at most eight; other lanes: anything)
-// differ from those `step` further on. Edges that change less than a code or two are left out; if
-// it is empty, none is.
+// Returns by how many codes of 255 `count` pixels side by side (at most eight; other lanes:
+// anything) differ from those `step` further on. Edges that change less than a code or two are left
+// out; if the function is empty, none is.
 using PixelsDiffer = std::function<Lanes(uint32_t pixel, uint32_t step, int count)>;
 
-inline constexpr int tile_width = 64, tile_height = 32;  // depths and numbers fit the first cache
+// So that depths and numbers fit into the first-level cache.
+inline constexpr int tile_width = 64, tile_height = 32;
 inline constexpr uint32_t no_triangle = 0xffffffffu;
 
 struct TilePixels {
-  alignas(32) float depth[tile_width * tile_height];                   // inverse; 0: nothing there
-  alignas(32) uint32_t number[tile_width * tile_height + lane_count];  // read beyond its end
-  // Tells instances apart, and where thin_kind is set triangles; set by hand_out().
+  alignas(32) float depth[tile_width * tile_height];  // inverse; 0: nothing there
+  // Padded, as lanes are read beyond its end.
+  alignas(32) uint32_t number[tile_width * tile_height + lane_count];
+  // Tells instances apart, and, if thin_kind is set, triangles; set by hand_out().
   uint16_t kind[tile_width * tile_height + lane_count];
   static constexpr uint16_t thin_kind = 0x8000;
-  // The least depth of squares of `square` pixels, for triangles that lie behind all of one; bits
-  // of those that have changed since it was found.
+  // The least depth of squares of `square` pixels, for triangles that lie behind all of a square;
+  // bits of squares that have changed since it was found.
   static constexpr int square = 16, across = tile_width / square;
   float least[tile_width * tile_height / (square * square)];
   uint32_t stale = 0;
 
-  // Empty, with `columns` and `rows` of it in the picture.
+  // Clears the tile, of which `columns` and `rows` lie in the picture.
   void start(int columns, int rows) {
     std::fill(std::begin(number), std::end(number), no_triangle);
     for (int y = 0; y < tile_height; y++) {
       float* row = depth + y * tile_width;
-      std::fill(row, row + tile_width, y < rows ? 0.0f : INFINITY);  // beyond nothing is missing
+      // Pixels outside the picture are full.
+      std::fill(row, row + tile_width, y < rows ? 0.0f : INFINITY);
       if (y < rows) std::fill(row + columns, row + tile_width, INFINITY);
     }
     stale = (1u << std::size(least)) - 1;
@@ -57,7 +61,8 @@ struct TilePixels {
       for (int x = 0; x < across; x++)
         if (stale >> (y * across + x) & 1) find_least(x, y);
   }
-  // Does a part of the pixels inclusive of these corners lie behind `depth`?
+  // Returns whether some of the squares with pixels between these corners, inclusive, have a pixel
+  // behind `depth`.
   bool any_behind(int x0, int y0, int x1, int y1, float depth) {
     for (int y = y0 / square; y <= y1 / square; y++)
       for (int x = x0 / square; x <= x1 / square; x++) {
@@ -79,7 +84,7 @@ struct TilePixels {
   }
 };
 
-// A linear function over the picture at pixel (x, y) of it.
+// Evaluates a linear function over the picture at pixel (x, y) of it.
 inline float eval_at(vec3 f, const RasterTriangle& t, const RasterView& view, int x, int y) {
   return f.x + f.y * (float(x) - view.centre_x - t.corner.x) +
          f.z * (float(y) - view.centre_y - t.corner.y);
@@ -93,14 +98,15 @@ inline vec2 barycentric_at(const RasterTriangle& t, const RasterView& view, int 
   return {u / most, v / most};
 }
 
-// A triangle's edges and depth at the pixels of a tile.
+// Holds a triangle's edges and depth at the pixels of a tile.
 struct TileEdges {
-  int x0, y0, x1, y1;  // of the tile, inclusive, that its bounds meet; x0 a multiple of eight
+  // Pixels of the tile, inclusive, that its bounds meet; x0 a multiple of eight.
+  int x0, y0, x1, y1;
   int32_t a[3], b[3];  // whole pixels' steps
   int32_t edge[3];     // at (x0, y0); far from the edge only its sign is right
-  float depth;         // there
+  float depth;         // inverse depth at (x0, y0)
 };
-// False: it covers no pixel of the tile.
+// Finds the edges. False: the triangle covers no pixel of the tile.
 inline bool find_edges(const RasterTriangle& t, const RasterView& view, int tile_x, int tile_y,
                        TileEdges& e) {
   e.x0 = std::max(int(t.left) - tile_x, 0) & ~(lane_count - 1);
@@ -122,13 +128,13 @@ inline bool find_edges(const RasterTriangle& t, const RasterView& view, int tile
   return true;
 }
 
-// Eight rows' pixels, counted from x0: those from `first` to `last` may be covered, none if last <
-// first; those from `first_inside` to `last_inside` are, whatever rounding does.
+// Holds eight rows' pixels, counted from x0: those from `first` to `last` may be covered, none if
+// last < first; those from `first_inside` to `last_inside` are, whatever rounding does.
 struct TileSpans {
   alignas(32) int32_t first[lane_count], last[lane_count], first_inside[lane_count],
       last_inside[lane_count];
 };
-// Finds those of the rows from y0 + `row` on.
+// Finds the spans of the rows from y0 + `row` on.
 inline void find_spans(const TileEdges& e, int row, TileSpans& spans) {
   constexpr LaneMask lane{0, 1, 2, 3, 4, 5, 6, 7};
   const float end = float(e.x1 - e.x0);
@@ -152,8 +158,8 @@ inline void find_spans(const TileEdges& e, int row, TileSpans& spans) {
   put(spans.first_inside, low + 2), put(spans.last_inside, high - 2);
 }
 
-// Calls body(place of eight pixels in the tile, their depths, bit for each that the triangle covers
-// in front of all before).
+// Calls body(place of eight pixels in the tile, their depths, bits of the pixels that the triangle
+// covers in front of all drawn before).
 template <class Body>
 [[gnu::always_inline]] inline void cover(const RasterTriangle& t, const RasterView& view,
                                          int tile_x, int tile_y, TilePixels& pixels,
@@ -161,7 +167,7 @@ template <class Body>
   constexpr LaneMask lane{0, 1, 2, 3, 4, 5, 6, 7};
   TileEdges e;
   if (!find_edges(t, view, tile_x, tile_y, e)) return;
-  // Small ones are drawn sooner than it is found out whether they show.
+  // Small triangles are drawn sooner than a test whether they show.
   constexpr int small = 64;
   if ((e.x1 - e.x0 + 1) * (e.y1 - e.y0 + 1) > small &&
       !pixels.any_behind(e.x0, e.y0, e.x1, e.y1, t.most_depth))
@@ -187,7 +193,7 @@ template <class Body>
     }
     return;
   }
-  // Wide triangles are mostly not where their bounds are.
+  // Wide triangles leave most of their bounds empty.
   TileSpans spans;
   for (int row = 0; row < rows; row += lane_count) {
     find_spans(e, row, spans);
