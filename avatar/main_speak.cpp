@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <sstream>
 
@@ -18,6 +17,8 @@
 #include "avatar/story/story_speech.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "base/read_file.h"
+#include "base/write_file.h"
 
 namespace wellspring::program {
 namespace {
@@ -63,23 +64,13 @@ Speech mark_sentence(SpeechProcess& process, const Options& options, const Sound
   }
 }
 
-std::string read_text(const std::string& file, size_t most_bytes) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw LoadError(file, "", "cannot be read");
-  std::string text(most_bytes + 1, '\0');
-  in.read(text.data(), std::streamsize(text.size()));
-  text.resize(size_t(in.gcount()));
-  if (text.size() > most_bytes)
-    throw LoadError(file, "", "is larger than " + std::to_string(most_bytes >> 20) + " MiB");
-  return text;
-}
-
 // Marks a narrator's recording of a whole story.
 Speech mark_story(SpeechProcess& process, const std::vector<StoryLine>& lines,
                   const Options& options) {
   Sound recording = load_sound(options.audio);
   if (!options.marks.empty())
-    return apply_marks(read_text(options.marks, 64 << 20), options.marks, lines, recording);
+    return apply_marks(read_file(options.marks, most_marks_bytes, FileKind::regular_or_pipe),
+                       options.marks, lines, recording);
   try {
     return mark_recording(process, lines, options.request, recording);
   } catch (const LoadError&) {
@@ -167,16 +158,13 @@ int run(const Options& options) {
   }
   if (!options.wav.empty()) {
     if (speech.pcm.empty()) throw LoadError(options.wav, "", "marks without --audio have no sound");
-    auto wav = encode_wav(speech.pcm, speech.rate);
-    save_file(options.wav, wav.data(), wav.size());
+    write_file(options.wav, encode_wav(speech.pcm, speech.rate));
   }
   if (!options.json.empty()) {
-    std::string json = write_speech_json(speech);
-    save_file(options.json, json.data(), json.size());
+    write_file(options.json, write_speech_json(speech));
   }
   if (!options.vtt.empty()) {
-    std::string vtt = write_subtitles(cues);
-    save_file(options.vtt, vtt.data(), vtt.size());
+    write_file(options.vtt, write_subtitles(cues));
   }
   if (options.wav.empty() && options.json.empty() && options.vtt.empty()) print(speech);
   return 0;

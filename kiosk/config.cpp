@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 #include "kiosk/process/eye_process.h"
 #include "wire/json.h"
 #include "wire/json_line.h"
@@ -28,11 +29,7 @@ using nlohmann::json;
 constexpr float degree = pi / 180;
 
 std::string read_text(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw LoadError(file, "", "cannot be read");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  return read_file(file, 1 << 20, FileKind::regular_or_pipe);
 }
 
 json parse(const std::string& file, const std::string& text) {

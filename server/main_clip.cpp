@@ -17,6 +17,7 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "base/write_file.h"
 #include "frame/picture_file.h"
 #include "show/storyteller/story_clip.h"
 
@@ -106,10 +107,8 @@ int run(Options& options) {
       if (at >= 0 && at < long(pcm.size())) sound[k] = pcm[size_t(at)];
     }
   }
-  auto wav = encode_wav(sound, rate);
-  save_file(options.out + "/sound.wav", wav.data(), wav.size());
-  std::string subtitles = write_subtitles(join_lines(script.lines, spoken).cues);
-  save_file(options.out + "/subtitles.vtt", subtitles.data(), subtitles.size());
+  write_file(options.out + "/sound.wav", encode_wav(sound, rate));
+  write_file(options.out + "/subtitles.vtt", write_subtitles(join_lines(script.lines, spoken).cues));
 
   size_t every = size_t(std::max(1.0, options.clip.fps / options.sheet_rate));
   int shown = int((moments.size() + every - 1) / every);

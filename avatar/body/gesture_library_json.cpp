@@ -6,6 +6,7 @@
 
 #include "avatar/body/gesture.h"
 #include "avatar/face/library_json.h"
+#include "base/read_file.h"
 
 namespace wellspring::avatar {
 namespace {
@@ -245,7 +246,7 @@ GestureLibrary read_gestures(std::string_view text, const std::string& file) {
 }
 
 GestureLibrary load_gestures(const std::string& file) {
-  return read_gestures(read_text_file(file), file);
+  return read_gestures(read_file(file, most_library_bytes), file);
 }
 
 }  // namespace wellspring::avatar

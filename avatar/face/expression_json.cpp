@@ -4,6 +4,7 @@
 
 #include "avatar/face/expression.h"
 #include "avatar/face/library_json.h"
+#include "base/read_file.h"
 
 namespace wellspring::avatar {
 namespace {
@@ -170,7 +171,7 @@ ExpressionSet read_expressions(std::string_view text, const std::string& file) {
 }
 
 ExpressionSet load_expressions(const std::string& file) {
-  return read_expressions(read_text_file(file), file);
+  return read_expressions(read_file(file, most_library_bytes), file);
 }
 
 }  // namespace wellspring::avatar

@@ -2,18 +2,16 @@
 #include "avatar/face/library_json.h"
 
 #include <algorithm>
-#include <fstream>
 
 namespace wellspring::avatar {
 namespace {
-constexpr size_t most_bytes = size_t(16) << 20;
 constexpr int most_depth = 8;
 }  // namespace
 
 using nlohmann::json;
 
 json LibraryReader::parse(std::string_view text, const char* format) const {
-  if (text.size() > most_bytes) fail("", "is larger than 16 MiB");
+  if (text.size() > most_library_bytes) fail("", "is larger than 16 MiB");
   bool too_deep = false;
   auto guard = [&](int depth, json::parse_event_t, json&) {
     too_deep = too_deep || depth > most_depth;
@@ -82,16 +80,6 @@ std::string LibraryReader::name(const json& object, const std::string& where,
   };
   if (text.empty() || text.size() > 64 || !std::all_of(text.begin(), text.end(), fits))
     fail(where + "/" + field, "a name of 1 to 64 letters, digits, '_', '-', '.' is expected");
-  return text;
-}
-
-std::string read_text_file(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw LoadError(file, "", "cannot be opened");
-  std::string text(most_bytes + 1, '\0');
-  in.read(text.data(), std::streamsize(text.size()));
-  text.resize(size_t(in.gcount()));
-  if (text.size() > most_bytes) throw LoadError(file, "", "is larger than 16 MiB");
   return text;
 }
 

@@ -18,6 +18,8 @@ namespace wellspring::avatar {
 std::string_view default_gestures_json();
 std::string_view default_expressions_json();
 
+inline constexpr size_t most_library_bytes = size_t(16) << 20;
+
 struct LibraryReader {
   const std::string& file;
 
@@ -50,7 +52,5 @@ struct LibraryReader {
   std::string name(const nlohmann::json& object, const std::string& where,
                    const char* field = "name") const;
 };
-
-std::string read_text_file(const std::string& file);  // throws LoadError; at most 16 MiB
 
 }  // namespace wellspring::avatar

@@ -2,32 +2,15 @@
 #include "avatar/load/character_load.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 #include "avatar/load/bvh_load.h"
 #include "avatar/load/gltf_figure.h"
 #include "avatar/load/x3d_humanoid.h"
 #include "base/load_error.h"
+#include "base/read_file.h"
 
 namespace wellspring::avatar {
 namespace {
-
-std::string read_file(const std::string& path) {
-  std::error_code error;
-  auto status = std::filesystem::status(path, error);
-  if (error || !std::filesystem::exists(status)) throw LoadError(path, "", "no such file");
-  if (!std::filesystem::is_regular_file(status)) throw LoadError(path, "", "is no regular file");
-  uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) throw LoadError(path, "", "cannot be read");
-  if (size > x3d_max_bytes)
-    throw LoadError(path, "", "is larger than " + std::to_string(x3d_max_bytes >> 20) + " MiB");
-  std::string text(size_t(size), '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(text.data(), std::streamsize(text.size())) && size > 0)
-    throw LoadError(path, "", "cannot be read");
-  return text;
-}
 
 // Returns whether this is a GLB container, or JSON whose first word is not X3D's and that has
 // glTF's "asset".
@@ -43,7 +26,7 @@ bool is_gltf(const std::string& text) {
 }  // namespace
 
 Character load_character(const std::string& path) {
-  std::string text = read_file(path);
+  std::string text = read_file(path, x3d_max_bytes);
   if (text.empty()) throw LoadError(path, "", "is empty");
   if (is_bvh(text)) return character_from_bvh(path, text);
   if (is_gltf(text)) return character_from_gltf(path);

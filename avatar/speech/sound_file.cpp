@@ -4,10 +4,7 @@
 #include <sndfile.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <numbers>
@@ -80,21 +77,6 @@ std::vector<uint8_t> encode_wav(const std::vector<int16_t>& pcm, int rate) {
   word("data"), number(size, 4);
   for (int16_t sample : pcm) number(uint16_t(sample), 2);
   return bytes;
-}
-
-void save_file(const std::string& file, const void* bytes, size_t size) {
-  auto fail = [&](int error) {
-    throw LoadError(file, "", std::string("cannot be written: ") + std::strerror(error));
-  };
-  std::FILE* out = std::fopen(file.c_str(), "wb");
-  if (!out) fail(errno);
-  bool written = std::fwrite(bytes, 1, size, out) == size;
-  int error = errno;
-  if (std::fclose(out) != 0 && written) {
-    written = false;
-    error = errno;
-  }
-  if (!written) fail(error);
 }
 
 std::vector<float> resample(const std::vector<float>& samples, int from, int to) {

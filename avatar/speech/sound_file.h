@@ -21,8 +21,6 @@ Sound load_sound(const std::string& file);
 
 // Makes the whole file in memory, mono.
 std::vector<uint8_t> encode_wav(const std::vector<int16_t>& pcm, int rate);
-// Writes a file. Throws LoadError naming it.
-void save_file(const std::string& file, const void* bytes, size_t size);
 
 // Resamples to another rate by a windowed sinc (Hann, 16 zero crossings each side), low-pass if the
 // rate goes down.

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "avatar/speech/protocol.h"
-#include "avatar/speech/sound_file.h"
 #include "avatar/speech/text.h"
 #include "avatar/speech/visemes.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "base/rng.h"
+#include "base/write_file.h"
 
 namespace wellspring::avatar {
 
@@ -315,11 +315,9 @@ void SpeechFolder::save(const SpeechRequest& request, const Speech& speech) {
   std::error_code code;
   fs::create_directories(path_, code);
   try {
-    save_file(file + ".new", bytes.data(), bytes.size());
-    fs::rename(file + ".new", file);
+    write_file(file, bytes);
     remove_oldest(path_, most_bytes_);
   } catch (const std::exception& error) {
-    fs::remove(file + ".new", code);
     if (!said_) log::warn("speech: not kept on disk: {}", error.what());
     said_ = true;
   }

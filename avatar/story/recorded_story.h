@@ -22,6 +22,7 @@ std::string text_of(const std::vector<StoryLine>& lines);
 Speech mark_recording(SpeechProcess& process, const std::vector<StoryLine>& lines,
                       const SpeechRequest& voice, const Sound& recording);
 
+inline constexpr size_t most_marks_bytes = size_t(64) << 20;  // most bytes of such a file
 // Puts marks from a file of speech_json, perhaps corrected by hand, together with the sound. Throws
 // LoadError naming `file` if they belong to another text or to a sound of another length.
 Speech apply_marks(std::string_view json, const std::string& file,

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 #include "base/worker.h"
 
 namespace wellspring::avatar {
@@ -91,13 +91,7 @@ StorySpeech join_lines(const std::vector<StoryLine>& lines,
 }
 
 StoryScript load_story(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw LoadError(file, "", "cannot be read");
-  std::string text(most_markup_bytes + 1, '\0');
-  in.read(text.data(), std::streamsize(text.size()));
-  text.resize(size_t(std::max<std::streamsize>(in.gcount(), 0)));
-  if (text.size() > most_markup_bytes)
-    throw LoadError(file, "", "is larger than " + std::to_string(most_markup_bytes >> 20) + " MiB");
+  const std::string text = read_file(file, most_markup_bytes, FileKind::regular_or_pipe);
   if (file.ends_with(".txt")) return read_plain_story(text, file);
   if (file.ends_with(".vtt")) return read_subtitle_story(text, file);
   return read_story(text, file);

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
+#include "base/write_file.h"
 #include "wire/json.h"
 
 namespace wellspring::kiosk {
@@ -21,13 +22,7 @@ constexpr size_t largest_file = 16 << 20;  // bytes
 constexpr size_t most_places = 100'000, most_gestures = 200;
 
 json read_json(const std::string& file) {
-  std::error_code error;
-  const auto size = fs::file_size(file, error);
-  std::ifstream in(file, std::ios::binary);
-  if (error || !in) throw LoadError(file, "", "cannot be read");
-  if (size > largest_file) throw LoadError(file, "", "larger than 16 MiB");
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  auto parsed = parse_json(text);
+  auto parsed = parse_json(read_file(file, largest_file));
   if (const auto* wrong = std::get_if<WireError>(&parsed))
     throw LoadError(file, "", wrong->message);
   json root = std::move(std::get<json>(parsed));
@@ -200,9 +195,7 @@ void save_gesture_models(const GestureModels& models, const std::string& file) {
     item["dwell"] = model.dwell;
     gestures.push_back(std::move(item));
   }
-  std::ofstream out(file);
-  out << json{{"gestures", gestures}, {"other", to_json(models.other)}}.dump(1) << '\n';
-  if (!out.flush()) throw LoadError(file, "", "cannot be written");
+  write_file(file, json{{"gestures", gestures}, {"other", to_json(models.other)}}.dump(1) + "\n");
 }
 
 }  // namespace wellspring::kiosk

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/dnn.hpp>
 #include <stdexcept>
 #include <utility>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 
 namespace wellspring::kiosk {
 
@@ -19,20 +19,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr uintmax_t most_bytes = 64 << 20;  // size of one file
+constexpr size_t most_bytes = 64 << 20;  // size of one file
 constexpr size_t most_dimensions = 4;
-
-std::string read_file(const fs::path& path) {
-  std::error_code error;
-  const uintmax_t size = fs::file_size(path, error);
-  if (error) throw LoadError(path.string(), "", "cannot be read");
-  if (size > most_bytes) throw LoadError(path.string(), "", "larger than 64 MiB");
-  std::string text(size, '\0');
-  std::ifstream in(path, std::ios::binary);
-  if (!in.read(text.data(), std::streamsize(size)))
-    throw LoadError(path.string(), "", "cannot be read");
-  return text;
-}
 
 // Describes an array's element in messages: by its index and its name if it has one.
 std::string place(size_t index, const json& entry) {
@@ -113,7 +101,7 @@ std::string shape_text(const std::vector<int>& shape) {
 WeightSet load_weight_set(const std::string& folder, const std::string& name) {
   Reader reader;
   reader.manifest = (fs::path(folder) / (name + "-weights_manifest.json")).string();
-  const json root = json::parse(read_file(reader.manifest), nullptr, false);
+  const json root = json::parse(read_file(reader.manifest, most_bytes), nullptr, false);
   if (root.is_discarded()) reader.refuse("", "is no JSON");
   if (!root.is_array() || root.size() != 1 || !root[0].is_object())
     reader.refuse("", "is no array of one group of weights");
@@ -127,7 +115,7 @@ WeightSet load_weight_set(const std::string& folder, const std::string& name) {
   if (!group.contains("weights") || !group["weights"].is_array())
     reader.refuse("/0/weights", "is no array");
   reader.bytes_file = (fs::path(folder) / path).string();
-  reader.bytes = read_file(reader.bytes_file);
+  reader.bytes = read_file(reader.bytes_file, most_bytes);
 
   WeightSet set{reader.manifest, {}};
   size_t index = 0;

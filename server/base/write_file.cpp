@@ -66,18 +66,21 @@ Unfinished remove_unfinished(const std::string& folder) {
 
 void write_file(const std::string& path, std::span<const char> bytes) {
   static std::atomic<unsigned> count{0};
-  std::string temporary = path + mark + std::to_string(getpid()) + "-" + std::to_string(count++);
+  std::error_code none;
+  const bool in_place = fs::is_other(path, none);
+  const std::string temporary =
+      in_place ? path : path + mark + std::to_string(getpid()) + "-" + std::to_string(count++);
   FILE* file = std::fopen(temporary.c_str(), "wb");
   if (!file) throw LoadError(path, "", std::string("cannot be written: ") + std::strerror(errno));
-  flock(fileno(file), LOCK_EX | LOCK_NB);  // see is_written()
+  if (!in_place) flock(fileno(file), LOCK_EX | LOCK_NB);  // see is_written()
   bool good = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   int reason = errno;
   if (std::fclose(file) != 0 && good) good = false, reason = errno;
-  if (good && std::rename(temporary.c_str(), path.c_str()) != 0) good = false, reason = errno;
-  if (!good) {
-    std::remove(temporary.c_str());
-    throw LoadError(path, "", std::string("cannot be written: ") + std::strerror(reason));
-  }
+  if (!in_place && good && std::rename(temporary.c_str(), path.c_str()) != 0)
+    good = false, reason = errno;
+  if (good) return;
+  if (!in_place) std::remove(temporary.c_str());
+  throw LoadError(path, "", std::string("cannot be written: ") + std::strerror(reason));
 }
 
 namespace {

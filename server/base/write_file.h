@@ -11,8 +11,12 @@
 
 namespace wellspring {
 
-// Writes the whole file or none of it: beside its place, then renamed over it. Throws LoadError.
+// Writes the whole file or none of it: beside its place, then renamed over it. Pipes and devices
+// are written to. Throws LoadError.
 void write_file(const std::string& path, std::span<const char> bytes);
+inline void write_file(const std::string& path, std::span<const uint8_t> bytes) {
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
 
 // Counts the files that killed programs had half written, in a folder and those below it.
 // remove_unfinished() removes them, unless somebody writes them or has changed them within a

@@ -4,10 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <sstream>
 
+#include "base/load_error.h"
+#include "base/read_file.h"
 #include "base/unicode.h"
 
 namespace wellspring::config {
@@ -109,14 +110,12 @@ struct Reader {
   }
 
   void read() {
-    std::error_code ec;
-    std::ifstream in(file, std::ios::binary);
-    if (!in || std::filesystem::is_directory(file, ec)) return note(0, "cannot be read");
-    std::string text(most_bytes + 1, '\0');
-    in.read(text.data(), std::streamsize(text.size()));
-    if (in.bad()) return note(0, "cannot be read");
-    text.resize(size_t(in.gcount()));
-    if (text.size() > most_bytes) return note(0, "has more than a mebibyte");
+    std::string text;
+    try {
+      text = read_file(file, most_bytes, FileKind::regular_or_pipe);
+    } catch (const LoadError& error) {
+      return note(0, error.what_);
+    }
     if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // byte order mark
     std::istringstream lines(text);
     std::string line;

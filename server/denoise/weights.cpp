@@ -2,13 +2,12 @@
 #include "denoise/weights.h"
 
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 
 namespace wellspring::denoise {
 namespace {
@@ -123,16 +122,7 @@ Weights read_weights(std::span<const std::byte> file, const std::string& path) {
 }
 
 Weights load_weights(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) throw LoadError(path, "", std::string("cannot be read: ") + std::strerror(errno));
-  std::streamoff size = file.tellg();
-  if (size < 0 || size_t(size) > most_file_bytes)
-    throw LoadError(path, "", "is no file of weights: too large");
-  std::vector<std::byte> bytes(size_t(size), std::byte(0));
-  file.seekg(0);
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), size))
-    throw LoadError(path, "", "cannot be read to its end");
-  return read_weights(bytes, path);
+  return read_weights(read_file<std::vector<std::byte>>(path, most_file_bytes), path);
 }
 
 }  // namespace wellspring::denoise

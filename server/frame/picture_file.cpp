@@ -337,7 +337,7 @@ void save_image8(const std::string& path, const Image8& image, const std::string
     std::vector<uint8_t> bytes;
     encode_jpeg(image, 95, true, bytes);
     if (!comment.empty()) add_jpeg_comment(comment, bytes);
-    write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(path, bytes);
   }
 }
 

@@ -7,9 +7,9 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 #include "base/unicode.h"
 
 namespace wellspring::gltf {
@@ -197,22 +197,6 @@ void warn(File& file, const std::string& where, const std::string& what) {
   file.warnings.push_back(where.empty() ? what : where + ": " + what);
 }
 
-Bytes read_bytes(const std::string& path, size_t limit) {
-  std::error_code error;
-  if (!fs::exists(path, error)) throw LoadError(path, "", "no such file");
-  if (!fs::is_regular_file(path, error)) throw LoadError(path, "", "not a regular file");
-  uintmax_t size = fs::file_size(path, error);
-  if (error) throw LoadError(path, "", "cannot be read: " + error.message());
-  if (size > limit)
-    throw LoadError(path, "", "larger than " + std::to_string(limit >> 20) + " MiB");
-  std::ifstream stream(path, std::ios::binary);
-  Bytes bytes(size);
-  if (size > 0) stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
-  if (!stream || size_t(stream.gcount()) != (size > 0 ? size : 0))
-    throw LoadError(path, "", "cannot be read");
-  return bytes;
-}
-
 File load_gltf(const std::string& path, const std::string& package,
                const std::set<std::string>& further) {
   File file;
@@ -224,7 +208,7 @@ File load_gltf(const std::string& path, const std::string& package,
   file.package = package.empty() ? file.folder : fs::weakly_canonical(fs::path(package), error);
   if (error) throw LoadError(path, "", "package folder \"" + package + "\" cannot be resolved");
   if (!file.package.has_filename()) file.package = file.package.parent_path();  // trailing slash
-  Bytes bytes = read_bytes(path, file_bytes_limit);
+  Bytes bytes = read_file<Bytes>(path, file_bytes_limit);
   if (bytes.size() >= 4 && word(bytes, 0) == 0x46546c67) {  // "glTF"
     split_glb(file, std::move(bytes));
   } else {
@@ -429,7 +413,7 @@ std::optional<Bytes> read_uri(const File& file, const std::string& where, const 
   const std::optional<fs::path> path = find_uri(file, where, uri);
   if (!path) return {};
   try {
-    return read_bytes(path->string(), file_bytes_limit);
+    return read_file<Bytes>(path->string(), file_bytes_limit);
   } catch (const LoadError& problem) {
     refuse(file, where, "file " + quoted(uri) + ": " + problem.what_);
   }

@@ -107,9 +107,6 @@ File load_gltf(const std::string& path, const std::string& package,
 // Adds a warning; the same `what` is said once, with its first place.
 void warn(File& file, const std::string& where, const std::string& what);
 
-// Reads a whole file, at most `limit` bytes.
-Bytes read_bytes(const std::string& path, size_t limit);
-
 // These are the steps of load_gltf.
 void check_schema(File& file);  // types, required properties, ranges, references
 void check_layout(File& file);  // buffer views within buffers, accessors within buffer views

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 #include "frame/disparity_code.h"
 #include "frame/jpeg.h"
 #include "frame/picture_file.h"
@@ -93,13 +94,13 @@ nlohmann::json draw_steps(const std::string& folder) {
   };
   auto triple = [](const nlohmann::json& from) { return vec3(from[0], from[1], from[2]); };
   const std::string steps = path("steps.json");
-  const gltf::Bytes text = gltf::read_bytes(steps, most_bytes);
+  const gltf::Bytes text = read_file<gltf::Bytes>(steps, most_bytes);
   LocalDisplay display;
   nlohmann::json flips = nlohmann::json::object();
   for (const nlohmann::json& step : nlohmann::json::parse(text.begin(), text.end())) {
     if (step.contains("packet")) {
       const std::string file = path(step["packet"]);
-      if (!display.receive(gltf::read_bytes(file, most_bytes)))
+      if (!display.receive(read_file<gltf::Bytes>(file, most_bytes)))
         throw LoadError(file, "", "is no picture with depth");
       continue;
     }
@@ -114,7 +115,7 @@ nlohmann::json draw_steps(const std::string& folder) {
     const std::string name = step.at("name");
     const Image8 drawn = display.picture(view);
     save_image8(path(name + ".png"), drawn);
-    const gltf::Bytes pixels = gltf::read_bytes(path(name + ".rgb"), most_bytes);
+    const gltf::Bytes pixels = read_file<gltf::Bytes>(path(name + ".rgb"), most_bytes);
     if (pixels.size() != drawn.rgb.size())
       throw LoadError(path(name + ".rgb"), "", "is not of the view's size");
     Image8 page{view.width, view.height, std::vector<uint8_t>(pixels.begin(), pixels.end())};

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 #include "base/rng.h"
 #include "base/unicode.h"
 #include "gltf/file.h"
@@ -64,13 +65,11 @@ bool is_plain_name(const std::string& name) {
   return plain && name.size() <= 200 && fs::path(name).lexically_normal().string() == name;
 }
 
-std::string image_problem(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
+std::string image_problem(const std::string& path, size_t most_bytes) {
+  const auto bytes = read_file<std::vector<uint8_t>>(path, most_bytes);
   Image image;
   int64_t texels_left = int64_t(longest_image_side) * longest_image_side;
-  std::string problem = decode_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()},
-                                     true, image, texels_left);
+  std::string problem = decode_image(bytes, true, image, texels_left);
   if (problem.empty() && std::max(image.width, image.height) > longest_image_side)
     problem = fmt::format("picture of {}x{} is larger than {} a side", image.width, image.height,
                           longest_image_side);
@@ -129,7 +128,7 @@ bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const 
   if (file.type.empty())
     return refuse(fmt::format("is no {} that all browsers show: {}", rules.what, rules.understood));
   if (medium == Medium::image)
-    if (std::string problem = image_problem(file.path); !problem.empty())
+    if (std::string problem = image_problem(file.path, rules.most_bytes); !problem.empty())
       return refuse("cannot be shown: " + problem);
   file.etag = fmt::format("\"{:016x}\"", hash);
   exhibit.files[name] = std::move(file);

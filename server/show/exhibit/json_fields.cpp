@@ -4,9 +4,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/core.h>
-#include <fstream>
 #include <sstream>
 
+#include "base/load_error.h"
+#include "base/read_file.h"
 #include "base/unicode.h"
 #include "wire/json.h"
 
@@ -51,18 +52,17 @@ void normalise(json& value) {
 }  // namespace
 
 std::optional<json> read_json_file(const std::string& file, std::vector<Problem>& problems) {
-  std::error_code ec;
-  std::ifstream in(file, std::ios::binary);
-  const auto size = std::filesystem::file_size(file, ec);
   auto refuse = [&](std::string what) {
     problems.push_back({file, "", std::move(what)});
     return std::nullopt;
   };
-  if (!in || ec) return refuse("cannot be read");
-  if (size > max_file_bytes) return refuse("is larger than 8 MiB");
-  std::stringstream text;
-  text << in.rdbuf();
-  auto parsed = parse_json(text.str());
+  std::string text;
+  try {
+    text = read_file(file, max_file_bytes);
+  } catch (const LoadError& error) {
+    return refuse(error.what_);
+  }
+  auto parsed = parse_json(text);
   if (const WireError* error = std::get_if<WireError>(&parsed)) return refuse(error->message);
   normalise(std::get<json>(parsed));
   return std::get<json>(std::move(parsed));

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/core.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <qrcodegen/qrcodegen.hpp>
 #include <sstream>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 #include "base/rng.h"
 #include "wire/http.h"
 
@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr size_t most_page_bytes = 4 << 20;
 const std::map<std::string, std::string> content_types = {
     {".html", "text/html; charset=utf-8"},
     {".js", "text/javascript; charset=utf-8"},
@@ -52,13 +53,10 @@ std::map<std::string, PageFile> load_pages(const std::string& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder, ec)) {
     auto type = content_types.find(entry.path().extension().string());
     if (!entry.is_regular_file(ec) || type == content_types.end()) continue;
-    if (entry.path().filename().string().starts_with('.') || entry.file_size(ec) > (4u << 20))
+    if (entry.path().filename().string().starts_with('.') || entry.file_size(ec) > most_page_bytes)
       continue;
-    std::ifstream in(entry.path(), std::ios::binary);
-    std::stringstream body;
-    body << in.rdbuf();
     pages["/" + fs::relative(entry.path(), folder, ec).generic_string()] =
-        make_page(type->second, body.str());
+        make_page(type->second, read_file(entry.path().string(), most_page_bytes));
   }
   if (!pages.contains("/index.html")) throw LoadError(folder, "", "holds no index.html");
   pages["/"] = pages["/index.html"];

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/moving/figure.h"
 
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "avatar/face/expression_rules.h"
 #include "avatar/load/vrm_extension.h"
+#include "base/load_error.h"
+#include "base/read_file.h"
+#include "gltf/file.h"
 #include "world/load/gltf_image.h"
 #include "world/load/gltf_material.h"
 #include "world/load/scene_join.h"
@@ -17,11 +18,14 @@ namespace {
 
 // Index of the scene's texture for a picture file; -1 where it cannot be read.
 int add_picture(Scene& scene, const std::string& path, bool srgb, int64_t& texels_left) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
   Image image;
-  std::string problem =
-      file.is_open() ? decode_image(bytes, srgb, image, texels_left) : "cannot be read";
+  std::string problem;
+  try {
+    const auto bytes = read_file<std::vector<uint8_t>>(path, file_bytes_limit);
+    problem = decode_image(bytes, srgb, image, texels_left);
+  } catch (const LoadError& error) {
+    problem = error.what_;
+  }
   if (!problem.empty()) {
     scene.warnings.push_back(path + ": " + problem);
     return -1;

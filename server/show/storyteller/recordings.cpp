@@ -4,13 +4,13 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "avatar/speech/speech_json.h"
 #include "avatar/story/recorded_story.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "base/read_file.h"
+#include "base/write_file.h"
 #include "base/rng.h"
 #include "show/storyteller/voice.h"
 
@@ -22,12 +22,6 @@ namespace {
 
 constexpr uint64_t method = 1;  // grows when the same recording gets other marks than before
 constexpr int best_rate = 48000;
-
-std::string read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw LoadError(path, "", "cannot be read");
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 // What marks depend on: the sound, the text and how it is pronounced.
 std::string cache_name(const Sound& sound, const std::vector<StoryLine>& lines,
@@ -52,14 +46,11 @@ std::string cache_name(const Sound& sound, const std::vector<StoryLine>& lines,
   return name;
 }
 
-// All or nothing, so that a cache is never read half written.
 void keep(const std::string& folder, const std::string& path, const Speech& marked) {
   std::error_code code;
   fs::create_directories(folder, code);
   try {
-    std::string json = write_speech_json(marked), fresh = path + ".new";
-    save_file(fresh, json.data(), json.size());
-    fs::rename(fresh, path);
+    write_file(path, write_speech_json(marked));
   } catch (const std::exception& error) {
     log::warn("marks of a recording cannot be kept: {}", error.what());
   }
@@ -75,12 +66,13 @@ struct Reader {
                     const SpeechRequest& voice, const Sound& sound) {
     std::string edited = marks_file_of(recording);
     std::error_code code;
-    if (fs::exists(edited, code)) return apply_marks(read_file(edited), edited, lines, sound);
+    if (fs::exists(edited, code))
+      return apply_marks(read_file(edited, most_marks_bytes), edited, lines, sound);
     std::string kept =
         options.cache.empty() ? "" : options.cache + "/" + cache_name(sound, lines, voice);
     if (!kept.empty() && fs::exists(kept, code)) {
       try {
-        return apply_marks(read_file(kept), kept, lines, sound);
+        return apply_marks(read_file(kept, most_marks_bytes), kept, lines, sound);
       } catch (const LoadError& error) {
         log::warn("{}; it is made anew", error.what());
       }

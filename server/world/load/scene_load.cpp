@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/load_error.h"
+#include "base/read_file.h"
 #include "base/worker.h"
 #include "gltf/animation.h"
 #include "gltf/data.h"
@@ -326,7 +327,7 @@ Scene load_scene(const std::string& path, const SceneLoadOptions& options) {
 }
 
 void load_environment(const std::string& path, Scene& scene) {
-  Bytes bytes = read_bytes(path, size_t(1) << 30);
+  Bytes bytes = read_file<Bytes>(path, size_t(1) << 30);
   Image image;
   image.name = std::filesystem::path(path).filename().string();
   std::string problem = decode_radiance(bytes, image);

@@ -115,8 +115,7 @@ TEST(ConfigFile, NamesEverythingThatIsWrongWithItsLine) {
 TEST(ConfigFile, AFileThatIsNoneIsRefused) {
   Program p;
   EXPECT_EQ(p.problems(std::string("host = a\0b\n", 11)), Lines{"a.conf: line 1: is no text"});
-  EXPECT_EQ(Program().problems(std::string(2 << 20, 'x')),
-            Lines{"a.conf: has more than a mebibyte"});
+  EXPECT_EQ(Program().problems(std::string(2 << 20, 'x')), Lines{"a.conf: is larger than 1 MiB"});
 }
 
 TEST(ConfigFile, WhatIsWrittenIsReadAsItWas) {

@@ -15,6 +15,7 @@
 #include "avatar/speech/sound_file.h"
 #include "base/load_error.h"
 #include "base/rng.h"
+#include "base/write_file.h"
 #include "unit/folder.h"
 
 namespace wellspring::test {
@@ -40,7 +41,7 @@ TEST(SpeechSound, WavRoundTripIsExact) {
   Rng rng{1};
   for (int i = 0; i < 5000; i++) pcm.push_back(int16_t(int(rng.next() % 65536) - 32768));
   auto wav = encode_wav(pcm, 22050);
-  save_file(folder.file("a.wav"), wav.data(), wav.size());
+  write_file(folder.file("a.wav"), wav);
   Sound sound = load_sound(folder.file("a.wav"));
   EXPECT_EQ(sound.rate, 22050);
   EXPECT_EQ(sound.samples, from_pcm(pcm));
@@ -88,7 +89,7 @@ TEST(SpeechSound, TooLongIsRefusedWithoutReadingAllOfIt) {
     wav[size_t(40 + i)] = uint8_t(bytes >> (8 * i));
     wav[size_t(4 + i)] = uint8_t((bytes + 36) >> (8 * i));
   }
-  save_file(file, wav.data(), wav.size());
+  write_file(file, wav);
   fs::resize_file(file, 44 + bytes);  // sparse
   EXPECT_NE(error_of(file).find("longer than"), std::string::npos);
 }

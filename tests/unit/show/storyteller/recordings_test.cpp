@@ -9,6 +9,7 @@
 
 #include "avatar/speech/sound_file.h"
 #include "avatar/speech/speech_json.h"
+#include "base/write_file.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/storyteller/recordings.h"
 #include "show/storyteller/voice.h"
@@ -63,7 +64,7 @@ struct Recordings : testing::Test {
       rate = speech->rate;
     }
     auto wav = encode_wav(pcm, rate);
-    save_file((package / "tale.wav").string(), wav.data(), wav.size());
+    write_file((package / "tale.wav").string(), wav);
   }
   Exhibit read() {
     problems.clear();
