@@ -5,23 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
-#include <spawn.h>
 #include <fmt/core.h>
-#include <sys/wait.h>
 
 #include "about/version.h"
 #include "avatar/load/character_load.h"
 #include "avatar/speech/process.h"
 #include "avatar/speech/sound_file.h"
 #include "avatar/story/story_speech.h"
+#include "base/child.h"
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "base/write_file.h"
 #include "frame/picture_file.h"
 #include "show/storyteller/story_clip.h"
-
-extern char** environ;
 
 namespace wellspring::program {
 namespace {
@@ -51,15 +48,11 @@ bool make_film(const std::string& folder, double fps) {
   std::vector<std::string> words = {"ffmpeg",   "-y",      "-loglevel", "error", "-framerate",
                                     rate,       "-i",      pictures,    "-i",    sound,
                                     "-pix_fmt", "yuv420p", "-shortest", film};
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  if (posix_spawnp(&child, "ffmpeg", nullptr, nullptr, arguments.data(), environ) != 0)
+  try {
+    return Child({.words = std::move(words)}).wait() == 0;
+  } catch (const std::exception&) {
     return false;
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
 }
 
 int run(Options& options) {
@@ -108,7 +101,8 @@ int run(Options& options) {
     }
   }
   write_file(options.out + "/sound.wav", encode_wav(sound, rate));
-  write_file(options.out + "/subtitles.vtt", write_subtitles(join_lines(script.lines, spoken).cues));
+  write_file(options.out + "/subtitles.vtt",
+             write_subtitles(join_lines(script.lines, spoken).cues));
 
   size_t every = size_t(std::max(1.0, options.clip.fps / options.sheet_rate));
   int shown = int((moments.size() + every - 1) / every);

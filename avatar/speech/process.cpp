@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/speech/process.h"
 
-#include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,13 +11,13 @@
 #include <cstring>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "avatar/speech/answer.h"
 #include "avatar/speech/protocol.h"
+#include "base/child.h"
 #include "base/clock.h"
 #include "base/log.h"
-
-extern char** environ;
 
 namespace wellspring::avatar {
 
@@ -96,7 +92,7 @@ std::string program_path(const VoiceProgram& program) {
 
 struct SpeechProcess::Impl {
   VoiceProgram program;
-  pid_t child = 0;
+  std::optional<Child> child;
   int socket = -1;
   int64_t next_id = 1;
   int vain_starts = 0;     // number since the last good answer
@@ -107,11 +103,7 @@ struct SpeechProcess::Impl {
   void stop() {
     if (socket >= 0) close(socket);
     socket = -1;
-    if (child > 0) {
-      kill(child, SIGKILL);
-      while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {}
-    }
-    child = 0;
+    child.reset();
   }
 
   // Logs an error of the program when it is a new one, and counts the start as vain.
@@ -126,37 +118,21 @@ struct SpeechProcess::Impl {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
       return "no socket for the voice program";
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none, defaults;
-    sigemptyset(&none);
-    sigfillset(&defaults);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &defaults);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(
-        &attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-    char* arguments[] = {program.path.data(), nullptr};
-    int failed =
-        posix_spawn(&child, program.path.c_str(), &actions, &attributes, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-    close(ends[1]);
     socket = ends[0];
-    if (failed != 0) {
-      child = 0;
-      return "the voice program " + program.path + " cannot be started: " + std::strerror(failed);
+    std::string error;
+    try {
+      child.emplace(ChildSettings{.words = {program.path},
+                                  .files = {{ends[1], STDIN_FILENO}, {ends[1], STDOUT_FILENO}},
+                                  .apart = true});
+    } catch (const std::exception& problem) {
+      error = std::string("the voice program ") + problem.what();
     }
-    return {};
+    close(ends[1]);
+    return error;
   }
 
   std::string start() {
-    if (child > 0) return {};
+    if (child) return {};
     if (seconds_now() < rest_until) return last_error;
     std::string error = spawn_program();
     if (!error.empty()) {
@@ -206,7 +182,7 @@ SpeechProcess::SpeechProcess(VoiceProgram program) : impl_(std::make_unique<Impl
 
 SpeechProcess::~SpeechProcess() { impl_->stop(); }
 
-int SpeechProcess::process_id() const { return int(impl_->child); }
+int SpeechProcess::process_id() const { return impl_->child ? int(impl_->child->id()) : 0; }
 const std::vector<std::string>& SpeechProcess::languages() const { return impl_->languages; }
 
 std::shared_ptr<const Speech> SpeechProcess::speak(const SpeechRequest& request,

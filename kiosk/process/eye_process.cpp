@@ -2,8 +2,6 @@
 #include "kiosk/process/eye_process.h"
 
 #include <cerrno>
-#include <chrono>
-#include <csignal>
 #include <cstring>
 #include <fcntl.h>
 #include <malloc.h>
@@ -11,28 +9,26 @@
 #include <poll.h>
 #include <sched.h>
 #include <seccomp.h>
-#include <spawn.h>
 #include <stdexcept>
 #include <string>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 #include <utility>
 
 #include "wire/json.h"
 
-extern char** environ;
-
 namespace wellspring::kiosk {
 namespace {
 
 constexpr size_t longest_line = 64 * 1024;
-constexpr double patience = 2;  // seconds that the eye has to end
 
-[[noreturn]] void fail(const char* what, int error) {
-  throw std::runtime_error("the eye's process: " + std::string(what) + ": " + std::strerror(error));
+// Adds what tells the program that it is an eye.
+std::vector<std::string> words_of(std::vector<std::string> arguments, size_t eye) {
+  for (const std::string& word : {std::string(observe_to), std::to_string(observe_fd),
+                                  std::string(of_camera), std::to_string(eye)})
+    arguments.push_back(word);
+  return arguments;
 }
 
 }  // namespace
@@ -66,52 +62,20 @@ std::optional<EyeOrder> Orders::take() {
   return newest;
 }
 
-EyeProcess::EyeProcess(std::vector<std::string> arguments, size_t eye) {
-  int ends[2], orders[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) fail("no pipe", errno);
-  lines_ = ends[0];
-  if (pipe2(orders, O_CLOEXEC) != 0) fail("no pipe", errno);
-  orders_ = orders[1];
-  fcntl(orders_, F_SETFL, O_NONBLOCK);
-  arguments.push_back(observe_to);
-  arguments.push_back(std::to_string(observe_fd));
-  arguments.push_back(of_camera);
-  arguments.push_back(std::to_string(eye));
-  std::vector<char*> words;
-  for (std::string& word : arguments) words.push_back(word.data());
-  words.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, orders[0], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], observe_fd);
-  // closes the way to the server
-  posix_spawn_file_actions_addclosefrom_np(&actions, observe_fd + 1);
-  int error = posix_spawn(&process_, "/proc/self/exe", &actions, nullptr, words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  close(orders[0]);
-  if (error == 0) return;
-  close(lines_);
-  close(orders_);
-  fail("cannot be started", error);
-}
-
-EyeProcess::~EyeProcess() {
-  close(lines_);
-  close(orders_);
-  if (process_ < 0) return;
-  kill(process_, SIGTERM);
-  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
-  while (waitpid(process_, nullptr, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > until) kill(process_, SIGKILL);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+// The eye has no other open file: the way to the server is closed to it.
+EyeProcess::EyeProcess(std::vector<std::string> arguments, size_t eye)
+    : process_({.words = words_of(std::move(arguments), eye),
+                .program = "/proc/self/exe",
+                .reads = STDIN_FILENO,
+                .writes = observe_fd,
+                .patience = 2}) {
+  fcntl(process_.to(), F_SETFL, O_NONBLOCK);
 }
 
 void EyeProcess::tell(const std::string& line) {
   const std::string text = line + '\n';
   // The line is written whole or not at all: it is shorter than PIPE_BUF.
-  [[maybe_unused]] const ssize_t wrote = write(orders_, text.data(), text.size());
+  [[maybe_unused]] const ssize_t wrote = write(process_.to(), text.data(), text.size());
 }
 
 EyeProcess::Heard EyeProcess::take(std::string& line, double seconds) {
@@ -124,23 +88,15 @@ EyeProcess::Heard EyeProcess::take(std::string& line, double seconds) {
       continue;
     }
     if (text_.size() > longest_line) text_.clear(), too_long_ = true;
-    pollfd readable{lines_, POLLIN, 0};
+    pollfd readable{process_.from(), POLLIN, 0};
     const int wait = std::exchange(waited, true) ? 0 : int(1000 * seconds);
     if (poll(&readable, 1, wait) <= 0) return Heard::nothing;
     char piece[4096];
-    ssize_t count = read(lines_, piece, sizeof piece);
+    ssize_t count = read(process_.from(), piece, sizeof piece);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return Heard::ended;
     text_.append(piece, size_t(count));
   }
-}
-
-int EyeProcess::status() {
-  if (process_ < 0) return status_;
-  int status = 0;
-  waitpid(process_, &status, 0);
-  process_ = -1;
-  return status_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
 }  // namespace wellspring::kiosk

@@ -6,9 +6,9 @@
 #pragma once
 #include <optional>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
+#include "base/child.h"
 #include "wire/messages.h"
 
 namespace wellspring::kiosk {
@@ -32,11 +32,9 @@ class Orders {
 
 class EyeProcess {
  public:
-  // Starts eye 0, 1, ... Throws std::runtime_error if it cannot be started.
+  // Starts eye 0, 1, ... Throws std::runtime_error if it cannot be started. An eye is asked to end
+  // with this value, and killed after two seconds.
   EyeProcess(std::vector<std::string> arguments, size_t eye);
-  ~EyeProcess();  // asks the eye to end, and ends it after two seconds
-  EyeProcess(const EyeProcess&) = delete;
-  EyeProcess& operator=(const EyeProcess&) = delete;
 
   enum class Heard { line, nothing, ended };
   // Sends a line for its Orders. Never waits: an eye that hangs does not receive it.
@@ -45,14 +43,12 @@ class EyeProcess {
   // out.
   Heard take(std::string& line, double seconds);
   // Returns, after Heard::ended, its exit code, or minus the signal that ended it.
-  int status();
+  int status() { return *process_.wait(); }
 
  private:
-  pid_t process_ = -1;
-  int lines_ = -1, orders_ = -1;
+  Child process_;
   std::string text_;       // text read and not taken yet
   bool too_long_ = false;  // whether text_ begins within a line that is too long
-  int status_ = 0;
 };
 
 // Takes rights from the process that sees pictures, once its camera and its weights are open: it

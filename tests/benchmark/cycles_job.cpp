@@ -2,8 +2,6 @@
 #include "cycles_job.h"
 
 #include <fcntl.h>
-#include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -14,7 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/clock.h"
+#include "base/child.h"
 #include "base/load_error.h"
 #include "frame/picture_file.h"
 
@@ -42,30 +40,10 @@ std::string tail_of(const fs::path& file) {
 
 // Exit status of a program whose output goes to `log`; -1: it took too long and was ended.
 int run(const std::vector<std::string>& command, const fs::path& log, double timeout_seconds) {
-  std::vector<char*> words;
-  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
-  pid_t child = fork();
-  if (child < 0) throw std::runtime_error("no process can be started");
-  if (child == 0) {
-    int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    if (file >= 0) dup2(file, 1), dup2(file, 2);
-    setpgid(0, 0);
-    execv(words[0], words.data());
-    _exit(127);
-  }
-  double end = seconds_now() + timeout_seconds;
-  int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (seconds_now() > end) {
-      kill(-child, SIGKILL);
-      kill(child, SIGKILL);
-      waitpid(child, &status, 0);
-      return -1;
-    }
-    usleep(50000);
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  Child child({.words = command, .files = {{file, 1}, {file, 2}}, .apart = true});
+  close(file);
+  return child.wait(timeout_seconds).value_or(-1);
 }
 
 }  // namespace

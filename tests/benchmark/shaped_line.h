@@ -3,8 +3,8 @@
 // program of Node.
 #pragma once
 #include <cstdint>
-#include <sys/types.h>
 
+#include "base/child.h"
 #include "report.h"
 
 namespace wellspring::test {
@@ -15,15 +15,11 @@ class ShapedLine {
   // cannot be started.
   ShapedLine(const BenchOptions& options, uint16_t server, double mbit, double trip_ms,
              size_t queue = 64 * 1024);
-  ~ShapedLine();
-  ShapedLine(const ShapedLine&) = delete;
-  ShapedLine& operator=(const ShapedLine&) = delete;
   void set_rate(double mbit);
   uint16_t port = 0;  // the near end's
 
  private:
-  pid_t pid_ = 0;
-  int orders_ = -1;
+  Child node_;
 };
 
 }  // namespace wellspring::test

@@ -3,23 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <fcntl.h>
 #include <netinet/in.h>
-#include <spawn.h>
 #include <stdexcept>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
 
 #include "base/clock.h"
 #include "wire/json.h"
-
-extern char** environ;
 
 namespace wellspring::test {
 
@@ -28,46 +23,30 @@ ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exh
   const bool is_given =
       std::ranges::any_of(more, [](const auto& word) { return word.starts_with("--cache="); });
   if (!is_given) cache_.emplace();
-  int out[2];
-  if (pipe(out) != 0) throw std::runtime_error("pipe failed");
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, out[1], 1);
-  posix_spawn_file_actions_addclose(&actions, out[0]);
-  posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
   std::string program = options.programs + "/wellspring_server";
   std::vector<std::string> words = {program,     "--port",        "0",     "--exhibit", exhibit,
                                     "--content", options.content, "--web", options.web};
   if (cache_) words.insert(words.end(), {"--cache", cache_->path()});
   words.insert(words.end(), more.begin(), more.end());
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   started = seconds_now();
-  int failed = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(out[1]);
-  if (failed) throw std::runtime_error(program + ": cannot be started; build all programs first");
+  process_.emplace(ChildSettings{
+      .words = std::move(words), .writes = 1, .files = {{nowhere, 2}}, .patience = 600});
+  close(nowhere);
   std::string text;
   char part[256];
   while (text.find('\n') == std::string::npos) {
-    ssize_t n = read(out[0], part, sizeof part);
+    ssize_t n = read(process_->from(), part, sizeof part);
     if (n <= 0) break;
     text.append(part, size_t(n));
   }
-  close(out[0]);
   size_t colon = text.rfind(':');
   if (colon == std::string::npos) throw std::runtime_error(program + ": did not print its address");
   port = uint16_t(std::stoi(text.substr(colon + 1)));
 }
 
-ServerProcess::~ServerProcess() {
-  kill(pid_, SIGTERM);
-  waitpid(pid_, nullptr, 0);
-}
-
 double ServerProcess::resident() const {
-  std::FILE* file = std::fopen(("/proc/" + std::to_string(pid_) + "/statm").c_str(), "r");
+  std::FILE* file = std::fopen(("/proc/" + std::to_string(process_->id()) + "/statm").c_str(), "r");
   double total = 0, pages = 0;
   if (file) {
     if (std::fscanf(file, "%lf %lf", &total, &pages) != 2) pages = 0;
@@ -77,7 +56,7 @@ double ServerProcess::resident() const {
 }
 
 double ServerProcess::core_seconds() const {
-  std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+  std::ifstream file("/proc/" + std::to_string(process_->id()) + "/stat");
   std::string word;
   double user = 0, system = 0;
   for (int i = 0; i < 13; i++) file >> word;  // its name has no spaces

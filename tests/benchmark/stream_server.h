@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <sys/types.h>
 
+#include "base/child.h"
 #include "base/layers.h"
 #include "judge/ws_client.h"
 #include "own_folder.h"
@@ -20,17 +20,14 @@ namespace wellspring::test {
 class ServerProcess {
  public:
   ServerProcess(const BenchOptions& options, const std::string& exhibit);
-  ~ServerProcess();
-  ServerProcess(const ServerProcess&) = delete;
-  ServerProcess& operator=(const ServerProcess&) = delete;
   double resident() const;      // memory in bytes
   double core_seconds() const;  // processor time so far
   uint16_t port = 0;
   double started = 0;  // seconds_now() when its process began
 
  private:
-  pid_t pid_ = 0;
   std::optional<OwnFolder> cache_;
+  std::optional<Child> process_;
 };
 
 // Opens a visit there, as a page does, of pictures of this size.

@@ -7,20 +7,16 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <spawn.h>
 #include <stdexcept>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/child.h"
 #include "main_compare.h"
 #include "wire/json.h"
-
-extern char** environ;
 
 namespace wellspring::test {
 namespace {
@@ -35,39 +31,24 @@ double clock_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+std::vector<std::string> words_of(const CompareOptions& options, std::vector<std::string> words) {
+  words.insert(words.begin(), options.kiosk);
+  if (!options.weights.empty()) words.insert(words.end(), {"--weights", options.weights});
+  return words;
+}
+
 struct Program {
-  pid_t process = -1;
+  Child process;
   FILE* lines = nullptr;
-  Program(const CompareOptions& options, std::vector<std::string> words) {
-    words.insert(words.begin(), options.kiosk);
-    if (!options.weights.empty()) words.insert(words.end(), {"--weights", options.weights});
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    int ends[2];
-    if (pipe(ends) != 0) throw std::runtime_error("no pipe");
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-    posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-    const int error =
-        posix_spawn(&process, options.kiosk.c_str(), &actions, nullptr, argv.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    lines = fdopen(ends[0], "r");
-    if (error != 0) throw std::runtime_error(options.kiosk + ": cannot be started");
-  }
+  Program(const CompareOptions& options, std::vector<std::string> words)
+      : process({.words = words_of(options, std::move(words)), .writes = 1, .patience = 60}),
+        lines(fdopen(dup(process.from()), "r")) {}
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
-  ~Program() {
-    std::fclose(lines);
-    if (process < 0) return;
-    kill(process, SIGTERM);
-    waitpid(process, nullptr, 0);
-  }
+  ~Program() { std::fclose(lines); }
   // The process that sees pictures.
   pid_t eye() const {
-    const std::string id = std::to_string(process);
+    const std::string id = std::to_string(process.id());
     for (const auto& task : std::filesystem::directory_iterator("/proc/" + id + "/task")) {
       std::ifstream file(task.path() / "children");
       if (pid_t child = 0; file >> child) return child;
