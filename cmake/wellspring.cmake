@@ -140,7 +140,7 @@ if(DLIB_INCLUDE AND DLIB AND DLIB_BLAS AND DLIB_LAPACK)
   target_compile_definitions(dlib_any INTERFACE WELLSPRING_DLIB)
 endif()
 
-# World reads .hdr pictures and frame writes PNG through stb: headers, not part of a layer's interface.
+# Image reads .hdr pictures through stb: headers, not part of a layer's interface.
 include_directories(SYSTEM ${STB_INCLUDE})
 include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/server)
 

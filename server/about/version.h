@@ -93,7 +93,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"CLI11", "CLI11", "BSD-3-Clause", "options"},
     {"GLM", "GLM", "MIT", "vectors"},
     {"nlohmann-json", "JSON for Modern C++", "MIT", "JSON"},
-    {"stb", "stb", "MIT OR Unlicense", "HDR pictures, and PNG written"},
+    {"stb", "stb", "MIT OR Unlicense", "HDR pictures"},
 };
 
 }  // namespace wellspring::about

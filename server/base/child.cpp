@@ -19,68 +19,56 @@ extern char** environ;
 
 namespace wellspring {
 
-int Child::spawn(const ChildSettings& settings) {
-  auto files = settings.files;
-  std::vector<int> theirs;
-  const auto add_pipe = [&](int there, size_t their_end, int& ours) {
-    if (there < 0) return true;
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return false;
-    ours = ends[1 - their_end];
-    theirs.push_back(ends[their_end]);
-    files.emplace_back(ends[their_end], there);
-    return true;
-  };
-  const auto start = [&] {
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    int most = STDERR_FILENO;
-    for (const auto& [ours, there] : files) {
-      posix_spawn_file_actions_adddup2(&actions, ours, there);
-      most = std::max(most, there);
-    }
-    posix_spawn_file_actions_addclosefrom_np(&actions, most + 1);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &all);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    constexpr int apart = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP;
-    posix_spawnattr_setflags(&attributes, settings.apart ? apart : 0);
-    std::vector<char*> words;
-    for (const std::string& word : settings.words) words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
-    const char* program = settings.program.empty() ? words[0] : settings.program.c_str();
-    pid_t id = 0;
-    const int error = posix_spawnp(&id, program, &actions, &attributes, words.data(), environ);
-    if (error == 0) id_ = id;
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-    return error;
-  };
-  const bool has_pipes = add_pipe(settings.reads, 0, to_) && add_pipe(settings.writes, 1, from_);
-  const int error = has_pipes ? start() : errno;
-  for (int end : theirs) close(end);
+namespace {
+
+// Returns the error's number; 0: it runs.
+int spawn(const ChildSettings& settings, const std::vector<std::pair<int, int>>& files, pid_t& id) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  int most = STDERR_FILENO;
+  for (const auto& [ours, there] : files) {
+    posix_spawn_file_actions_adddup2(&actions, ours, there);
+    most = std::max(most, there);
+  }
+  posix_spawn_file_actions_addclosefrom_np(&actions, most + 1);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none, all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  constexpr int apart = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP;
+  posix_spawnattr_setflags(&attributes, settings.apart ? apart : 0);
+  std::vector<char*> words;
+  for (const std::string& word : settings.words) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  const char* program = settings.program.empty() ? words[0] : settings.program.c_str();
+  const int error = posix_spawnp(&id, program, &actions, &attributes, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
   return error;
 }
 
-void Child::close_pipes() {
-  for (int* end : {&to_, &from_})
-    if (*end >= 0) close(*end);
-}
+}  // namespace
 
 Child::Child(const ChildSettings& settings) : apart_(settings.apart), patience_(settings.patience) {
-  const int error = spawn(settings);
+  int in[2] = {-1, -1}, out[2] = {-1, -1}, error = 0;
+  auto files = settings.files;
+  if (settings.reads >= 0) error = pipe2(in, O_CLOEXEC), files.emplace_back(in[0], settings.reads);
+  if (settings.writes >= 0 && error == 0)
+    error = pipe2(out, O_CLOEXEC), files.emplace_back(out[1], settings.writes);
+  error = error == 0 ? spawn(settings, files, id_) : errno;
+  to_ = in[1], from_ = out[0];
+  for (int end : {in[0], out[1]}) close(end);
   if (error == 0) return;
-  close_pipes();
+  for (int end : {to_, from_}) close(end);
   throw std::runtime_error(settings.words[0] + " cannot be started: " + std::strerror(error));
 }
 
 Child::~Child() {
-  close_pipes();
+  for (int end : {to_, from_}) close(end);
   if (id_ == 0) return;
   const pid_t whom = apart_ ? -id_ : id_;
   if (patience_ > 0) kill(whom, SIGTERM);

@@ -38,8 +38,6 @@ class Child {
   std::optional<int> wait(double seconds = std::numeric_limits<double>::infinity());
 
  private:
-  int spawn(const ChildSettings& settings);  // returns the error's number; 0: it runs
-  void close_pipes();
   pid_t id_ = 0;
   int to_ = -1, from_ = -1, status_ = 0;
   bool apart_ = false;

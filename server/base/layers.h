@@ -9,6 +9,7 @@ namespace config {}
 namespace about {}
 namespace wire {}
 namespace ledger {}
+namespace image {}
 namespace frame {}
 namespace attention {}
 namespace denoise {}
@@ -23,12 +24,17 @@ namespace museum {}
 namespace stream {}
 namespace kiosk {}
 
+namespace frame {
+using namespace image;
+}  // namespace frame
+
 namespace attention {
 using namespace frame;
 }  // namespace attention
 
 namespace world {
 using namespace gltf;
+using namespace image;
 }  // namespace world
 
 namespace light {
@@ -63,6 +69,7 @@ using namespace world;
 using namespace gltf;
 using namespace attention;
 using namespace frame;
+using namespace image;
 using namespace avatar;
 using namespace wire;
 using namespace ledger;
@@ -88,6 +95,7 @@ using namespace config;
 using namespace about;
 using namespace wire;
 using namespace ledger;
+using namespace image;
 using namespace frame;
 using namespace attention;
 using namespace denoise;

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/simd.h"
 #include "base/vec.h"
+#include "image/image.h"
 
 namespace wellspring::frame {
 
@@ -34,12 +35,6 @@ inline void fit_frame(int width, int height, Frame& frame) {
 inline size_t memory_bytes(const Frame& frame) {
   return bytes_of(frame.color, frame.depth, frame.object, frame.confidence);
 }
-
-// Holds 8-bit sRGB, 3 bytes a pixel, top row first.
-struct Image8 {
-  int width = 0, height = 0;
-  std::vector<uint8_t> rgb;
-};
 
 // Writes lanes as pixels of a frame.
 

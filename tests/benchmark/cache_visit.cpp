@@ -15,9 +15,9 @@
 #include "cache_visit_judge.h"
 #include "cache_visit_stage.h"
 #include "cache_visit_truth.h"
-#include "frame/jpeg.h"
 #include "frame/picture_file.h"
 #include "frame/tonemap.h"
+#include "image/image.h"
 #include "judge/flip.h"
 
 namespace wellspring::test {

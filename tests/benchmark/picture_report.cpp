@@ -6,8 +6,8 @@
 
 #include "base/clock.h"
 #include "frame/disparity_code.h"
-#include "frame/jpeg.h"
 #include "frame/picture_file.h"
+#include "image/image.h"
 #include "light/bake/bake_file.h"
 #include "light/bake/map_file.h"
 #include "picture/compositor.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame/jpeg.h"
+#include "image/image.h"
 
 namespace wellspring::test {
 namespace {

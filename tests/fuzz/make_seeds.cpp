@@ -3,10 +3,10 @@
 // format of our own changes (build target fuzz_make_seeds).
 #include <sndfile.h>
 
-#include "frame/jpeg.h"
 #include "frame/picture_file.h"
 #include "fuzz/lit_square.h"
 #include "fuzz/spoken.h"
+#include "image/image.h"
 #include "ledger/sums.h"
 #include "light/bake/map_file.h"
 #include "unit/avatar/load/vrm_person.h"
@@ -67,8 +67,9 @@ void write_pictures(const Corpus& corpus) {
   Frame frame;
   fit_frame(6, 4, frame);
   for (size_t i = 0; i < frame.color.size(); i++) frame.color[i] = vec3(0.1f * float(i));
-  corpus.put("picture", "small.pfm", encode_pfm(frame));
-  corpus.put("picture", "small.exr", encode_exr(frame, "small.exr", "comment"));
+  const LinearView view{frame.width, frame.height, frame.color, frame.depth};
+  corpus.put("picture", "small.pfm", encode_pfm(view));
+  corpus.put("picture", "small.exr", encode_exr(view, "small.exr", "comment"));
   corpus.put("picture", "small.hdr",
              std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n") + "\x80\x40\x20\x81" +
                  "\x10\x20\x30\x80");

@@ -95,9 +95,7 @@ const heavy = [
   [/^embree[34]?\//, ['world']],
   [/^(pugixml|sndfile)/, ['avatar']],
   [/^espeak-ng\//, []],  // GPL: the voice program's one file
-  [/^turbojpeg/, ['frame', 'world']],
-  [/^png\.h/, ['world']],
-  [/^(OpenEXR|Imf)/, ['frame']],
+  [/^(turbojpeg|png\.h|webp|stb_image|OpenEXR|Imf)/, ['image']],
   [/^(dnnl|omp)/, ['denoise']],
   [/^sqlite3/, ['ledger']],
 ];

@@ -3,7 +3,8 @@
 
 #include <cstdlib>
 
-#include "frame/jpeg.h"
+#include "frame/tiles.h"
+#include "image/image.h"
 #include "show/visit/flow.h"
 
 namespace wellspring::show {

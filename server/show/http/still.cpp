@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "denoise/denoise.h"
-#include "frame/jpeg.h"
 #include "frame/tonemap.h"
+#include "image/image.h"
 #include "light/visible/guides.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "wire/limits.h"

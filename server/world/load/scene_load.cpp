@@ -13,6 +13,7 @@
 #include "gltf/animation.h"
 #include "gltf/data.h"
 #include "gltf/primitive.h"
+#include "image/image.h"
 #include "world/load/gltf_image.h"
 #include "world/load/gltf_material.h"
 #include "world/load/gltf_mesh.h"
@@ -327,11 +328,12 @@ Scene load_scene(const std::string& path, const SceneLoadOptions& options) {
 }
 
 void load_environment(const std::string& path, Scene& scene) {
-  Bytes bytes = read_file<Bytes>(path, size_t(1) << 30);
+  const LinearImage sky =
+      decode_hdr(read_file<Bytes>(path, size_t(1) << 30), image_texel_limit / 4, path);
   Image image;
   image.name = std::filesystem::path(path).filename().string();
-  std::string problem = decode_radiance(bytes, image);
-  if (!problem.empty()) throw LoadError(path, "", problem);
+  image.width = sky.width, image.height = sky.height;
+  for (vec3 color : sky.color) image.texels.emplace_back(color, 1);
   scene.images.push_back(std::move(image));
   scene.environment.image = int(scene.images.size()) - 1;
   if (scene.environment.radiance == vec3(0)) scene.environment.radiance = vec3(1);

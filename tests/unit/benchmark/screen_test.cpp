@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "frame/jpeg.h"
+#include "image/image.h"
 #include "wire/packet.h"
 
 namespace wellspring::test {

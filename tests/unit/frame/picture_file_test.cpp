@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "base/load_error.h"
-#include "frame/jpeg.h"
+#include "image/image.h"
 #include "unit/frame/tonemap_color.h"
 
 using namespace wellspring;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frame/jpeg.h"
+#include "frame/tiles.h"
 
 #include <gtest/gtest.h>
 

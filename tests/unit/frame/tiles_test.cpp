@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frame/jpeg.h"
+#include "frame/tiles.h"
+#include "image/image.h"
 
 #include <gtest/gtest.h>
 

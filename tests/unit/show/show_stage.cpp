@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "frame/jpeg.h"
+#include "image/image.h"
 #include "show/state/make_show.h"
 #include "show/tick.h"
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "frame/jpeg.h"
+#include "image/image.h"
 #include "show/http/answer.h"
 #include "show/state/make_show.h"
 #include "unit/show/show_stage.h"

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "frame/jpeg.h"
 #include "frame/picture_file.h"
+#include "image/image.h"
 #include "unit/light/statistics.h"
 
 using namespace wellspring;

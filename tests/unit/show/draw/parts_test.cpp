@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "frame/jpeg.h"
+#include "frame/tiles.h"
+#include "image/image.h"
 
 namespace wellspring::test {
 namespace {
