@@ -211,10 +211,6 @@ namespace {
 
 constexpr float no_row[AlbedoTable::angles] = {};
 
-Lanes dot3(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-void set3(Lanes3& lanes, int i, vec3 v) { lanes.x[i] = v.x, lanes.y[i] = v.y, lanes.z[i] = v.z; }
-
 // Does eval_row, each lane in rows of its own. `position` in [0, 1].
 Lanes eval_rows(const float* const (&rows)[2][lane_count], Lanes weight, Lanes position) {
   position *= AlbedoTable::angles - 1;
@@ -248,11 +244,11 @@ bool fits_lanes(const Bsdf& b) {
 
 void set_lane(BsdfLanes& lanes, int i, const Bsdf& b) {
   bool facets = has_gloss(b);
-  set3(lanes.tangent, i, b.tangent);
-  set3(lanes.bitangent, i, b.bitangent);
-  set3(lanes.normal, i, b.normal);
-  set3(lanes.face, i, b.geometric_normal);
-  set3(lanes.view, i, b.view);
+  lanes.tangent.set(i, b.tangent);
+  lanes.bitangent.set(i, b.bitangent);
+  lanes.normal.set(i, b.normal);
+  lanes.face.set(i, b.geometric_normal);
+  lanes.view.set(i, b.view);
   lanes.alpha_x[i] = b.alphas.x;
   lanes.alpha_y[i] = b.alphas.y;
   lanes.root_alpha[i] = b.root_alpha;
@@ -261,10 +257,10 @@ void set_lane(BsdfLanes& lanes, int i, const Bsdf& b) {
   lanes.eta[i] = b.eta;
   lanes.metallic[i] = b.metallic;
   lanes.dielectric_share[i] = b.dielectric_share;
-  set3(lanes.facet_base, i, b.facet_base);
-  set3(lanes.facet_slope, i, b.facet_slope);
-  set3(lanes.metal, i, b.metal);
-  set3(lanes.again, i, facets && b.again_share > 0 ? b.again : vec3(0));
+  lanes.facet_base.set(i, b.facet_base);
+  lanes.facet_slope.set(i, b.facet_slope);
+  lanes.metal.set(i, b.metal);
+  lanes.again.set(i, facets && b.again_share > 0 ? b.again : vec3(0));
   lanes.glossy[i] = facets ? 1 : 0;
   lanes.coated[i] = b.has_coat ? 1 : 0;
   lanes.coat_loss[i] = b.coat_loss;
@@ -287,8 +283,8 @@ BsdfLanes make_bsdf_lanes(const Bsdf& bsdf) {
 
 BsdfLanesValue eval_bsdf_lanes(const BsdfLanes& b, const Lanes3& direction) {
   const Lanes none = all_lanes(0), one = all_lanes(1);
-  Lanes3 l{dot3(direction, b.tangent), dot3(direction, b.bitangent), dot3(direction, b.normal)};
-  LaneMask lit = (dot3(direction, b.face) > 0) & (l.z > 1e-6f);
+  Lanes3 l{dot(direction, b.tangent), dot(direction, b.bitangent), dot(direction, b.normal)};
+  LaneMask lit = (dot(direction, b.face) > 0) & (l.z > 1e-6f);
   Lanes cosine = lit ? lanes_min(l.z, one) : one;
   // The loss is the share that one meeting with a facet keeps back, of light along l.
   Lanes root = lanes_sqrt(cosine);
@@ -301,9 +297,9 @@ BsdfLanesValue eval_bsdf_lanes(const BsdfLanes& b, const Lanes3& direction) {
   value.diffuse = lit ? cosine * passes * (1 / pi) : none;
 
   Lanes3 h{b.view.x + l.x, b.view.y + l.y, b.view.z + cosine};
-  Lanes inverse = 1 / lanes_sqrt(lanes_max(dot3(h, h), all_lanes(1e-30f)));
+  Lanes inverse = 1 / lanes_sqrt(lanes_max(dot(h, h), all_lanes(1e-30f)));
   h = {h.x * inverse, h.y * inverse, h.z * inverse};
-  Lanes facet = lanes_min(dot3(b.view, h), one);
+  Lanes facet = lanes_min(dot(b.view, h), one);
   Lanes f = fresnel_lanes(facet, b.eta);
   Lanes x = h.x / b.alpha_x, y = h.y / b.alpha_y, d = x * x + y * y + h.z * h.z;
   x = l.x * b.alpha_x, y = l.y * b.alpha_y;

@@ -42,7 +42,8 @@ inline void reverse_bits(uint32_t& x, uint32_t& y) {
 
 // Returns the second dimension of Sobol's sequence (generator x + 1), its bits reversed: the matrix
 // is Pascal's triangle modulo 2, a Kronecker power, so that five steps apply it.
-inline uint32_t sobol_second_reversed(uint32_t x) {
+template <class Bits>
+inline Bits sobol_second_reversed(Bits x) {
   x ^= x >> 16;
   x ^= (x >> 8) & 0x00ff00ffu;
   x ^= (x >> 4) & 0x0f0f0f0fu;
@@ -87,14 +88,6 @@ inline LaneBits reverse_bits(LaneBits x) {
   x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
-}
-
-inline LaneBits sobol_second_reversed(LaneBits x) {
-  x ^= x >> 16;
-  x ^= (x >> 8) & 0x00ff00ffu;
-  x ^= (x >> 4) & 0x0f0f0f0fu;
-  x ^= (x >> 2) & 0x33333333u;
-  return x ^ ((x >> 1) & 0x55555555u);
 }
 
 inline Lanes unit_float(LaneBits bits) {
