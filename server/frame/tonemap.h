@@ -3,6 +3,7 @@
 // blocks and never fails: NaN and negative values become black, infinity white.
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
@@ -53,23 +54,14 @@ void eval_shoulder(Number above, Number& scale, Number& offset) {
 inline constexpr float least_peak = 0.5f;
 inline constexpr int peak_shift = 18;
 inline LaneMask eval_peak_codes(Lanes peak) {
-  auto bits = [](Lanes x) {
-    LaneMask b;
-    std::memcpy(&b, &x, sizeof b);
-    return b;
-  };
   const Lanes least = all_lanes(least_peak);
-  const LaneMask code = (bits(lanes_max(peak, least)) - bits(least)) >> peak_shift;
+  const LaneMask code =
+      (lanes_as<LaneMask>(lanes_max(peak, least)) - lanes_as<LaneMask>(least)) >> peak_shift;
   return code < 255 ? code : LaneMask{} + 255;
 }
 // Returns the least peak that has this code.
 inline float peak_of(int code) {
-  int32_t bits;
-  std::memcpy(&bits, &least_peak, sizeof bits);
-  bits += code << peak_shift;
-  float peak;
-  std::memcpy(&peak, &bits, sizeof peak);
-  return peak;
+  return std::bit_cast<float>(std::bit_cast<int32_t>(least_peak) + (code << peak_shift));
 }
 
 // Returns the largest channel that is shown as `squeezed`, from shoulder_start to below 1.
@@ -97,8 +89,7 @@ inline vec3 invert_tone_curve(vec3 shown, uint8_t peak_code) {
 // Maps radiance times exposure to red | green << 8 | blue << 16 of the eye's picture.
 inline LaneMask eval_tone_curve(Lanes3 c) {
   auto usable = [](Lanes x) {
-    x = x > 0 ? x : all_lanes(0);  // false for NaN
-    return lanes_min(x, all_lanes(brightest_shown));
+    return lanes_min(positive_lanes(x), all_lanes(brightest_shown));  // NaN is not positive
   };
   c = {usable(c.x), usable(c.y), usable(c.z)};
   Lanes peak = max_component(c);
@@ -116,8 +107,7 @@ inline LaneMask eval_tone_curve(Lanes3 c) {
 // Stores eight pixels as 24 bytes.
 inline void store_pixels(uint8_t* to, LaneMask codes) {
   using Bytes = uint8_t __attribute__((vector_size(4 * lane_count)));
-  Bytes b;
-  std::memcpy(&b, &codes, sizeof b);
+  Bytes b = lanes_as<Bytes>(codes);
   b = __builtin_shufflevector(b, b, 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, 16, 17, 18, 20, 21, 22,
                               24, 25, 26, 28, 29, 30, 3, 7, 11, 15, 19, 23, 27, 31);
   std::memcpy(to, &b, 3 * lane_count);

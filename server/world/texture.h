@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,14 @@ struct Image {
   std::vector<uint8_t> texels8;
   std::vector<vec4> texels;
 };
+
+// Texels of all pictures of a scene together.
+constexpr int64_t image_texel_limit = int64_t(1) << 28;
+// Decodes a picture file (image/image.h): eight-bit pictures keep their codes; 16-bit ones become
+// linear floats. `texels_left` shrinks by the decoded texels. Returns an empty string, or what is
+// wrong.
+std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image,
+                         int64_t& texels_left);
 
 // Holds an image with a way to read it.
 struct Texture {

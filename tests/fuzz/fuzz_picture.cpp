@@ -2,7 +2,7 @@
 // Pictures on surfaces, of the sky and for comparison: PNG, JPEG, HDR, PFM, OpenEXR.
 #include "fuzz/fuzz.h"
 #include "image/image.h"
-#include "world/load/gltf_image.h"
+#include "world/texture.h"
 
 namespace wellspring::fuzz {
 

@@ -13,10 +13,10 @@
 #include "base/rng.h"
 #include "base/unicode.h"
 #include "gltf/file.h"
-#include "world/load/gltf_image.h"
 #include "world/load/scene_join.h"
 #include "world/load/scene_load.h"
 #include "world/sky.h"
+#include "world/texture.h"
 
 namespace wellspring::show {
 

@@ -8,10 +8,10 @@
 #include "base/load_error.h"
 #include "base/read_file.h"
 #include "gltf/file.h"
-#include "world/load/gltf_image.h"
 #include "world/load/gltf_material.h"
 #include "world/load/scene_join.h"
 #include "world/mesh_finish.h"
+#include "world/texture.h"
 
 namespace wellspring::show {
 namespace {

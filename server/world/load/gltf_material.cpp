@@ -8,7 +8,7 @@
 #include "base/worker.h"
 #include "gltf/data.h"
 #include "gltf/file.h"
-#include "world/load/gltf_image.h"
+#include "world/texture.h"
 
 namespace wellspring::world {
 namespace {

@@ -14,7 +14,6 @@
 #include "gltf/data.h"
 #include "gltf/primitive.h"
 #include "image/image.h"
-#include "world/load/gltf_image.h"
 #include "world/load/gltf_material.h"
 #include "world/load/gltf_mesh.h"
 #include "world/mesh_finish.h"

@@ -5,7 +5,7 @@
 #include "frame/picture_file.h"
 #include "mitsuba_mesh.h"
 #include "scenes/build.h"
-#include "world/load/gltf_image.h"
+#include "world/texture.h"
 
 namespace wellspring::mitsuba {
 namespace {

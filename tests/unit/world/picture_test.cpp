@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "world/load/gltf_image.h"
+#include "world/texture.h"
 
 using namespace wellspring;
 
