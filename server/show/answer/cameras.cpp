@@ -63,7 +63,7 @@ bool is_kiosk_full(const Show& show, const Eye& eye, const std::string& kiosk) {
          })) >= most_kiosk_cameras;
 }
 
-// What is wrong with it.
+// Takes in what a camera said; returns the error that it is told.
 std::optional<WireError> take_in(Show& show, Eye& eye, Heard& heard) {
   if (const WireError* bad = std::get_if<WireError>(&heard.said)) return *bad;
   Observation& seen = std::get<Observation>(heard.said);

@@ -63,7 +63,7 @@ json describe(const Show& show, const Visitor& visitor) {
   return about;
 }
 
-// Of this exhibit, and not too old.
+// Returns whether the kept visit is one of this exhibit, and not too old.
 bool is_valid(const Show& show, const json& about) {
   if (!about.is_object() || about.value("exhibit", json()) != show.exhibit.id) return false;
   const json day = about.value("day", json());
@@ -79,7 +79,7 @@ double within(const json& number, double least, double most) {
   return std::clamp(number.get<double>(), least, most);
 }
 
-// What the exhibit does not have any more is left out.
+// Puts a visit back; parts that the exhibit does not have any more are left out.
 void restore(Show& show, Visitor& visitor, const json& about) {
   VisitorPlace& place = visitor.place;
   const json& at = about.at("place");

@@ -54,8 +54,8 @@ Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int h
   return {};
 }
 
-// Whoever had keyframes gets a finished picture next, and the other way round. Where nothing is
-// drawn in the background there are no keyframes.
+// A page that had keyframes gets a finished picture next, and the other way round. A show that
+// draws nothing in the background has no keyframes.
 void set_display(const Show& show, Visitor& visitor, const std::string& display) {
   const bool local = display == "local" && show.settings.background;
   PictureWishes& wants = visitor.wants;
@@ -92,7 +92,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   kiosk = kiosk_name(show, visitor.name);
   go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
                   visitor.kiosk ? kiosk_viewpoint(show, kiosk) : show.exhibit.start);
-  // Of a visitor who is here already a picture may be drawn at the moment, on another thread.
+  // Another thread may be drawing a picture of a visitor who is here already.
   const bool goes_on = is_first && !hello.resume.empty() && come_back(show, visitor, hello.resume);
   if (!goes_on) show.totals.visits++;
   if (is_first) count_visit(show, visitor, goes_on);

@@ -26,7 +26,7 @@ std::string subtitle_message(const std::string& text, const std::string& lang,
 std::string speech_message(uint32_t utterance, const Speech& speech, dvec3 mouth);
 std::string speech_stop_message(uint32_t utterance);
 std::string agent_message(const Show& show, const Teller& teller);
-// Of all kiosks together, for visitors; of one, for its page.
+// Describes all kiosks together, for visitors, or one, for its page.
 std::string kiosk_message(const Show& show);
 std::string kiosk_message(const Show& show, const Kiosk& kiosk);
 // To a page that nobody may be at: asked, with the seconds to answer within, here or paused.
@@ -36,7 +36,7 @@ std::string house_message(const Show& show, bool reload);
 // To all pages. `seconds`: that are left of it.
 std::string announce_message(const Announcement& announcement, double seconds);
 
-// What is said to a question, and why.
+// Says what the storyteller answers to a question, and why.
 std::string reply_message(const Show& show, const Visitor& visitor, const std::string& question,
                           const FoundAnswer& found, const LocalScript& said);
 

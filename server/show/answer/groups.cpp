@@ -20,8 +20,8 @@ constexpr float back_seconds = 0.6f;  // in which a view comes back, about
 constexpr float farthest_up = 1.45f;  // radians
 constexpr size_t code_letters = 6;
 
-// Of letters and digits that are not taken for one another. Codes are short-lived, and tries are
-// as many as a visitor may send messages.
+// Makes a code of letters and digits that are not taken for one another. Codes are short-lived, and
+// tries are as many as a visitor may send messages.
 std::string make_code() {
   static constexpr char letters[] = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789";
   std::random_device random;
@@ -229,7 +229,7 @@ const Visitor* who_asked(const Show& show) {
   return nullptr;
 }
 
-// Where visitors share the storyteller, nobody far away takes it from a person who stands before it
+// Visitors who share the storyteller from far away never take it from a person who stands before it
 // and is being told a story.
 bool belongs_to_a_kiosk(const Show& show, const Visitor& other) {
   if (show.teller.voice.story.empty() || other.kiosk) return false;
@@ -237,7 +237,7 @@ bool belongs_to_a_kiosk(const Show& show, const Visitor& other) {
   return asked && asked->kiosk;
 }
 
-// What is wrong with this visitor's order; empty: nothing.
+// Says why this visitor's order is refused; empty: it is not.
 Refusal check_order(const Show& show, const Visitor& visitor, const StorytellerOrder& order) {
   if (show.figures.empty()) return WireError{"no_storyteller", "this exhibit has no storyteller"};
   if (show.exhibit.shared_storyteller && belongs_to_a_kiosk(show, visitor))

@@ -13,7 +13,7 @@
 namespace wellspring::show {
 namespace {
 
-// What the page of somebody who is not there says by itself.
+// Returns whether it is a message that the page of somebody who is not there sends by itself.
 bool tells_of_nobody(const BrowserMessage& message) {
   if (const Input* input = std::get_if<Input>(&message))
     return input->move == vec3(0) && input->look == vec2(0) && !input->pointer;

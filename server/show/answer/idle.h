@@ -16,7 +16,7 @@ void note_presence(Visitor& visitor, const BrowserMessage& message);
 // back as its first text.
 void watch_presence(Show& show, double dt);
 
-// What the house's day and its announcements are to the pages. What a closed house is to kiosks:
+// Tells pages of the house's day and its announcements. Kiosks of a closed house:
 // show/answer/orders.h.
 
 // Once a tick, before visitors are read.

@@ -26,7 +26,7 @@ constexpr OrderBound bounds[] = {
     {StorytellerOrder::type, 5, 8},  // another figure, and words that are spoken for them
     {LampOrder::type, 10, 10},       // other light
     {HourOrder::type, 10, 10},       // other light
-    {PlayOrder::type, 10, 10},       // what moves
+    {PlayOrder::type, 10, 10},       // moves things
     {GroupOrder::type, 2, 5},        // codes are not to be guessed
     {Ask::type, 2, 4},               // an answer is looked for and spoken
     {Settings::type, 5, 8},          // another size: nothing is known of it

@@ -101,7 +101,7 @@ void stop_sound(Visitor& visitor) {
   visitor.hearing.utterance = 0;
 }
 
-// What a visitor is to hear.
+// Holds one sound that a visitor is to hear.
 struct Source {
   const Voice* voice = nullptr;
   const Sounding* sounding = nullptr;

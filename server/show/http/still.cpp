@@ -140,7 +140,7 @@ StillCosts StillRoom::measure(const StillJob& order) {
   StillPicture picture;
   oneapi::tbb::task_arena arena(1, 1, oneapi::tbb::task_arena::priority::low);
   arena.execute([&] {
-    render(order, {}, 0, costs, picture);  // what it needs is at hand then
+    render(order, {}, 0, costs, picture);  // brings what the measured one needs
     render(order, {}, 0, costs, picture);
   });
   return costs;

@@ -19,9 +19,10 @@ namespace wellspring::show {
 
 struct StillJob {
   int viewpoint = 0, width = 640, height = 360;
-  double seconds = 8;   // of the thread that makes it, unless one sample a pixel takes longer
-  int spp = 0;          // samples a pixel at most; 0: as many as fit
-  bool denoise = true;  // where there are weights
+  double seconds =
+      8;        // seconds of the thread that makes it, unless one sample a pixel takes longer
+  int spp = 0;  // samples a pixel at most; 0: as many as fit
+  bool denoise = true;  // by the network, if there are weights
   // In place of the viewpoint's own; metres, radians.
   std::optional<dvec3> position;
   std::optional<float> yaw, pitch, roll, fov;
@@ -38,7 +39,8 @@ struct StillPicture {
   enum class Denoised : uint8_t { yes, not_asked, no_weights } denoised = Denoised::not_asked;
 };
 
-// What pictures take: seconds of the thread that makes them, so that others' work does not count.
+// Holds the costs of pictures in seconds of the thread that makes them, so that others' work does
+// not count.
 struct StillCosts {
   double trace_seconds = 0, denoise_seconds = 0;  // the latter without samples: guides, network
   int spp = 0;                                    // samples a pixel in the former
@@ -55,7 +57,7 @@ class StillRoom {
   // thread, every few milliseconds) said so. `denoise_seconds`: of its time that are kept for that.
   StillPicture make(const StillJob& order, const std::function<bool()>& given_up = {},
                     int cores = 1, double denoise_seconds = 0, StillCosts* costs = nullptr);
-  // Of a small picture that is made, and not remembered.
+  // Measures the costs of a small picture, which is made and not remembered.
   StillCosts measure(const StillJob& order);
   std::optional<StillPicture> find(const StillJob& order);  // among those that are remembered
   bool denoises() const { return !weights_.empty(); }
@@ -78,7 +80,7 @@ class StillRoom {
   std::unique_ptr<World> world_;
   Lights lights_;
   const std::function<double()> clock_;
-  std::mutex mutex_;      // of what follows
+  std::mutex mutex_;      // guards the members below
   std::list<Kept> kept_;  // newest first
 };
 
@@ -86,8 +88,8 @@ class StillRoom {
 
 struct StillQuestion {
   StillJob job;
-  int status = 200;           // of HTTP; 200: `job` may be done
-  std::string code, problem;  // what is wrong with it otherwise, and with which field
+  int status = 200;           // status of HTTP; 200: `job` may be done
+  std::string code, problem;  // otherwise the fault, and its field
 };
 
 StillQuestion read_still_question(const Exhibit& exhibit,

@@ -29,7 +29,7 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// What marks depend on: the sound, the text and how it is pronounced.
+// Returns a name made of all that marks depend on: the sound, the text and how it is pronounced.
 std::string cache_name(const Sound& sound, const std::vector<StoryLine>& lines,
                        const SpeechRequest& voice) {
   uint64_t a = method, b = uint64_t(sound.rate);
