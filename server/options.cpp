@@ -8,6 +8,7 @@
 #include "base/host.h"
 #include "base/log.h"
 #include "config/config_file.h"
+#include "light/technique/technique.h"
 
 namespace wellspring::program {
 namespace {

@@ -21,8 +21,10 @@
 #include "show/draw/present.h"
 #include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "show/storyteller/held_prop.h"
 #include "wire/json.h"
 
@@ -47,7 +49,7 @@ constexpr double listening_interval = 0.01;
 }  // namespace
 
 bool draws(const Show& show) {
-  return !show.visitors.empty() && show.time - show.drew_at <= idle_before_bake;
+  return !show.visits.visitors.empty() && show.time - show.drawing->drew_at <= idle_before_bake;
 }
 
 namespace {
@@ -59,30 +61,30 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       continue;
     }
     log::info("visitor {} connected from {}", one.link->id, one.link->peer);
-    Visitor& visitor = show.visitors.emplace_back();
+    Visitor& visitor = show.visits.visitors.emplace_back();
     visitor.link = std::move(one.link);
     visitor.seat = std::move(one.seat);
     visitor.came_at = show.time;
-    visitor.picture.cache = RenderCache({}, show.renderer.work.cache);
-    visitor.picture.compositor = Compositor(show.renderer.work.compositor);
-    visitor.picture.compositor.set_skin(&show.skin, &show.lights);
+    visitor.picture->cache = RenderCache({}, show.drawing->renderer.work.cache);
+    visitor.picture->compositor = Compositor(show.drawing->renderer.work.compositor);
+    visitor.picture->compositor.set_skin(&show.stage.skin, &show.stage.lights);
   }
 }
 
 void read_visitors(Show& show, double dt) {
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     note_deliveries(show, visitor);
     follow_orders(show, visitor);
   }
-  for (auto next = show.visitors.begin(); next != show.visitors.end();) {
+  for (auto next = show.visits.visitors.begin(); next != show.visits.visitors.end();) {
     auto visitor = next++;
     if (!visitor->left && !visitor->link->closed()) continue;
     visitor->left = true;
     visitor->welcomed = false;
     visitor->link->close("bye");
-    bool in_pass = show.pass.visitor == &*visitor;
-    if (in_pass) show.pass.given_up = true;
-    if (visitor->picture.at_work || in_pass) continue;  // its work ends soon
+    bool in_pass = show.drawing->pass.visitor == &*visitor;
+    if (in_pass) show.drawing->pass.given_up = true;
+    if (visitor->picture->at_work || in_pass) continue;  // its work ends soon
     log::info("visitor {} left", visitor->link->id);
     keep_visit(show, visitor);
   }
@@ -93,7 +95,7 @@ void read_visitors(Show& show, double dt) {
 
 void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance,
                    bool storyteller) {
-  const Exhibit& exhibit = show.exhibit;
+  const Exhibit& exhibit = show.stage.exhibit;
   const StorytellerPlace* storyteller_place = storyteller_of(show, teller_of(show, visitor));
   std::string text, speaker;
   if (const auto* line =
@@ -113,7 +115,7 @@ bool is_narrated(const Show& show, const Visitor& visitor) {
 }
 
 void show_subtitles(Show& show, const Teller& teller, const Utterance* utterance) {
-  for (Visitor& visitor : show.visitors)
+  for (Visitor& visitor : show.visits.visitors)
     if (!is_narrated(show, visitor) && listens_to(show, visitor, teller))
       show_subtitle(show, visitor, utterance, true);
 }
@@ -121,9 +123,10 @@ void show_subtitles(Show& show, const Teller& teller, const Utterance* utterance
 // Moves the camera of whoever asked for the story to where its marks want it.
 void follow_story(Show& show, const Teller& teller, const VoiceEvents& events) {
   for (const ActionEvent& act : events.acts) {
-    int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
+    int viewpoint =
+        act.kind == StoryMarkKind::view ? find_viewpoint(show.stage.exhibit, act.name) : -1;
     if (viewpoint < 0) continue;
-    for (Visitor& visitor : show.visitors)
+    for (Visitor& visitor : show.visits.visitors)
       if (visitor.link->id == teller.voice.asked_by && visitor.place.tour.tour < 0 &&
           visitor.place.move == vec3(0))
         glide_to(visitor.place.tour, viewpoint, visitor.place.view);
@@ -132,18 +135,19 @@ void follow_story(Show& show, const Teller& teller, const VoiceEvents& events) {
 
 // Lets the narrators of tours speak, each to one visitor and those whom that visitor leads.
 void narrate(Show& show, float dt) {
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     Narration& narration = visitor.hearing.narration;
     if (!visitor.welcomed || narration.voice.queue.empty()) continue;
     if (dt >= 1) narration.sounding.going = false;  // the show stood still while the sound went on
     VoiceEvents said = advance_narration(show, visitor, dt);
-    for (Visitor& listener : show.visitors) {
+    for (Visitor& listener : show.visits.visitors) {
       if (&listener != &visitor && leader_of(show, listener) != &visitor) continue;
       if (said.begun) show_subtitle(show, listener, said.begun, false);
       else if (said.fell_silent) show_subtitle(show, listener, nullptr, false);
     }
     for (const ActionEvent& act : said.acts) {
-      int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
+      int viewpoint =
+          act.kind == StoryMarkKind::view ? find_viewpoint(show.stage.exhibit, act.name) : -1;
       if (viewpoint >= 0) glide_to(visitor.place.tour, viewpoint, visitor.place.view);
     }
   }
@@ -153,7 +157,7 @@ void narrate(Show& show, float dt) {
 // before any kiosk.
 void see_guests(Show& show, StorytellerInput& input) {
   const Kiosk* kiosk = her_kiosk(show);
-  input.visit = show.her_visits;
+  input.visit = show.kiosks.her_visits;
   if (kiosk) {
     input.kiosk_motion = kiosk->audience.state == Presence::motion;
     input.guests = guests_of(*kiosk, kiosk_window(show, kiosk->settings.name));
@@ -161,7 +165,7 @@ void see_guests(Show& show, StorytellerInput& input) {
     input.met = kiosk->visit.greeted;
     input.parting = kiosk->changed && kiosk->stage.now == Stage::farewell;
   } else {
-    for (const Kiosk& other : show.kiosks)
+    for (const Kiosk& other : show.kiosks.all)
       input.kiosk_motion |= other.audience.state == Presence::motion;
   }
 }
@@ -176,11 +180,11 @@ void greet_or_part(Show& show, Teller& teller, const StorytellerEvents& events) 
       kiosk->visit.greeted = true;
     }
     if (teller.voice.story.empty())
-      say(teller.voice, nth_line(place.greetings, show.greetings++), true);
+      say(teller.voice, nth_line(place.greetings, show.cast.greetings++), true);
   }
   if (events.farewelled) {
     show.totals.farewells++;
-    say(teller.voice, nth_line(place.farewells, show.farewells++), true);
+    say(teller.voice, nth_line(place.farewells, show.cast.farewells++), true);
   }
 }
 
@@ -197,32 +201,32 @@ void behave(Show& show, Teller& teller, float dt) {
   StorytellerInput input;
   input.time = show.time;
   input.dt = dt;
-  if (&teller == &show.teller) see_guests(show, input);
+  if (&teller == &show.cast.teller) see_guests(show, input);
   input.humanlike = teller.humanlike;
   // The pose is made for the moment that its picture will carry.
   // Its own words come before those of a tour, which are heard by one visitor alone.
   const Voice* told = &teller.voice;
   if (const Visitor* on_tour = teller.voice.queue.empty() ? heard_on_tour(show, teller) : nullptr)
     told = &on_tour->hearing.narration.voice;
-  input.speaking = speaking(*told, show.picture_lead);
-  if (heard(*told)) input.visemes = mouth_shape(*told, show.picture_lead);
+  input.speaking = speaking(*told, show.drawing->picture_lead);
+  if (heard(*told)) input.visemes = mouth_shape(*told, show.drawing->picture_lead);
   input.telling = !teller.voice.story.empty();
-  input.story = make_cue(show.exhibit, teller.voice, said);
-  for (const Visitor& visitor : show.visitors) {
+  input.story = make_cue(show.stage.exhibit, teller.voice, said);
+  for (const Visitor& visitor : show.visits.visitors) {
     if (visitor.kiosk || !listens_to(show, visitor, teller))
       continue;  // a kiosk page's eyes are its camera
     Guest guest;
     guest.id = visitor.link->id;
-    guest.head = vec3(visitor.place.view.position - show.exhibit.scene.origin);
+    guest.head = vec3(visitor.place.view.position - show.stage.exhibit.scene.origin);
     input.guests.push_back(guest);
   }
   if (const PointOfInterest* point =
           teller.voice.queue.empty() ? looked_at_beside_her(show, teller) : nullptr)
-    input.story.look = vec3(point->place - show.exhibit.scene.origin);
+    input.story.look = vec3(point->place - show.stage.exhibit.scene.origin);
   input.viewer_distance = viewer_distance(show, teller);
   StorytellerEvents events;
   tick_storyteller(teller.mind, teller.storyteller, input, teller.pose, events);
-  advance_held(show.exhibit, teller.storyteller, teller.mind, teller.pose, teller.visible, dt,
+  advance_held(show.stage.exhibit, teller.storyteller, teller.mind, teller.pose, teller.visible, dt,
                teller.held);
   greet_or_part(show, teller, events);
 
@@ -232,25 +236,27 @@ void behave(Show& show, Teller& teller, float dt) {
   teller.agent_sent_at = show.time;
   teller.agent_mood = teller.mind.mood;
   const std::string message = agent_message(show, teller);
-  for (Visitor& visitor : show.visitors)
+  for (Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && &teller_of(show, visitor) == &teller) visitor.link->send_text(message);
 }
 
 // Returns whether the storyteller has anything to do. A visitor's own does nothing while it is
 // silent, holds nothing and is not to be seen; nor does the house's while nobody shares it.
 bool is_noticed(const Show& show, const Teller& teller) {
-  if (&teller == &show.teller && connected_cameras(show) > 0) return true;
+  if (&teller == &show.cast.teller && connected_cameras(show) > 0) return true;
   const bool news =
       !teller.voice.queue.empty() || teller.agent_sent_at < 0 || teller.held.prop >= 0;
-  return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
-    if (&teller_of(show, visitor) != &teller) return false;
-    return &teller == &show.teller || news || sees_figure(show, teller, visitor.place.last_view);
-  });
+  return std::any_of(show.visits.visitors.begin(), show.visits.visitors.end(),
+                     [&](const Visitor& visitor) {
+                       if (&teller_of(show, visitor) != &teller) return false;
+                       return &teller == &show.cast.teller || news ||
+                              sees_figure(show, teller, visitor.place.last_view);
+                     });
 }
 
 void behave(Show& show, float dt) {
   follow_kiosks(show);
-  if (show.figures.empty()) return;
+  if (show.cast.figures.empty()) return;
   for (Teller* teller : tellers_of(show))
     if (is_noticed(show, *teller)) behave(show, *teller, dt);
 }
@@ -266,8 +272,8 @@ void use_renderer(Show& show, int waiting) {
 std::vector<Ray> looks_of(const Show& show) {
   constexpr int across = 24, down = 14;
   std::vector<Ray> rays;
-  for (const Visitor& visitor : show.visitors) {
-    const View& view = visitor.picture.keyframe.view;
+  for (const Visitor& visitor : show.visits.visitors) {
+    const View& view = visitor.picture->keyframe.view;
     for (int i = 0; i < across * down && view.width > 0; i++)
       rays.push_back(view_ray(view, (float(i % across) + 0.5f) * float(view.width) / across,
                               (float(i / across) + 0.5f) * float(view.height) / down));
@@ -278,17 +284,17 @@ std::vector<Ray> looks_of(const Show& show) {
 // Lets the baker work. All cores are free while there are no visitors, or while all have been at
 // rest for long. Better light waits until nobody walks, so that it fades in, but not for ever.
 void watch_baker(Show& show) {
-  if (!show.baker) return;
-  const bool free = !show.others_draw && (show.visitors.empty() || !draws(show));
-  show.baker->allow(free ? BakerCores::all : BakerCores::spare);
-  BakerLooks& looks = show.baker_looks;
+  if (!show.stage.baker) return;
+  const bool free = !show.drawing->others_draw && (show.visits.visitors.empty() || !draws(show));
+  show.stage.baker->allow(free ? BakerCores::all : BakerCores::spare);
+  BakerLooks& looks = show.stage.baker_looks;
   if (show.time - looks.told_at < looks_every) return;
   looks.told_at = show.time;
-  show.baker->look(looks_of(show));
+  show.stage.baker->look(looks_of(show));
   const bool walks = std::ranges::any_of(
-      show.visitors, [](const Visitor& visitor) { return visitor.picture.job.passing; });
+      show.visits.visitors, [](const Visitor& visitor) { return visitor.picture->job.passing; });
   if (walks && show.time - looks.took_at < most_light_waits) return;
-  if (auto maps = show.baker->take()) {
+  if (auto maps = show.stage.baker->take()) {
     use_better_maps(show, std::move(maps));
     looks.took_at = show.time;
   }
@@ -337,38 +343,39 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   double began = seconds_now();
 
   bool free = take_finished(show);
-  if (!free || show.renderer.drawn) show.drew_at = show.time;
+  if (!free || show.drawing->renderer.drawn) show.drawing->drew_at = show.time;
   welcome_links(show, arrivals);
   follow_house(show, arrivals);
   read_visitors(show, double(dt));
   read_cameras(show);
   if (free) forget_lights(show);
-  for (Visitor& visitor : show.visitors)
-    if (visitor.welcomed && !visitor.picture.at_work && show.renderer.drawn != &visitor &&
+  for (Visitor& visitor : show.visits.visitors)
+    if (visitor.welcomed && !visitor.picture->at_work && show.drawing->renderer.drawn != &visitor &&
         lamps_wait(show, visitor))
       light_lamps(show, visitor);
-  if (free && !show.renderer.drawn) watch_baker(show);
+  if (free && !show.drawing->renderer.drawn) watch_baker(show);
   narrate(show, dt);
   Demand demand;
   if (free) demand = find_demand(show.time, draw_states(show), renderer_state(show));
   // The storyteller moves for a picture; otherwise often enough to notice people.
   const bool poses = demand.waiting > 0 || demand.moving;
-  if (poses || show.time - show.behaved_at >= behave_interval) {
-    behave(show,
-           show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
-    show.behaved_at = show.time;
+  if (poses || show.time - show.cast.behaved_at >= behave_interval) {
+    behave(show, show.cast.behaved_at < 0
+                     ? 0
+                     : float(std::clamp(show.time - show.cast.behaved_at, 0.0, 1.0)));
+    show.cast.behaved_at = show.time;
     show.totals.animate_ms = float(1000 * (seconds_now() - began));
   }
   send_sounds(show);
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     if (!visitor.welcomed) continue;
     std::optional<dvec3> person;
     const Teller& teller = teller_of(show, visitor);
     if (const StorytellerPlace* who = teller.visible ? storyteller_of(show, teller) : nullptr)
       person = who->position;
     pace_tour(visitor);
-    TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.world,
-                                 show.exhibit, show.roads, person, dt);
+    TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.stage.world,
+                                 show.stage.exhibit, show.stage.roads, person, dt);
     count_place(show, visitor, step.finished, double(dt));
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
     follow_leader(show, visitor, dt);
@@ -376,13 +383,13 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     watch(show, visitor);
   }
   watch_pass(show);
-  Renderer& renderer = show.renderer;
+  Renderer& renderer = show.drawing->renderer;
   if (renderer.drawn && is_outdated(show, renderer.job, *renderer.drawn)) renderer.given_up = true;
   if (!show.settings.background) draw_now(show, demand.waiting);
   else if (free) use_renderer(show, demand.waiting);
   steer(show);
   if (show.settings.background) present_all(show);
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     if (!visitor.welcomed) continue;
     send_pose(show, visitor);
     send_state(show, visitor);
@@ -393,7 +400,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
 
 double seconds_to_next_tick(const Show& show, double now) {
   double wait = 1 / 20.0;  // nobody looks: only clocks and arrivals
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (is_shown(visitor)) {
       wait = std::min(wait, listening_interval);
       if (!has_to_show(show, visitor)) continue;
@@ -405,9 +412,9 @@ double seconds_to_next_tick(const Show& show, double now) {
 
 void wait_for_tick(const Show& show, double now) {
   double seconds = seconds_to_next_tick(show, now);
-  const Renderer& renderer = show.renderer;
-  bool nothing_comes =
-      !renderer.drawn && renderer.brokers.empty() && !show.pass.at_work && !renderer.skin.at_work;
+  const Renderer& renderer = show.drawing->renderer;
+  bool nothing_comes = !renderer.drawn && renderer.brokers.empty() && !show.drawing->pass.at_work &&
+                       !renderer.skin.at_work;
   if (nothing_comes) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   else renderer.worker.wait_for(seconds);
 }

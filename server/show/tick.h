@@ -2,6 +2,7 @@
 // Advances the whole of a running show, in one straight function of visible values: notice ->
 // behave -> animate -> (per visitor) picture.
 #pragma once
+#include "show/state/arrivals.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {

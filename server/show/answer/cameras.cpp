@@ -44,11 +44,11 @@ namespace {
 
 // The lost or silent camera of the same name makes way for the one that has come back.
 void come_back(Show& show, Eye& eye) {
-  auto same = std::ranges::find_if(show.eyes, [&](const Eye& other) {
+  auto same = std::ranges::find_if(show.kiosks.eyes, [&](const Eye& other) {
     return &other != &eye && other.seen.name == eye.seen.name &&
            (is_lost(other) || is_silent(other, show.time));
   });
-  if (same == show.eyes.end()) return;
+  if (same == show.kiosks.eyes.end()) return;
   log::info("kiosk camera {} is back", eye.seen.name);
   same->link->close("the same camera has connected again");
   eye.number = same->number;
@@ -57,7 +57,7 @@ void come_back(Show& show, Eye& eye) {
 
 // As many cameras of its kiosk as there may be are at work.
 bool is_kiosk_full(const Show& show, const Eye& eye, const std::string& kiosk) {
-  return size_t(std::ranges::count_if(show.eyes, [&](const Eye& other) {
+  return size_t(std::ranges::count_if(show.kiosks.eyes, [&](const Eye& other) {
            return &other != &eye && other.observations > 0 && other.seen.kiosk == kiosk &&
                   !is_lost(other) && !is_silent(other, show.time);
          })) >= most_kiosk_cameras;
@@ -105,28 +105,30 @@ void welcome_camera(Show& show, std::shared_ptr<Link> link) {
   log::info("kiosk camera {} connected from {}", link->id, link->peer);
   Eye eye{std::move(link), {}, -1e9, show.time};
   auto is_taken = [&](const Eye& other) { return other.number == eye.number; };
-  while (std::ranges::any_of(show.eyes, is_taken)) eye.number++;
-  show.eyes.push_back(std::move(eye));
+  while (std::ranges::any_of(show.kiosks.eyes, is_taken)) eye.number++;
+  show.kiosks.eyes.push_back(std::move(eye));
 }
 
 void read_cameras(Show& show) {
-  for (Eye& eye : show.eyes) {
+  for (Eye& eye : show.kiosks.eyes) {
     read_texts(show, eye);
     if (is_lost(eye) || !eye.link->closed()) continue;
     log::info("kiosk camera {} disconnected", eye.link->id);
     eye.gone = show.time;
   }
-  std::erase_if(show.eyes, [&](const Eye& eye) {
+  std::erase_if(show.kiosks.eyes, [&](const Eye& eye) {
     return eye.number == 0 ||
            (is_lost(eye) && (eye.seen.name.empty() || show.time - eye.gone > lost_camera_listed));
   });
-  while (show.eyes.size() - connected_cameras(show) > most_lost_cameras)
-    show.eyes.erase(std::ranges::min_element(
-        show.eyes, {}, [&](const Eye& eye) { return is_lost(eye) ? eye.gone : show.time + 1; }));
+  while (show.kiosks.eyes.size() - connected_cameras(show) > most_lost_cameras)
+    show.kiosks.eyes.erase(std::ranges::min_element(show.kiosks.eyes, {}, [&](const Eye& eye) {
+      return is_lost(eye) ? eye.gone : show.time + 1;
+    }));
 }
 
 size_t connected_cameras(const Show& show) {
-  return size_t(std::ranges::count_if(show.eyes, [](const Eye& eye) { return !is_lost(eye); }));
+  return size_t(
+      std::ranges::count_if(show.kiosks.eyes, [](const Eye& eye) { return !is_lost(eye); }));
 }
 
 }  // namespace wellspring::show

@@ -38,19 +38,19 @@ json place_of(const Viewpoint& view) {
 json describe(const Show& show, const Visitor& visitor) {
   const VisitorPlace& place = visitor.place;
   json about = {{"id", visitor.id},
-                {"exhibit", show.exhibit.id},
+                {"exhibit", show.stage.exhibit.id},
                 {"place", place_of(place.view)},
                 {"viewpoint", place.viewpoint}};
   for (size_t i = 0; i < visitor.lamps.own.size(); i++)
     if (visitor.lamps.own[i])
-      about["lamps"][show.exhibit.lamps[i].id] = bool(visitor.lamps.wish[i]);
+      about["lamps"][show.stage.exhibit.lamps[i].id] = bool(visitor.lamps.wish[i]);
   if (visitor.lamps.hour) about["hour"] = *visitor.lamps.hour;
   if (const TourRide& ride = place.tour; ride.state != TourRide::State::none && ride.tour >= 0)
-    about["tour"] = {{"id", show.exhibit.tours[size_t(ride.tour)].id},
+    about["tour"] = {{"id", show.stage.exhibit.tours[size_t(ride.tour)].id},
                      {"stop", ride.stop},
                      {"paused", ride.state == TourRide::State::paused}};
   if (const Teller* teller = visitor.own_teller.get()) {
-    about["teller"] = {{"id", show.exhibit.storytellers[teller->index].id},
+    about["teller"] = {{"id", show.stage.exhibit.storytellers[teller->index].id},
                        {"visible", teller->visible},
                        {"humanlike", teller->humanlike}};
     if (!teller->voice.story.empty() && !teller->voice.queue.empty())
@@ -65,9 +65,9 @@ json describe(const Show& show, const Visitor& visitor) {
 
 // Returns whether the kept visit is one of this exhibit, and not too old.
 bool is_valid(const Show& show, const json& about) {
-  if (!about.is_object() || about.value("exhibit", json()) != show.exhibit.id) return false;
+  if (!about.is_object() || about.value("exhibit", json()) != show.stage.exhibit.id) return false;
   const json day = about.value("day", json());
-  return day.is_number_integer() && day >= show.local_time.day - token_days &&
+  return day.is_number_integer() && day >= show.house.local_time.day - token_days &&
          about.value("id", json()).is_string();
 }
 
@@ -90,7 +90,7 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   place.view.fov = float(within(at.at(5), 0.05, 3));
   place.view.roll = at.size() > 6 ? angle(6) : 0;
   const double viewpoint = about.at("viewpoint");
-  const bool known = viewpoint >= 0 && viewpoint < double(show.exhibit.viewpoints.size());
+  const bool known = viewpoint >= 0 && viewpoint < double(show.stage.exhibit.viewpoints.size());
   place.viewpoint = known ? int(viewpoint) : -1;
   const json lamps = about.value("lamps", json::object());
   for (const auto& [name, on] : lamps.items()) switch_lamp(show, visitor, name, on.get<bool>());
@@ -98,7 +98,7 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   if (about.contains("leads")) {
     const std::string code = about["leads"];
     const bool taken = std::ranges::any_of(
-        show.visitors, [&](const Visitor& other) { return other.group.leads == code; });
+        show.visits.visitors, [&](const Visitor& other) { return other.group.leads == code; });
     if (!taken) visitor.group.leads = code;
   }
   if (about.contains("follows")) {
@@ -109,18 +109,19 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   }
   if (about.contains("tour")) {
     const json& ride = about["tour"];
-    auto found =
-        std::ranges::find(show.exhibit.tours, ride.at("id").get<std::string>(), &TourPlan::id);
-    if (found != show.exhibit.tours.end()) {
+    auto found = std::ranges::find(show.stage.exhibit.tours, ride.at("id").get<std::string>(),
+                                   &TourPlan::id);
+    if (found != show.stage.exhibit.tours.end()) {
       start_tour(place.tour, visitor.hearing.narration.voice,
-                 int(found - show.exhibit.tours.begin()), show.exhibit, show.roads, place.view);
-      const int last = int(show.exhibit.tours[size_t(place.tour.tour)].stops.size()) - 1;
-      go_on_from_stop(place.tour, visitor.hearing.narration.voice, show.exhibit, show.roads,
-                      int(within(ride.at("stop"), 0, last)));
+                 int(found - show.stage.exhibit.tours.begin()), show.stage.exhibit,
+                 show.stage.roads, place.view);
+      const int last = int(show.stage.exhibit.tours[size_t(place.tour.tour)].stops.size()) - 1;
+      go_on_from_stop(place.tour, visitor.hearing.narration.voice, show.stage.exhibit,
+                      show.stage.roads, int(within(ride.at("stop"), 0, last)));
       if (ride.at("paused")) pause_tour(place.tour, visitor.hearing.narration.voice);
     }
   }
-  if (!about.contains("teller") || show.exhibit.shared_storyteller) return;
+  if (!about.contains("teller") || show.stage.exhibit.shared_storyteller) return;
   const json& who = about["teller"];
   StorytellerOrder order;
   order.teller = who.at("id");
@@ -128,9 +129,9 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   order.humanlike = who.at("humanlike").get<bool>();
   const json story = about.value("story", json::object());
   const std::string id = story.value("id", std::string());
-  if (handle_storyteller(show, visitor, order) || !is_story(show.exhibit, id)) return;
+  if (handle_storyteller(show, visitor, order) || !is_story(show.stage.exhibit, id)) return;
   Teller& teller = *visitor.own_teller;  // goes on with it: it was counted when it was begun
-  tell(teller.voice, *std::ranges::find(show.exhibit.stories, id, &StoryText::id),
+  tell(teller.voice, *std::ranges::find(show.stage.exhibit.stories, id, &StoryText::id),
        int(within(story.at("sentence"), 0, 1e6)));
   teller.voice.asked_by = visitor.link->id;
   if (story.at("paused")) pause_voice(teller.voice);
@@ -138,8 +139,8 @@ void restore(Show& show, Visitor& visitor, const json& about) {
 
 // As it was when its line broke.
 bool take_kept(Show& show, Visitor& visitor, const std::string& id) {
-  auto kept = std::ranges::find(show.kept, id, &KeptVisit::id);
-  if (kept == show.kept.end()) return false;
+  auto kept = std::ranges::find(show.visits.kept, id, &KeptVisit::id);
+  if (kept == show.visits.kept.end()) return false;
   Visitor& before = kept->visitor.front();
   if (before.own_teller && before.own_teller->voice.asked_by == before.link->id)
     before.own_teller->voice.asked_by = visitor.link->id;
@@ -152,7 +153,7 @@ bool take_kept(Show& show, Visitor& visitor, const std::string& id) {
   visitor.group = std::move(before.group);
   visitor.hearing.narration = std::move(before.hearing.narration);
   visitor.picture = std::move(before.picture);
-  show.kept.erase(kept);
+  show.visits.kept.erase(kept);
   return true;
 }
 
@@ -174,28 +175,28 @@ void send_token(Show& show, Visitor& visitor) {
 std::string visit_token(const Show& show, Visitor& visitor) {
   if (visitor.id.empty()) visitor.id = make_id();
   json dated = describe(show, visitor);
-  dated["day"] = show.local_time.day;
-  return show.seal->close(dated.dump());
+  dated["day"] = show.house.local_time.day;
+  return show.visits.seal->close(dated.dump());
 }
 
 void keep_visit(Show& show, std::list<Visitor>::iterator gone) {
   if (gone->kiosk || gone->id.empty()) {
     count_leaving(show, *gone);
-    show.visitors.erase(gone);
+    show.visits.visitors.erase(gone);
     return;
   }
-  KeptVisit& kept = show.kept.emplace_back();
+  KeptVisit& kept = show.visits.kept.emplace_back();
   kept.id = gone->id;
   kept.since = show.time;
-  kept.visitor.splice(kept.visitor.begin(), show.visitors, gone);
+  kept.visitor.splice(kept.visitor.begin(), show.visits.visitors, gone);
   kept.visitor.front().seat = nullptr;  // who comes back has found another
-  if (show.kept.size() <= most_kept) return;
-  count_leaving(show, show.kept.front().visitor.front());
-  show.kept.pop_front();
+  if (show.visits.kept.size() <= most_kept) return;
+  count_leaving(show, show.visits.kept.front().visitor.front());
+  show.visits.kept.pop_front();
 }
 
 void forget_visits(Show& show) {
-  std::erase_if(show.kept, [&](KeptVisit& kept) {
+  std::erase_if(show.visits.kept, [&](KeptVisit& kept) {
     const bool over = show.time - kept.since > kept_seconds;
     if (over) count_leaving(show, kept.visitor.front());
     return over;
@@ -203,7 +204,7 @@ void forget_visits(Show& show) {
 }
 
 bool come_back(Show& show, Visitor& visitor, const std::string& token) {
-  const auto text = show.seal->open(token);
+  const auto text = show.visits.seal->open(token);
   if (!text || visitor.kiosk) return false;
   const json about = json::parse(*text, nullptr, false);
   if (!is_valid(show, about)) return false;

@@ -16,6 +16,7 @@
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
+#include "show/state/visitor_picture.h"
 #include "wire/json.h"
 
 namespace wellspring::show {
@@ -62,8 +63,8 @@ void set_display(const Show& show, Visitor& visitor, const std::string& display)
   if (wants.local == local) return;
   wants.local = local;
   if (visitor.seat) visitor.seat->resize({double(wants.width) * wants.height, local});
-  visitor.picture.around = {};
-  visitor.picture.layer_unsent = visitor.shown.has_layer = false;
+  visitor.picture->around = {};
+  visitor.picture->layer_unsent = visitor.shown.has_layer = false;
   visitor.shown.lost = true;
 }
 
@@ -74,13 +75,13 @@ int find_tour(const Exhibit& exhibit, const std::string& id) {
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
-  if (!hello.exhibit.empty() && hello.exhibit != show.exhibit.id)
+  if (!hello.exhibit.empty() && hello.exhibit != show.stage.exhibit.id)
     return WireError{"unknown_exhibit", "there is no exhibit '" + hello.exhibit +
-                                            "' here; this is '" + show.exhibit.id + "'"};
+                                            "' here; this is '" + show.stage.exhibit.id + "'"};
   std::string kiosk;
   if (Answer wrong = check_page(show.settings.kiosk_tokens, *visitor.link, hello, kiosk))
     return wrong;
-  visitor.lang = hello.lang.empty() ? show.exhibit.languages.front() : hello.lang;
+  visitor.lang = hello.lang.empty() ? show.stage.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = kiosk;
   set_display(show, visitor, hello.display);
@@ -90,8 +91,8 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);
-  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
-                  visitor.kiosk ? kiosk_viewpoint(show, kiosk) : show.exhibit.start);
+  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.stage.exhibit,
+                  visitor.kiosk ? kiosk_viewpoint(show, kiosk) : show.stage.exhibit.start);
   // Another thread may be drawing a picture of a visitor who is here already.
   const bool goes_on = is_first && !hello.resume.empty() && come_back(show, visitor, hello.resume);
   if (!goes_on) show.totals.visits++;
@@ -99,10 +100,10 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.link->send_text(welcome_message(show, visitor, goes_on));
   visitor.link->send_text(agent_message(show, teller_of(show, visitor)));
   const Kiosk* own = kiosk_of(show, visitor);
-  const std::string& state = own ? own->message : show.kiosk_message;
+  const std::string& state = own ? own->message : show.kiosks.message;
   if (!state.empty() && (own || !visitor.kiosk)) visitor.link->send_text(state);
   tell_house(show, visitor);
-  if (!show.problems_message.empty()) visitor.link->send_text(show.problems_message);
+  if (!show.stage.problems_message.empty()) visitor.link->send_text(show.stage.problems_message);
   return {};
 }
 
@@ -133,7 +134,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Input& input) {
 
 Answer handle_one(Show& show, Visitor& visitor, const CameraTo& camera) {
   VisitorPlace& place = visitor.place;
-  if (glm::length(camera.position - show.exhibit.scene.origin) > farthest)
+  if (glm::length(camera.position - show.stage.exhibit.scene.origin) > farthest)
     return WireError{"bad_field", "camera.position: is farther than 1e7 m from the exhibit"};
   go_away(visitor);
   place.seq = camera.seq;
@@ -149,11 +150,11 @@ Answer handle_one(Show& show, Visitor& visitor, const CameraTo& camera) {
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
-  int index = find_viewpoint(show.exhibit, to.name);
+  int index = find_viewpoint(show.stage.exhibit, to.name);
   if (index < 0) return WireError{"unknown_viewpoint", "there is no viewpoint '" + to.name + "'"};
   go_away(visitor);
   visitor.place.seq = to.seq;
-  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit, index);
+  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.stage.exhibit, index);
   return {};
 }
 
@@ -169,14 +170,14 @@ Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
     case TourAction::play: {
       bool resume =
           order.name.empty() && place.tour.state == TourRide::State::paused && place.tour.tour >= 0;
-      int tour = resume ? place.tour.tour : find_tour(show.exhibit, order.name);
+      int tour = resume ? place.tour.tour : find_tour(show.stage.exhibit, order.name);
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       place.move = place.velocity = vec3(0);
       stand(place);
       Teller& teller = teller_of(show, visitor);
       if (teller.voice.asked_by == visitor.link->id)
         fall_silent(show, teller);  // one voice at a time
-      start_tour(place.tour, narrator, tour, show.exhibit, show.roads, place.view);
+      start_tour(place.tour, narrator, tour, show.stage.exhibit, show.stage.roads, place.view);
       break;
     }
     case TourAction::pause: pause_tour(place.tour, narrator); break;

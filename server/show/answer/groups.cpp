@@ -40,15 +40,15 @@ std::string normalized(std::string code) {
 }
 
 const Visitor* find_leader(const Show& show, const std::string& code) {
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (!code.empty() && visitor.group.leads == code && !visitor.left) return &visitor;
   return nullptr;
 }
 
 void tell(Show& show, const std::string& code) {
   size_t followers = 0;
-  for (const Visitor& visitor : show.visitors) followers += visitor.group.follows == code;
-  for (Visitor& visitor : show.visitors) {
+  for (const Visitor& visitor : show.visits.visitors) followers += visitor.group.follows == code;
+  for (Visitor& visitor : show.visits.visitors) {
     const bool leads = visitor.group.leads == code;
     if (!leads && visitor.group.follows != code) continue;
     visitor.link->send_text(nlohmann::json{
@@ -121,7 +121,7 @@ void go_away(Visitor& visitor) {
 void follow_leader(Show& show, Visitor& visitor, float dt) {
   VisitorGroup& group = visitor.group;
   if (group.follows.empty()) return;
-  const bool comes_back = std::ranges::any_of(show.kept, [&](const KeptVisit& kept) {
+  const bool comes_back = std::ranges::any_of(show.visits.kept, [&](const KeptVisit& kept) {
     return kept.visitor.front().group.leads == group.follows;
   });
   if (!find_leader(show, group.follows) && !comes_back) return leave(show, visitor);
@@ -157,8 +157,8 @@ vec3 free_step(const World& world, vec3 from, vec3 step) {
 }  // namespace
 
 int kiosk_viewpoint(const Show& show, const std::string& name) {
-  const Exhibit& exhibit = show.exhibit;
-  const StorytellerPlace* teller = storyteller_of(show, show.teller);
+  const Exhibit& exhibit = show.stage.exhibit;
+  const StorytellerPlace* teller = storyteller_of(show, show.cast.teller);
   for (const KioskSettings& kiosk : exhibit.kiosks) {
     if (kiosk.name != name) continue;
     if (const int own = find_viewpoint(exhibit, kiosk.viewpoint); own >= 0) return own;
@@ -169,13 +169,13 @@ int kiosk_viewpoint(const Show& show, const std::string& name) {
 }
 
 View kiosk_window(const Show& show, const std::string& kiosk) {
-  const Viewpoint& at = show.exhibit.viewpoints[size_t(kiosk_viewpoint(show, kiosk))].view;
+  const Viewpoint& at = show.stage.exhibit.viewpoints[size_t(kiosk_viewpoint(show, kiosk))].view;
   int width = 1600, height = 900;
   if (const Kiosk* found = find_kiosk(show, kiosk); found && found->settings.screen.known()) {
     const ScreenSize& screen = found->settings.screen;
     width = int(1000 * screen.width), height = int(1000 * screen.height);
   }
-  return make_view(show.exhibit.scene, at, width, height);
+  return make_view(show.stage.exhibit.scene, at, width, height);
 }
 
 void look_through(const Show& show, Visitor& page, float dt) {
@@ -195,7 +195,7 @@ void look_through(const Show& show, Visitor& page, float dt) {
   WindowEye& eye = page.window;
   watch_heads(eye, heads, screen, rest, dt);
   const vec3 step = through_window(rest, screen, eye.aim).position - rest.position,
-             free = free_step(*show.world, rest.position, step);
+             free = free_step(*show.stage.world, rest.position, step);
   if (free != step) eye.aim *= glm::length(free) / glm::length(step);
   move_eye(eye, dt);
 }
@@ -215,49 +215,50 @@ void call_storyteller(Show& show, Teller& teller, size_t storyteller_index) {
   if (storyteller_index == teller.index) return;
   fall_silent(show, teller);
   change_storyteller(show, teller, storyteller_index);
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     if (!visitor.kiosk || !listens_to(show, visitor, teller)) continue;
     if (visitor.place.tour.state == TourRide::State::none)
-      go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
+      go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.stage.exhibit,
                       kiosk_viewpoint(show, kiosk_name(show, visitor.name)));
   }
 }
 
 const Visitor* who_asked(const Show& show) {
-  for (const Visitor& visitor : show.visitors)
-    if (visitor.link->id == show.teller.voice.asked_by) return &visitor;
+  for (const Visitor& visitor : show.visits.visitors)
+    if (visitor.link->id == show.cast.teller.voice.asked_by) return &visitor;
   return nullptr;
 }
 
 // Visitors who share the storyteller from far away never take it from a person who stands before it
 // and is being told a story.
 bool belongs_to_a_kiosk(const Show& show, const Visitor& other) {
-  if (show.teller.voice.story.empty() || other.kiosk) return false;
+  if (show.cast.teller.voice.story.empty() || other.kiosk) return false;
   const Visitor* asked = who_asked(show);
   return asked && asked->kiosk;
 }
 
 // Says why this visitor's order is refused; empty: it is not.
 Refusal check_order(const Show& show, const Visitor& visitor, const StorytellerOrder& order) {
-  if (show.figures.empty()) return WireError{"no_storyteller", "this exhibit has no storyteller"};
-  if (show.exhibit.shared_storyteller && belongs_to_a_kiosk(show, visitor))
+  if (show.cast.figures.empty())
+    return WireError{"no_storyteller", "this exhibit has no storyteller"};
+  if (show.stage.exhibit.shared_storyteller && belongs_to_a_kiosk(show, visitor))
     return WireError{"storyteller_busy", "somebody at the kiosk is being told a story"};
   if (!hears_storyteller(show, visitor))
     return WireError{"storyteller_busy", "the storyteller is with somebody at another kiosk"};
-  if (!order.teller.empty() && find_storyteller(show.exhibit, order.teller) < 0)
+  if (!order.teller.empty() && find_storyteller(show.stage.exhibit, order.teller) < 0)
     return WireError{"unknown_storyteller", "there is no storyteller '" + order.teller + "'"};
-  if (!order.story.empty() && !find_story(show.exhibit, order.story))
+  if (!order.story.empty() && !find_story(show.stage.exhibit, order.story))
     return WireError{"unknown_story", "there is no story '" + order.story + "'"};
   return {};
 }
 
 // Who orders something gets a storyteller of their own, who stands there as the house's did.
 Teller& teller_for_orders(Show& show, Visitor& visitor) {
-  if (visitor.kiosk || show.exhibit.shared_storyteller) return show.teller;
+  if (visitor.kiosk || show.stage.exhibit.shared_storyteller) return show.cast.teller;
   if (!visitor.own_teller) {
-    if (show.teller.voice.started && listens_to(show, visitor, show.teller))
+    if (show.cast.teller.voice.started && listens_to(show, visitor, show.cast.teller))
       clear_subtitle(visitor);
-    visitor.own_teller = std::make_unique<Teller>(show.teller);
+    visitor.own_teller = std::make_unique<Teller>(show.cast.teller);
     visitor.own_teller->number = visitor.link->id;
     visitor.own_teller->voice = {};
     visitor.own_teller->sounding = {};
@@ -274,11 +275,11 @@ std::optional<WireError> handle_storyteller(Show& show, Visitor& visitor,
   Teller& teller = teller_for_orders(show, visitor);
   Voice& voice = teller.voice;
   if (!order.teller.empty())
-    call_storyteller(show, teller, size_t(find_storyteller(show.exhibit, order.teller)));
+    call_storyteller(show, teller, size_t(find_storyteller(show.stage.exhibit, order.teller)));
   if (order.visible) teller.visible = *order.visible;
   if (order.humanlike) teller.humanlike = *order.humanlike;
   if (!order.story.empty()) {
-    const StoryText& story = *find_story(show.exhibit, order.story);
+    const StoryText& story = *find_story(show.stage.exhibit, order.story);
     if (story.storyteller_index >= 0)
       call_storyteller(show, teller, size_t(story.storyteller_index));
     tell(voice, story);
@@ -287,7 +288,7 @@ std::optional<WireError> handle_storyteller(Show& show, Visitor& visitor,
     show.totals.stories++;
     count(show, "stories_begun", story.id);
   }
-  const StoryText* telling = find_story(show.exhibit, voice.story);
+  const StoryText* telling = find_story(show.stage.exhibit, voice.story);
   uint64_t asked_by = voice.asked_by;
   if (order.action == "pause") pause_voice(voice);
   else if (order.action == "play") resume_voice(voice);
@@ -301,11 +302,12 @@ std::optional<WireError> handle_storyteller(Show& show, Visitor& visitor,
 
 std::optional<WireError> ask(Show& show, Visitor& visitor, const Ask& question) {
   if (Refusal wrong = check_not_following(show, visitor)) return wrong;
-  const bool speaks = !show.figures.empty();
+  const bool speaks = !show.cast.figures.empty();
   if (speaks)
     if (Refusal wrong = check_order(show, visitor, {})) return wrong;
-  const FoundAnswer found = find_answer(show.questions, show.exhibit, question.text, visitor.lang);
-  const LocalScript said = words_for(show.questions, found);
+  const FoundAnswer found =
+      find_answer(show.stage.questions, show.stage.exhibit, question.text, visitor.lang);
+  const LocalScript said = words_for(show.stage.questions, found);
   visitor.link->send_text(reply_message(show, visitor, question.text, found, said));
   if (!speaks) return {};
   Teller& teller = teller_for_orders(show, visitor);
@@ -324,7 +326,7 @@ void clear_subtitle(Visitor& visitor) {
 void fall_silent(Show& show, Teller& teller) {
   bool shown = teller.voice.started;
   hush(teller.voice);
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     const Voice& own = visitor.hearing.narration.voice;
     const bool reads = listens_to(show, visitor, teller);
     if (shown && reads && (own.queue.empty() || own.paused)) clear_subtitle(visitor);
@@ -332,9 +334,9 @@ void fall_silent(Show& show, Teller& teller) {
 }
 
 void forget_absent_listeners(Show& show) {
-  Teller& teller = show.teller;
+  Teller& teller = show.cast.teller;
   if (teller.voice.queue.empty()) return;
-  bool nobody = show.visitors.empty();
+  bool nobody = show.visits.visitors.empty();
   bool abandoned = teller.voice.paused && teller.voice.asked_by != 0 && !who_asked(show);
   if (!nobody && !abandoned) return;
   fall_silent(show, teller);

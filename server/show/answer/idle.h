@@ -5,6 +5,7 @@
 // soon as somebody comes back and there is a seat (show/answer/come_back.h). While a page is
 // hidden, it gets no pictures. Kiosks are never asked, nor are leaders of a group that follows.
 #pragma once
+#include "show/state/arrivals.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {
@@ -12,8 +13,8 @@ namespace wellspring::show {
 // After a message was carried out.
 void note_presence(Visitor& visitor, const BrowserMessage& message);
 // Once a tick, `dt` seconds after the last: asks, and sends to rest those whose pictures nobody
-// works on. Their links are in show.resting from then on, each with the hello by which it comes
-// back as its first text.
+// works on. Their links are in show.visits.resting from then on, each with the hello by which it
+// comes back as its first text.
 void watch_presence(Show& show, double dt);
 
 // Tells pages of the house's day and its announcements. Kiosks of a closed house:

@@ -23,9 +23,10 @@ constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
 bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.hearing.wanted; }
 
 bool has_listener(const Show& show, const Teller& teller) {
-  return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
-    return visitor.hearing.wanted && listens_to(show, visitor, teller);
-  });
+  return std::any_of(show.visits.visitors.begin(), show.visits.visitors.end(),
+                     [&](const Visitor& visitor) {
+                       return visitor.hearing.wanted && listens_to(show, visitor, teller);
+                     });
 }
 
 // A voice, whose it is, what is heard of it, and the language it speaks.
@@ -39,15 +40,15 @@ struct Channel {
 
 SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance) {
   Sounding& sounding = channel.sounding;
-  const auto* line = line_in(utterance.line, channel.lang, show.exhibit.languages);
+  const auto* line = line_in(utterance.line, channel.lang, show.stage.exhibit.languages);
   if (line->second.recording) return {line->second.recording, false, line->first};
   SpeechRequest request = request_of(line->second, line->first, manner_of(show, channel.teller));
   std::string lang = request.lang;
-  if (!show.speech.find || !show.speech.speak) return {nullptr, false, channel.lang};
-  if (auto speech = show.speech.find(request)) return {speech, false, lang};
+  if (!show.cast.speech.find || !show.cast.speech.speak) return {nullptr, false, channel.lang};
+  if (auto speech = show.cast.speech.find(request)) return {speech, false, lang};
   if (!channel.anybody) return {nullptr, false, lang};
   if (sounding.asked != request || !sounding.answer.valid()) {
-    sounding.answer = show.speech.speak(request);
+    sounding.answer = show.cast.speech.speak(request);
     sounding.asked = std::move(request);
   }
   if (!is_ready(sounding.answer)) return {nullptr, true, lang};
@@ -62,17 +63,18 @@ VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
   auto ask = [&](const Utterance& utterance) { return ask_speech(show, channel, utterance); };
   VoiceEvents events = advance_voice(channel.voice, dt, ask);
   if (events.ended) {  // heard to its end: nothing to stop
-    for (Visitor& visitor : show.visitors)
+    for (Visitor& visitor : show.visits.visitors)
       if (visitor.hearing.utterance == channel.sounding.number) visitor.hearing.utterance = 0;
     channel.sounding.going = false;
   }
   if (events.begun) {
     show.totals.utterances += events.begun->speech != nullptr;
     // The next line, should it have been forgotten meanwhile.
-    if (show.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1) {
-      const auto* next = line_in(channel.voice.queue[1].line, channel.lang, show.exhibit.languages);
+    if (show.cast.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1) {
+      const auto* next =
+          line_in(channel.voice.queue[1].line, channel.lang, show.stage.exhibit.languages);
       if (!next->second.recording)
-        show.speech.prepare(
+        show.cast.speech.prepare(
             {request_of(next->second, next->first, manner_of(show, channel.teller))});
     }
   }
@@ -84,7 +86,7 @@ const Speech* update_sounding(Show& show, const Voice& voice, Sounding& sounding
   const Speech* now = heard(voice);
   if (!now || now != sounding.speech.get() || voice.cuts != sounding.cuts) sounding.going = false;
   if (now && !sounding.going) {
-    sounding.number = ++show.utterances;
+    sounding.number = ++show.cast.utterances;
     sounding.going = true;
     sounding.cuts = voice.cuts;
     sounding.speech = voice.queue.front().speech;
@@ -153,7 +155,7 @@ void start_sound(Visitor& visitor, const Source& source) {
 
 std::string spoken_language(const Show& show, const Teller& teller) {
   const Visitor *kiosk = nullptr, *first = nullptr;
-  for (const Visitor& visitor : show.visitors) {
+  for (const Visitor& visitor : show.visits.visitors) {
     if (!listens_to(show, visitor, teller)) continue;
     if (teller.voice.asked_by != 0 && visitor.link->id == teller.voice.asked_by)
       return visitor.lang;
@@ -161,7 +163,7 @@ std::string spoken_language(const Show& show, const Teller& teller) {
     if (!first && visitor.hearing.wanted) first = &visitor;
   }
   if (kiosk) return kiosk->lang;
-  return first ? first->lang : show.exhibit.languages.front();
+  return first ? first->lang : show.stage.exhibit.languages.front();
 }
 
 VoiceEvents advance_speech(Show& show, Teller& teller, float dt) {
@@ -184,11 +186,12 @@ void send_sounds(Show& show) {
     if (!update_sounding(show, teller->voice, teller->sounding)) continue;
     if (!has_listener(show, *teller)) continue;
     const vec3 mouth = eval_mouth(teller->mind, teller->storyteller, teller->pose);
-    told[teller] = {&teller->voice, &teller->sounding, dvec3(mouth) + show.exhibit.scene.origin};
+    told[teller] = {&teller->voice, &teller->sounding,
+                    dvec3(mouth) + show.stage.exhibit.scene.origin};
   }
-  for (Visitor& visitor : show.visitors)
+  for (Visitor& visitor : show.visits.visitors)
     update_sounding(show, visitor.hearing.narration.voice, visitor.hearing.narration.sounding);
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     const auto own = told.find(&teller_of(show, visitor));
     Source source = own != told.end() && hears_storyteller(show, visitor) ? own->second : Source{};
     const Visitor* leader = leader_of(show, visitor);

@@ -13,6 +13,8 @@
 #include "show/draw/picture.h"
 #include "show/draw/present.h"
 #include "show/draw/still_pass.h"
+#include "show/state/drawing.h"
+#include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
 
 namespace wellspring::show {
@@ -20,40 +22,40 @@ namespace wellspring::show {
 namespace {
 
 void use_cores(Show& show, std::function<void()> work) {
-  show.renderer.worker.run([&show, work = std::move(work)] {
+  show.drawing->renderer.worker.run([&show, work = std::move(work)] {
     const double began = seconds_now();
-    show.renderer.cores.execute(work);
-    show.renderer.work_seconds = seconds_now() - began;
+    show.drawing->renderer.cores.execute(work);
+    show.drawing->renderer.work_seconds = seconds_now() - began;
   });
 }
 
 // Whoever has had the renderer's time comes later with the next picture, given up or not.
 void charge(Show& show, double seconds) {
-  Renderer& renderer = show.renderer;
-  Visitor* visitor = show.pass.at_work ? show.pass.visitor
-                     : renderer.posed  ? renderer.posed
-                                       : renderer.drawn;
-  if (visitor) visitor->picture.served += seconds * charge_weight(show, *visitor);
+  Renderer& renderer = show.drawing->renderer;
+  Visitor* visitor = show.drawing->pass.at_work ? show.drawing->pass.visitor
+                     : renderer.posed           ? renderer.posed
+                                                : renderer.drawn;
+  if (visitor) visitor->picture->served += seconds * charge_weight(show, *visitor);
 }
 
 void draw_what_moves(Show& show, Visitor& visitor) {
-  Renderer& renderer = show.renderer;
+  Renderer& renderer = show.drawing->renderer;
   begin_world_of(show, visitor);
   renderer.posed = &visitor;
   renderer.posed_at = show.time;
   renderer.posed_us = show.time_us;
   renderer.posed_lights = visitor.dynamic;
   renderer.posed_layer = visitor.wants.local;
-  visitor.picture.at_work = true;
-  use_cores(show, [&show] { draw_moving(show, *show.renderer.posed); });
+  visitor.picture->at_work = true;
+  use_cores(show, [&show] { draw_moving(show, *show.drawing->renderer.posed); });
 }
 
 // The next of its steps, or all of them.
 void go_on_drawing(Show& show) {
-  go_on_in_world_of(show, *show.renderer.drawn);
-  show.renderer.until_moving = seconds_to_moving(show);
+  go_on_in_world_of(show, *show.drawing->renderer.drawn);
+  show.drawing->renderer.until_moving = seconds_to_moving(show);
   use_cores(show, [&show] {
-    Renderer& renderer = show.renderer;
+    Renderer& renderer = show.drawing->renderer;
     if (renderer.surrounds) {
       draw_surroundings(show, renderer.job, *renderer.drawn);
       renderer.step = DrawingStep::done;
@@ -66,53 +68,55 @@ void go_on_drawing(Show& show) {
 }
 
 void begin_picture(Show& show, Visitor& visitor, int waiting, const Decision& decision) {
-  Renderer& renderer = show.renderer;
+  Renderer& renderer = show.drawing->renderer;
   renderer.drawn = &visitor;
   renderer.served = decision.served;
-  visitor.picture.served = std::max(visitor.picture.served, renderer.served);
+  visitor.picture->served = std::max(visitor.picture->served, renderer.served);
   renderer.job = make_picture_job(show, visitor, std::max(waiting, 1), decision.purpose);
-  renderer.surrounds = renderer.job.around && !visitor.picture.around.drawn;
+  renderer.surrounds = renderer.job.around && !visitor.picture->around.drawn;
   begin_world_of(show, visitor);
-  visitor.picture.at_work = true;
+  visitor.picture->at_work = true;
   renderer.given_up = false;
   renderer.step = DrawingStep::plan;
   go_on_drawing(show);
 }
 
 void use_cores_for_pass(Show& show) {
-  StillPass& pass = show.pass;
-  show.renderer.until_moving = seconds_to_moving(show);
+  StillPass& pass = show.drawing->pass;
+  show.drawing->renderer.until_moving = seconds_to_moving(show);
   pass.at_work = true;
-  if (pass.step == StillPass::Step::finish) pass.visitor->picture.at_work = true;
+  if (pass.step == StillPass::Step::finish) pass.visitor->picture->at_work = true;
   use_cores(show, [&show] { go_on_with_pass(show); });
 }
 
 }  // namespace
 
 bool take_finished(Show& show) {
-  Renderer& renderer = show.renderer;
+  Renderer& renderer = show.drawing->renderer;
   if (!renderer.idle()) return false;
   const double seconds = std::exchange(renderer.work_seconds, 0);
   if (!renderer.brokers.empty()) finish_samples(show);
   else if (!renderer.skin.at_work) charge(show, seconds);
-  if (show.pass.at_work) take_pass(show);
+  if (show.drawing->pass.at_work) take_pass(show);
   if (renderer.skin.at_work) finish_skin_light(show);
   if (Visitor* posed = std::exchange(renderer.posed, nullptr)) {
     finish_moving(show, *posed);
-    if (posed != renderer.drawn) posed->picture.at_work = false;
+    if (posed != renderer.drawn) posed->picture->at_work = false;
     return true;
   }
   if (!renderer.drawn || renderer.step != DrawingStep::done) return true;
   if (std::exchange(renderer.surrounds, false))
     finish_surroundings(show, renderer.job, *renderer.drawn);
   else finish_picture(show, renderer.job, *renderer.drawn);
-  renderer.drawn->picture.at_work = false;
+  renderer.drawn->picture->at_work = false;
   renderer.drawn = nullptr;
   return true;
 }
 
 void carry_out(Show& show, const Decision& decision, int waiting) {
-  auto visitor = [&]() -> Visitor& { return *std::next(show.visitors.begin(), decision.visitor); };
+  auto visitor = [&]() -> Visitor& {
+    return *std::next(show.visits.visitors.begin(), decision.visitor);
+  };
   switch (decision.what) {
     case Drawing::nothing: return;
     case Drawing::moving: return draw_what_moves(show, visitor());
@@ -121,11 +125,11 @@ void carry_out(Show& show, const Decision& decision, int waiting) {
       begin_skin_light(show, visitor());
       return use_cores(show, [&show] { compute_skin_light(show); });
     case Drawing::go_on:
-      if (decision.hurry) show.renderer.step = DrawingStep::draw;
+      if (decision.hurry) show.drawing->renderer.step = DrawingStep::draw;
       return go_on_drawing(show);
     case Drawing::samples:
       request_samples(show);
-      return use_cores(show, [&show] { trace_samples(show, show.renderer); });
+      return use_cores(show, [&show] { trace_samples(show, show.drawing->renderer); });
     case Drawing::pass: return use_cores_for_pass(show);
     case Drawing::picture: return begin_picture(show, visitor(), waiting, decision);
   }
@@ -135,12 +139,12 @@ void draw_now(Show& show, int waiting) {
   const int lit =
       waiting > 0 ? next_to_light(show.time, draw_states(show), renderer_state(show)) : -1;
   if (lit >= 0) {
-    Visitor& visitor = *std::next(show.visitors.begin(), lit);
+    Visitor& visitor = *std::next(show.visits.visitors.begin(), lit);
     begin_world_of(show, visitor);
     begin_skin_light(show, visitor), compute_skin_light(show), finish_skin_light(show);
   }
   const RendererState renderer = renderer_state(show);
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     if (!wants_picture(show.time, draw_state(show, visitor), renderer)) continue;
     begin_world_of(show, visitor);
     PictureJob job = make_picture_job(show, visitor, waiting);
@@ -149,7 +153,7 @@ void draw_now(Show& show, int waiting) {
     present(show, visitor);
   }
   if (!request_samples(show)) return;
-  trace_samples(show, show.renderer);
+  trace_samples(show, show.drawing->renderer);
   finish_samples(show);
 }
 

@@ -10,8 +10,8 @@ namespace wellspring::show {
 // Takes what the renderer has finished. Returns whether the renderer may be given the next: call it
 // once a tick, as what is finished later in the tick has not been taken.
 bool take_finished(Show& show);
-// Carries out a decision on show.visitors in their order, while the renderer is idle. `waiting`
-// visitors share the time.
+// Carries out a decision on show.visits.visitors in their order, while the renderer is idle.
+// `waiting` visitors share the time.
 void carry_out(Show& show, const Decision& decision, int waiting);
 // Draws all pictures that are due, one after the other, while the tick waits: for shows that draw
 // nothing in the background.

@@ -12,23 +12,25 @@
 #include "picture/still/reconstruct_still.h"
 #include "show/draw/decide.h"
 #include "show/draw/pace.h"
+#include "show/state/drawing.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
 
 namespace wellspring::show {
 
 bool request_samples(Show& show) {
-  Renderer& renderer = show.renderer;
+  Renderer& renderer = show.drawing->renderer;
   renderer.brokers.clear();
   renderer.seconds = 0;
   Visitor* first = nullptr;  // visitors who see another world wait for the next turn
-  for (Visitor& visitor : show.visitors) {
-    if (visitor.picture.broker_seconds <= 0) continue;
+  for (Visitor& visitor : show.visits.visitors) {
+    if (visitor.picture->broker_seconds <= 0) continue;
     if (!first) go_on_in_world_of(show, *(first = &visitor));
     else if (!see_the_same(show, *first, visitor)) continue;
-    renderer.brokers.push_back(&visitor.picture.broker);
-    renderer.seconds += std::exchange(visitor.picture.broker_seconds, 0.0);
-    visitor.picture.at_work = true;
+    renderer.brokers.push_back(&visitor.picture->broker);
+    renderer.seconds += std::exchange(visitor.picture->broker_seconds, 0.0);
+    visitor.picture->at_work = true;
   }
   return !renderer.brokers.empty();
 }
@@ -36,24 +38,25 @@ bool request_samples(Show& show) {
 void trace_samples(const Show& show, Renderer& renderer) {
   std::mutex guard;
   double began = seconds_now();
-  renderer.traced = trace_waiting(renderer.brokers, *show.world, show.lights, show.pose_number,
-                                  began + renderer.seconds, guard);
+  renderer.traced = trace_waiting(renderer.brokers, *show.stage.world, show.stage.lights,
+                                  show.cast.pose_number, began + renderer.seconds, guard);
   renderer.traced_seconds = seconds_now() - began;
 }
 
 void finish_samples(Show& show) {
-  Renderer& renderer = show.renderer;
+  Renderer& renderer = show.drawing->renderer;
   show.totals.samples += renderer.traced;
   if (renderer.traced > 0 && renderer.traced_seconds > 0)
-    smooth(show.samples_per_second, float(double(renderer.traced) / renderer.traced_seconds));
-  for (Visitor& visitor : show.visitors) {
+    smooth(show.drawing->samples_per_second,
+           float(double(renderer.traced) / renderer.traced_seconds));
+  for (Visitor& visitor : show.visits.visitors) {
     auto found =
-        std::find(renderer.brokers.begin(), renderer.brokers.end(), &visitor.picture.broker);
+        std::find(renderer.brokers.begin(), renderer.brokers.end(), &visitor.picture->broker);
     if (found == renderer.brokers.end()) continue;
     smooth(visitor.times.trace,
            float(1000 * renderer.traced_seconds / double(renderer.brokers.size())));
-    visitor.picture.at_work = false;
-    visitor.picture.served +=
+    visitor.picture->at_work = false;
+    visitor.picture->served +=
         renderer.traced_seconds / double(renderer.brokers.size()) * charge_weight(show, visitor);
   }
   renderer.brokers.clear();
@@ -96,8 +99,9 @@ bool spreads_samples(const PictureJob& job, const Technique& technique) {
 
 // Returns how many samples are traced at a time.
 size_t slice_of_samples(const Show& show) {
-  double seconds = std::clamp(show.renderer.until_moving, least_slice_seconds, longest_slice);
-  return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
+  double seconds =
+      std::clamp(show.drawing->renderer.until_moving, least_slice_seconds, longest_slice);
+  return size_t(std::max(seconds * double(show.drawing->samples_per_second), double(least_slice)));
 }
 
 // Returns the same view in as many pixels as there are samples.
@@ -130,7 +134,7 @@ void name_pixels(const View& view, std::vector<Request>& requests) {
 }
 
 void spread_samples(const View& view, int count, Visitor& visitor, std::vector<Request>& requests) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   uint64_t& asked = picture.costs.asked;
   const PointImage& image = picture.cache.image();
   if (image.weight.empty()) {
@@ -145,12 +149,12 @@ void spread_samples(const View& view, int count, Visitor& visitor, std::vector<R
 }  // namespace
 
 void take_answers(const Show& show, VisitorPicture& picture) {
-  land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
+  land(picture.broker.collect(), *show.stage.world, show.cast.pose_number, picture.cache);
 }
 
 void plan_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
                   Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   RenderCache& cache = picture.cache;
   follow_lamps(show, visitor);
   cache.set_attention(job.attention);
@@ -158,7 +162,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   cache.set_reference(job.settled);
   picture.compositor.set_reconstructed(job.learns);
   cache.resize(job.expected.width, job.expected.height);
-  cache.move_points(*show.world);
+  cache.move_points(*show.stage.world);
   take_answers(show, picture);
   cache.project(job.view);
   if (technique.finish_pass) {
@@ -183,7 +187,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
 
 bool begin_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
                    Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   work.samples.clear();
   work.traced = 0;
   if (picture.costs.late) {
@@ -191,11 +195,11 @@ bool begin_samples(Show& show, const PictureJob& job, const Technique& technique
     return false;
   }
   picture.broker.forget();  // answers that were still on their way
-  work.pose = show.pose_number;
+  work.pose = show.cast.pose_number;
   if (technique.begin_pass)
-    technique.begin_pass(*show.world, transport_of(show, job),
+    technique.begin_pass(*show.stage.world, transport_of(show, job),
                          technique.finish_pass ? work.pass : job.view, pass_seed(visitor.link->id),
-                         uint32_t(job.tick), show.lights);
+                         uint32_t(job.tick), show.stage.lights);
   return true;
 }
 
@@ -203,23 +207,23 @@ bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, 
   size_t all = work.requests.size(), count = all - work.traced;
   if (!technique.begin_pass) count = std::min(count, slice_of_samples(show));
   work.samples.resize(all);
-  trace(technique, *show.world, show.lights, transport_of(show, job),
+  trace(technique, *show.stage.world, show.stage.lights, transport_of(show, job),
         std::span(work.requests).subspan(work.traced, count),
         std::span(work.samples).subspan(work.traced, count));
   work.traced += count;
   if (technique.finish_pass)
-    technique.finish_pass(*show.world, show.lights, work.pass, work.samples);
+    technique.finish_pass(*show.stage.world, show.stage.lights, work.pass, work.samples);
   return work.traced < all;
 }
 
 void remember_traced(const Show& show, const PictureJob& job, const Technique& technique,
                      DrawingWork& work, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   if (picture.costs.late) return;
   work.requests.resize(work.traced);
   work.samples.resize(work.traced);
   if (technique.finish_pass) name_pixels(job.view, work.requests);
-  if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
+  if (show.cast.pose_number != work.pose) follow_meshes(*show.stage.world, work.samples);
   if (show.settings.display == Display::points)
     for (Sample& sample : work.samples) sample.glow = vec3(0);  // points show all light
   picture.cache.remember(job.view, work.requests, work.samples);

@@ -8,8 +8,10 @@
 #include "show/draw/decide.h"
 #include "show/draw/pace.h"
 #include "show/draw/steer.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 
@@ -42,7 +44,7 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
 }  // namespace
 
 PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, Purpose purpose) {
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   const VisitorPlace& place = visitor.place;
   PictureJob job;
   job.time = show.time;
@@ -61,7 +63,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   job.dynamic = visitor.dynamic;
   // Over pictures at rest, the light of dynamic lights is put with moving things
   // (show/draw/still_pass.h).
-  const bool put_over = job.keep && show.visibility->rasterises(now);
+  const bool put_over = job.keep && show.stage.visibility->rasterises(now);
   job.still =
       !hurried && (job.dynamic.empty() || put_over) && show.time - place.moved_at > still_after;
   const PictureJob& before = picture.job;
@@ -69,7 +71,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   bool seen = picture.drawn_at >= 0 && place.camera_cuts == before.camera_cuts;
   float guessed = seen ? picture.stats.filled + picture.stats.empty : 1;
   const bool points = show.settings.display == Display::points;
-  job.learns = show.pass.denoiser && in_steps(job) && !points;
+  job.learns = show.drawing->pass.denoiser && in_steps(job) && !points;
   job.settled = job.learns ? picture.rest.samples >= settled_samples
                            : wants_reference(show.time - place.moved_at, seen && before.settled,
                                              guessed, picture.stats.converged);
@@ -123,7 +125,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
 bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor) {
   if (visitor.left || visitor.place.camera_cuts != job.camera_cuts) return true;
   bool has_one =
-      visitor.picture.drawn_at >= 0 && visitor.picture.job.camera_cuts == job.camera_cuts;
+      visitor.picture->drawn_at >= 0 && visitor.picture->job.camera_cuts == job.camera_cuts;
   return has_one && job.still &&
          (visitor.place.last_view != job.expected || lamps_wait(show, visitor) ||
           job.moving != sees_moving(show, visitor, visitor.place.last_view));

@@ -6,8 +6,10 @@
 #include <oneapi/tbb/info.h>
 
 #include "show/state/delivery.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 namespace {
@@ -54,7 +56,7 @@ constexpr double most_unlike = 3;      // largest ratio by which charge_weight()
 // JPEG one.
 double showing_seconds(const Show& show) {
   double milliseconds = 0;
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (is_shown(visitor) && !stands(show, visitor))
       milliseconds += double(visitor.times.warp) +
                       double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
@@ -63,7 +65,7 @@ double showing_seconds(const Show& show) {
 
 // Returns the part of draw_state() that does not depend on rates.
 VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   const VisitorPlace& place = visitor.place;
   VisitorDrawState state;
   state.welcomed = is_shown(visitor);
@@ -73,13 +75,14 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
   // The renderer brings the picture that it draws to the present light.
-  state.other_light = show.renderer.drawn != &visitor && (picture.lamps != visitor.lamps.lit ||
-                                                          picture.hour != visitor.lamps.lit_hour);
+  state.other_light =
+      show.drawing->renderer.drawn != &visitor &&
+      (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour);
   state.sees_moving = state.welcomed && sees_moving(show, visitor, place.last_view);
   state.drew_moving = picture.job.moving;
   state.unshown = picture.unshown;
   state.backdrop = picture.backdrop;
-  state.in_pass = show.pass.visitor == &visitor;
+  state.in_pass = show.drawing->pass.visitor == &visitor;
   state.came_at = visitor.came_at;
   state.drawn_at = picture.drawn_at;
   state.posed_at = picture.posed_at;
@@ -93,7 +96,7 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
 
 int count_backdrops(const Show& show) {
   auto has = [&](const Visitor& one) { return has_backdrop(facts_of(show, one)); };
-  return int(std::count_if(show.visitors.begin(), show.visitors.end(), has));
+  return int(std::count_if(show.visits.visitors.begin(), show.visits.visitors.end(), has));
 }
 
 // Returns pictures a second of moving things, for each of the `backdrops` visitors who have one.
@@ -119,7 +122,7 @@ void watch(const Show& show, Visitor& visitor) {
   View view = view_of(show, visitor);
   if (view != place.last_view) {
     place.moved_at = show.time;
-    visitor.picture.rest = {};
+    visitor.picture->rest = {};
   }
   if (note_view(place.heading, show.time, view)) place.camera_cuts++;
   place.last_view = view;
@@ -137,20 +140,20 @@ bool rests(const Show& show, const Visitor& visitor) {
 
 bool asks_for_samples(const Show& show, const Visitor& visitor) {
   if (!stands(show, visitor)) return true;
-  return keeps_picture(facts_of(show, visitor)) ? !has_all_samples(visitor.picture.rest)
-                                                : visitor.picture.stats.converged < nearly_all;
+  return keeps_picture(facts_of(show, visitor)) ? !has_all_samples(visitor.picture->rest)
+                                                : visitor.picture->stats.converged < nearly_all;
 }
 
 int count_moving(const Show& show) {
   auto moves = [&](const Visitor& one) { return is_shown(one) && !stands(show, one); };
-  return int(std::count_if(show.visitors.begin(), show.visitors.end(), moves));
+  return int(std::count_if(show.visits.visitors.begin(), show.visits.visitors.end(), moves));
 }
 
 double charge_weight(const Show& show, const Visitor& visitor) {
   if (stands(show, visitor)) return standing_weight;
   double sum = 0;
   int count = 0;
-  for (const Visitor& one : show.visitors)
+  for (const Visitor& one : show.visits.visitors)
     if (is_shown(one) && !stands(show, one) && one.times.whole > 0)
       sum += double(one.times.whole), count++;
   if (count == 0 || !(visitor.times.whole > 0)) return 1;
@@ -173,7 +176,7 @@ double picture_rate(const Show& show, const Visitor& visitor) {
     if (double seconds = showing_seconds(show); seconds > 0)
       rate = std::min(rate, warping_share / seconds);
   }
-  if (visitor.kiosk && !show.house.open) rate = closed_rate;
+  if (visitor.kiosk && !show.house.state.open) rate = closed_rate;
   return std::clamp(rate, 1.0, 120.0);
 }
 
@@ -182,7 +185,8 @@ namespace {
 // Returns the pictures a second whose samples are to find changes of the light: fewer the longer
 // none was found, as many in a minute as in the first few seconds.
 double watching_rate(const Show& show, const Visitor& visitor) {
-  const double since = show.time - std::max(visitor.place.moved_at, visitor.picture.rest.passed_at);
+  const double since =
+      show.time - std::max(visitor.place.moved_at, visitor.picture->rest.passed_at);
   return std::clamp(resting_rate * settled_seconds / std::max(since, settled_seconds), rested_rate,
                     resting_rate);
 }
@@ -190,7 +194,7 @@ double watching_rate(const Show& show, const Visitor& visitor) {
 }  // namespace
 
 double drawing_rate(const Show& show, const Visitor& visitor) {
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   double rate = picture_rate(show, visitor);
   if (!stands(show, visitor))
     return show.settings.background ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
@@ -198,7 +202,7 @@ double drawing_rate(const Show& show, const Visitor& visitor) {
   if (rests(show, visitor)) rate = std::min(rate, watching_rate(show, visitor));
   if (picture.backdrop) rate = std::min(rate, backdrop_rate);
   // Until the first reconstruction, samples do more for it than pictures.
-  bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
+  bool first = show.drawing->pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
   first &= picture.backdrop || !picture.job.moving;
   return first ? std::min(rate, picture.backdrop ? learning_backdrop_rate : learning_rate) : rate;
 }
@@ -206,7 +210,7 @@ double drawing_rate(const Show& show, const Visitor& visitor) {
 double moving_share(const Show& show) {
   const int backdrops = count_backdrops(show);
   double share = 0;
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (has_backdrop(facts_of(show, visitor)))
       share += 0.001 * double(visitor.times.moving) * moving_rate(show, visitor, backdrops);
   return std::min(share, most_moving_share);
@@ -215,9 +219,9 @@ double moving_share(const Show& show) {
 double seconds_to_moving(const Show& show) {
   const int backdrops = count_backdrops(show);
   double seconds = 1;
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (has_backdrop(facts_of(show, visitor))) {
-      double due = visitor.picture.posed_at + 1 / moving_rate(show, visitor, backdrops);
+      double due = visitor.picture->posed_at + 1 / moving_rate(show, visitor, backdrops);
       seconds = std::min(seconds, due - show.time);
     }
   return std::max(seconds, 0.0);
@@ -226,11 +230,11 @@ double seconds_to_moving(const Show& show) {
 DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
   const StageTimes& times = visitor.times;
   auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
-  DrawingCosts costs{show.samples_per_second, seconds(times.drawing),
+  DrawingCosts costs{show.drawing->samples_per_second, seconds(times.drawing),
                      seconds(times.display + times.tonemap), seconds(times.light)};
   // A newcomer's first picture is expected to cost what others' have cost.
-  if (visitor.picture.drawn_at < 0 && costs.drawing_seconds == 0)
-    costs.drawing_seconds = show.capacity->standing().cost.drawn *
+  if (visitor.picture->drawn_at < 0 && costs.drawing_seconds == 0)
+    costs.drawing_seconds = show.visits.capacity->standing().cost.drawn *
                             weighed_pixels(double(visitor.wants.width) * visitor.wants.height) /
                             oneapi::tbb::info::default_concurrency();
   return costs;
@@ -241,14 +245,14 @@ static Ageing ageing_of(const Visitor& visitor) {
   const View& now = visitor.place.last_view;
   const EyeMotion motion = motion_of(visitor.place.heading, now);
   const float across = 2 * std::atan(now.tan_half_fov * float(now.width) / float(now.height));
-  return {motion.speed * visitor.picture.relief, motion.turn / across};
+  return {motion.speed * visitor.picture->relief, motion.turn / across};
 }
 
 KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {
   const DrawingCosts costs = drawing_costs(show, visitor);
   double light = costs.light_seconds > 0 ? costs.light_seconds : costs.display_seconds;
   return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(show), 1),
-                       visitor.picture.job.scale,
+                       visitor.picture->job.scale,
                        visitor.wants.local ? longest_period(ageing_of(visitor)) : finished_period);
 }
 
@@ -259,24 +263,25 @@ VisitorDrawState draw_state(const Show& show, const Visitor& visitor) {
 std::vector<VisitorDrawState> draw_states(const Show& show) {
   const int backdrops = count_backdrops(show);
   std::vector<VisitorDrawState> states;
-  for (const Visitor& visitor : show.visitors) states.push_back(state_of(show, visitor, backdrops));
+  for (const Visitor& visitor : show.visits.visitors)
+    states.push_back(state_of(show, visitor, backdrops));
   return states;
 }
 
 RendererState renderer_state(const Show& show) {
-  const Renderer& renderer = show.renderer;
+  const Renderer& renderer = show.drawing->renderer;
   RendererState state;
   state.idle = renderer.idle();
   state.background = show.settings.background;
   int index = 0;
-  for (const Visitor& visitor : show.visitors) {
+  for (const Visitor& visitor : show.visits.visitors) {
     if (&visitor == renderer.drawn) state.drawn = index;
     index++;
   }
   state.traces = renderer.step == DrawingStep::trace;
-  state.can_reconstruct = show.pass.denoiser != nullptr;
-  state.in_pass = show.pass.visitor != nullptr;
-  state.has_skin = !show.skin.places.empty();
+  state.can_reconstruct = show.drawing->pass.denoiser != nullptr;
+  state.in_pass = show.drawing->pass.visitor != nullptr;
+  state.has_skin = !show.stage.skin.places.empty();
   state.skin_at = renderer.skin.time;
   state.skin_interval = renderer.skin.interval;
   state.skin_turn = renderer.skin.turn;

@@ -12,7 +12,7 @@
 namespace wellspring::show {
 
 // Draws the picture. Changes nothing but the renderer's part of the visitor, and what techniques
-// keep in show.lights. Ends early, with costs.given_up and all samples traced by then, once
+// keep in show.stage.lights. Ends early, with costs.given_up and all samples traced by then, once
 // renderer.given_up is set.
 void draw_picture(Show& show, const PictureJob& job, Visitor& visitor);
 // Does the same step by step, between which the world may move and nothing but still_pass.h may

@@ -13,7 +13,9 @@
 #include "show/draw/parts.h"
 #include "show/draw/still_pass.h"
 #include "show/state/delivery.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
+#include "show/state/visitor_picture.h"
 #include "wire/packet.h"
 
 namespace wellspring::show {
@@ -121,8 +123,8 @@ uint16_t side_of(int side, int eighths) {
 // posed for that moment.
 void note_lead(Show& show, uint64_t posed_us, uint64_t picture_us) {
   if (picture_us >= posed_us)
-    show.picture_lead +=
-        (std::min(1e-6f * float(picture_us - posed_us), 0.25f) - show.picture_lead) * 0.1f;
+    show.drawing->picture_lead +=
+        (std::min(1e-6f * float(picture_us - posed_us), 0.25f) - show.drawing->picture_lead) * 0.1f;
 }
 
 // Returns whether the browser has a picture of this view, and takes what is new in it.
@@ -159,7 +161,7 @@ KeyframeHeader keyframe_header(const Show& show, const View& view, uint32_t cuts
   return {.cuts = cuts,
           .width = uint16_t(view.width),
           .height = uint16_t(view.height),
-          .eye = show.exhibit.scene.origin + dvec3(view.position),
+          .eye = show.stage.exhibit.scene.origin + dvec3(view.position),
           .right = view.right,
           .up = view.up,
           .forward = view.forward,
@@ -179,9 +181,9 @@ void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader 
   header.quality = uint8_t(plan.quality);
   std::optional<KeyframeHeader> keyframe;
   if (visitor.wants.local) {
-    keyframe = keyframe_header(show, view, visitor.picture.job.camera_cuts);
+    keyframe = keyframe_header(show, view, visitor.picture->job.camera_cuts);
     header.flags |= packet_depth;
-    visitor.shown.encoder->disparity = visitor.picture.keyframe.disparity;
+    visitor.shown.encoder->disparity = visitor.picture->keyframe.disparity;
   }
   encode_complete(show, visitor, header, fine, plan.eighths, keyframe);
   visitor.shown.lost = false;
@@ -215,7 +217,7 @@ void send_parts(Show& show, Visitor& visitor, const View& view, PacketHeader hea
 void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool still) {
   VisitorDelivery& shown = visitor.shown;
   const PacketHeader header = next_header(show, visitor, seq, still);
-  note_lead(show, visitor.picture.job.time_us, header.time_us);
+  note_lead(show, visitor.picture->job.time_us, header.time_us);
   if (takes_parts(show, visitor, view)) send_parts(show, visitor, view, header, seq != shown.seq);
   else send_complete(show, visitor, view, header), shown.has_still = still;
   if (shown.sent_at > 0 && show.time > shown.sent_at)
@@ -226,7 +228,7 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   shown.pictured_at = std::clamp(shown.pictured_at + period, show.time - 0.5 * period, show.time);
   shown.seq = seq;
   shown.view = view;
-  visitor.picture.unshown = false;
+  visitor.picture->unshown = false;
 }
 
 // Sends the tiles of the last picture that the browser lacks or has less fine, or the news that
@@ -249,10 +251,10 @@ void note_cost(Show& show, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
   const double warping = std::exchange(visitor.shown.warp_core_seconds, 0.0);
   if (visitor.wants.local && encoder.pixels > 0)
-    show.capacity->note_sent(encoder.pixels, encoder.processor_seconds);
+    show.visits.capacity->note_sent(encoder.pixels, encoder.processor_seconds);
   if (warping <= 0) return;
-  show.capacity->note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
-                            warping + encoder.processor_seconds);
+  show.visits.capacity->note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
+                                   warping + encoder.processor_seconds);
 }
 
 bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
@@ -260,9 +262,9 @@ bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 // Warps the newest keyframe to `view`, into the encoder's image.
 bool warp(Show& show, Visitor& visitor, const View& view) {
   const double began = seconds_now(), cores_began = process_seconds_now();
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   float unknown = warp_picture(picture.keyframe, picture.around.keyframe, view, most_unknown,
-                               show.warp, visitor.shown.encoder->image);
+                               show.drawing->warp, visitor.shown.encoder->image);
   visitor.shown.warp_core_seconds = process_seconds_now() - cores_began;
   smooth(visitor.times.warp, float(1000 * (seconds_now() - began)));
   if (unknown > most_unknown) {
@@ -301,7 +303,7 @@ void note_deliveries(Show& show, Visitor& visitor) {
 
 // Sends the surroundings between keyframes; they say nothing new of the visitor's input.
 static void send_surroundings(Show& show, Visitor& visitor) {
-  const Surroundings& around = visitor.picture.around;
+  const Surroundings& around = visitor.picture->around;
   const View& view = around.keyframe.view;
   if (around.keyframe.empty()) return;
   Image8 image;
@@ -322,7 +324,7 @@ static bool takes_layer(const VisitorPicture& picture, const VisitorDelivery& sh
 }
 
 static void send_layer(Show& show, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   MovingLayer layer;
   if (std::exchange(picture.layer_unsent, false)) layer = std::move(picture.moving.layer);
   visitor.shown.has_layer = !layer.window.empty();
@@ -345,7 +347,7 @@ static void send_layer(Show& show, Visitor& visitor) {
 // Sends the newest keyframe as it is, or its news if the page has it: the page shows it from where
 // its visitor is by then.
 static void present_keyframe(Show& show, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   picture.fade = {};  // the page passes from one picture to the next
   const bool stays = picture.job.still && picture.job.keep && !picture.keyframe.empty();
   visitor.shown.sent_layer = stays && takes_layer(picture, visitor.shown);
@@ -353,7 +355,7 @@ static void present_keyframe(Show& show, Visitor& visitor) {
   if (!picture.unshown && std::exchange(picture.around.unsent, false))
     return send_surroundings(show, visitor);
   if (!picture.unshown) return refine(show, visitor);
-  if (show.renderer.posed == &visitor) return;
+  if (show.drawing->renderer.posed == &visitor) return;
   const PictureJob& job = picture.job;
   const View& view = job.view;
   copy_colors(picture.keyframe, {0, 0, view.width, view.height}, visitor.shown.encoder->image);
@@ -364,7 +366,7 @@ static void present_keyframe(Show& show, Visitor& visitor) {
 }
 
 void present(Show& show, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   VisitorDelivery& shown = visitor.shown;
   const PictureJob& job = picture.job;
   if (job.camera_cuts != visitor.place.camera_cuts || picture.drawn_at < 0) return;
@@ -404,7 +406,7 @@ void present(Show& show, Visitor& visitor) {
   }
   picture.fade = {};
   // the renderer reads the keyframe, and has soon done so
-  if (show.renderer.posed == &visitor) return;
+  if (show.drawing->renderer.posed == &visitor) return;
   merge_moving(picture);
   if (warp(show, visitor, view)) {
     send(show, visitor, view, visitor.place.seq, false);
@@ -419,7 +421,7 @@ void present(Show& show, Visitor& visitor) {
 
 void present_all(Show& show) {
   std::vector<Visitor*> all;
-  for (Visitor& visitor : show.visitors)
+  for (Visitor& visitor : show.visits.visitors)
     if (is_shown(visitor)) all.push_back(&visitor);
   std::ranges::stable_sort(all, {}, [](const Visitor* one) { return one->shown.pictured_at; });
   const double began = seconds_now();
@@ -430,7 +432,7 @@ void present_all(Show& show) {
 }
 
 bool has_to_show(const Show& show, const Visitor& visitor) {
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   return is_shown(visitor) &&
          (picture.unshown || picture.layer_unsent || !picture.fade.from.rgb.empty() ||
           (visitor.place.last_view != visitor.shown.view && !visitor.wants.local));

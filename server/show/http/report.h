@@ -8,8 +8,8 @@
 
 #include "avatar/mind/storyteller_io.h"
 #include "show/kiosk/kiosk.h"
-#include "show/state/baker.h"
-#include "show/state/show.h"
+#include "show/house/house.h"
+#include "show/state/totals.h"
 #include "show/visit/flow.h"
 #include "wire/messages.h"
 

@@ -7,15 +7,17 @@
 #include <functional>
 #include <list>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include "base/clock.h"
 #include "show/exhibit/exhibit.h"
-#include "show/state/show.h"
 
 namespace wellspring::show {
+
+struct Show;  // show/state/show.h
 
 struct StillJob {
   int viewpoint = 0, width = 640, height = 360;
@@ -53,6 +55,7 @@ class StillRoom {
   // still.cpp.
   // `clock`: seconds that its time is taken by.
   explicit StillRoom(const Show& show, std::function<double()> clock = thread_seconds_now);
+  ~StillRoom();
   // A JPEG, whose comment says what it has, on at most `cores`. Empty: given up, as `given_up` (any
   // thread, every few milliseconds) said so. `denoise_seconds`: of its time that are kept for that.
   StillPicture make(const StillJob& order, const std::function<bool()>& given_up = {},
@@ -60,26 +63,15 @@ class StillRoom {
   // Measures the costs of a small picture, which is made and not remembered.
   StillCosts measure(const StillJob& order);
   std::optional<StillPicture> find(const StillJob& order);  // among those that are remembered
-  bool denoises() const { return !weights_.empty(); }
+  bool denoises() const;
 
  private:
   struct Kept {
     StillJob order;
     StillPicture picture;
   };
-  std::optional<Frame> trace(const View& view, const StillJob& order, double seconds,
-                             const std::function<bool()>& given_up, StillCosts& costs) const;
-  std::optional<Frame> render(const StillJob& order, const std::function<bool()>& given_up,
-                              double denoise_seconds, StillCosts& costs,
-                              StillPicture& picture) const;
-  std::string comment(const StillPicture& picture) const;
-  const Exhibit& exhibit_;
-  const Technique* technique_;
-  TransportSettings transport_;
-  std::string weights_;
-  std::unique_ptr<World> world_;
-  Lights lights_;
-  const std::function<double()> clock_;
+  struct Scenery;
+  std::unique_ptr<Scenery> scenery_;
   std::mutex mutex_;      // guards the members below
   std::list<Kept> kept_;  // newest first
 };

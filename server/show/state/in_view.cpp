@@ -48,7 +48,7 @@ bool in_view(const View& view, vec3 centre, float radius) {
 View rest_view(const Show& show, const Visitor& visitor) {
   const Around& around = visitor.place.around;
   const Viewpoint& at = around.point >= 0 ? around.view : visitor.place.view;
-  View view = make_view(show.exhibit.scene, at, visitor.wants.width, visitor.wants.height);
+  View view = make_view(show.stage.exhibit.scene, at, visitor.wants.width, visitor.wants.height);
   view.near = around.near;
   return view;
 }
@@ -60,19 +60,19 @@ View view_of(const Show& show, const Visitor& visitor) {
 }
 
 bool sees_head(const Show& show, const Teller& teller, const View& view) {
-  return !show.figures.empty() && teller.visible &&
+  return !show.cast.figures.empty() && teller.visible &&
          in_view(view, above_feet(teller, head_height), head_reach);
 }
 
 bool sees_figure(const Show& show, const Teller& teller, const View& view) {
-  return !show.figures.empty() && teller.visible &&
+  return !show.cast.figures.empty() && teller.visible &&
          in_view(view, above_feet(teller, body_height), body_reach);
 }
 
 const Visitor* heard_on_tour(const Show& show, const Teller& teller) {
   const Visitor* nearest = nullptr;
   float least = nobody_near;
-  for (const Visitor& visitor : show.visitors) {
+  for (const Visitor& visitor : show.visits.visitors) {
     const Voice& voice = visitor.hearing.narration.voice;
     if (voice.queue.empty() || voice.paused) continue;
     if (float distance = distance_to_head(show, visitor, teller); distance < least)
@@ -82,16 +82,16 @@ const Visitor* heard_on_tour(const Show& show, const Teller& teller) {
 }
 
 const PointOfInterest* looked_at_beside_her(const Show& show, const Teller& teller) {
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && visitor.place.closer >= 0 && listens_to(show, visitor, teller) &&
         sees_head(show, teller, view_of(show, visitor)))
-      return &show.exhibit.points[size_t(visitor.place.closer)];
+      return &show.stage.exhibit.points[size_t(visitor.place.closer)];
   return nullptr;
 }
 
 float viewer_distance(const Show& show, const Teller& teller) {
   float nearest = nobody_near;
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     nearest = std::min(nearest, distance_to_head(show, visitor, teller));
   return nearest;
 }
@@ -101,8 +101,9 @@ namespace {
 using Start = ExhibitAnimation::Start;
 
 const Play& play_of(const Show& show, const Visitor& visitor, size_t i) {
-  const Visitor* own = show.exhibit.animations[i].shared ? nullptr : who_touched(show, visitor);
-  return own ? own->plays[i] : show.plays[i];
+  const Visitor* own =
+      show.stage.exhibit.animations[i].shared ? nullptr : who_touched(show, visitor);
+  return own ? own->plays[i] : show.cast.plays[i];
 }
 
 bool in_reach(const View& view, const Reach& reach) {
@@ -110,13 +111,13 @@ bool in_reach(const View& view, const Reach& reach) {
 }
 
 void set_animation(Show& show, Visitor& visitor, size_t i, bool on) {
-  const ExhibitAnimation& animation = show.exhibit.animations[i];
-  if (!animation.shared && visitor.plays.empty()) visitor.plays.resize(show.plays.size());
-  Play& play = animation.shared ? show.plays[i] : visitor.plays[i];
+  const ExhibitAnimation& animation = show.stage.exhibit.animations[i];
+  if (!animation.shared && visitor.plays.empty()) visitor.plays.resize(show.cast.plays.size());
+  Play& play = animation.shared ? show.cast.plays[i] : visitor.plays[i];
   set_on(animation, on, show.time, play);
   visitor.state_sent_at = -1e9;
   if (!animation.shared) return;
-  for (Visitor& other : show.visitors) other.state_sent_at = -1e9;
+  for (Visitor& other : show.visits.visitors) other.state_sent_at = -1e9;
 }
 
 }  // namespace
@@ -129,8 +130,9 @@ const Visitor* who_touched(const Show& show, const Visitor& visitor) {
 
 std::vector<double> animation_times(const Show& show, const Visitor& visitor) {
   std::vector<double> times;
-  for (size_t i = 0; i < show.exhibit.animations.size(); i++)
-    times.push_back(time_of(show.exhibit.animations[i], play_of(show, visitor, i), show.time));
+  for (size_t i = 0; i < show.stage.exhibit.animations.size(); i++)
+    times.push_back(
+        time_of(show.stage.exhibit.animations[i], play_of(show, visitor, i), show.time));
   return times;
 }
 
@@ -140,21 +142,21 @@ bool is_on(const Show& show, const Visitor& visitor, size_t animation) {
 
 bool sees_moving(const Show& show, const Visitor& visitor, const View& view) {
   return !visitor.dynamic.empty() || sees_figure(show, teller_of(show, visitor), view) ||
-         std::ranges::any_of(show.movers.reach,
+         std::ranges::any_of(show.cast.movers.reach,
                              [&](const Reach& reach) { return in_reach(view, reach); });
 }
 
 bool sees_motion(const Show& show, const Visitor& visitor, const View& view) {
   if (!visitor.dynamic.empty() || sees_figure(show, teller_of(show, visitor), view)) return true;
-  for (size_t i = 0; i < show.exhibit.animations.size(); i++)
-    if (in_reach(view, show.movers.reach[i]) &&
-        is_running(show.exhibit.animations[i], play_of(show, visitor, i), show.time))
+  for (size_t i = 0; i < show.stage.exhibit.animations.size(); i++)
+    if (in_reach(view, show.cast.movers.reach[i]) &&
+        is_running(show.stage.exhibit.animations[i], play_of(show, visitor, i), show.time))
       return true;
   return false;
 }
 
 bool play_animation(Show& show, Visitor& visitor, std::string_view id, bool on) {
-  const std::vector<ExhibitAnimation>& all = show.exhibit.animations;
+  const std::vector<ExhibitAnimation>& all = show.stage.exhibit.animations;
   const auto found = std::ranges::find(all, id, &ExhibitAnimation::id);
   if (found == all.end() || found->start != Start::touch) return false;
   set_animation(show, visitor, size_t(found - all.begin()), on);
@@ -162,8 +164,8 @@ bool play_animation(Show& show, Visitor& visitor, std::string_view id, bool on) 
 }
 
 void touch_object(Show& show, Visitor& visitor, int point) {
-  for (size_t i = 0; i < show.exhibit.animations.size(); i++) {
-    const ExhibitAnimation& animation = show.exhibit.animations[i];
+  for (size_t i = 0; i < show.stage.exhibit.animations.size(); i++) {
+    const ExhibitAnimation& animation = show.stage.exhibit.animations[i];
     if (animation.start == Start::touch && animation.point == point)
       set_animation(show, visitor, i, !is_on(show, visitor, i));
   }

@@ -25,8 +25,8 @@ std::vector<char> shining_objects(const Scene& scene);
 void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
 // Does the same with maps of the scene as it is: walks end on them, too.
 void use_better_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
-// Puts the lamps as they are at first. show.lights were made, and are prepared, while all lamps
-// were full.
+// Puts the lamps as they are at first. show.stage.lights were made, and are prepared, while all
+// lamps were full.
 void begin_lamps(Show& show);
 // Return what the visitor wants: which of the exhibit's lamps are on, by the visitor's own wish or
 // the house's; the hour of the day (none: the exhibit's own); and the levels of the scene's lamps

@@ -15,31 +15,32 @@ uint64_t number_who_touched(const Show& show, const Visitor& visitor) {
 }  // namespace
 
 void pose_world(Show& show, const Teller& teller, const std::vector<double>& times) {
-  bool moved = pose_movers(show.exhibit, times, show.movers, *show.world);
-  show.posed_as = teller.number;
-  for (size_t i = 0; i < show.figures.size(); i++)
-    show_figure(*show.world, show.figures[i], i == teller.index && teller.visible);
-  for (size_t i = 0; i < show.props.size(); i++)
-    moved |= pose_prop(*show.world, show.props[i],
-                       pose_of(show.exhibit, teller.held, int(i), show.time));
-  if (show.figures.empty() && !moved) return;
-  if (teller.visible && !show.figures.empty())
-    pose_figure(*show.world, show.figures[teller.index], storyteller_of(show, teller)->character,
-                teller.pose, teller.storyteller.placement, show.scratch);
-  show.world->commit();
-  show.pose_number++;
+  bool moved = pose_movers(show.stage.exhibit, times, show.cast.movers, *show.stage.world);
+  show.cast.posed_as = teller.number;
+  for (size_t i = 0; i < show.cast.figures.size(); i++)
+    show_figure(*show.stage.world, show.cast.figures[i], i == teller.index && teller.visible);
+  for (size_t i = 0; i < show.cast.props.size(); i++)
+    moved |= pose_prop(*show.stage.world, show.cast.props[i],
+                       pose_of(show.stage.exhibit, teller.held, int(i), show.time));
+  if (show.cast.figures.empty() && !moved) return;
+  if (teller.visible && !show.cast.figures.empty())
+    pose_figure(*show.stage.world, show.cast.figures[teller.index],
+                storyteller_of(show, teller)->character, teller.pose, teller.storyteller.placement,
+                show.cast.scratch);
+  show.stage.world->commit();
+  show.cast.pose_number++;
 }
 
 void begin_world_of(Show& show, Visitor& visitor) {
   light_world(show, visitor.lamps.lit);
   pose_world(show, teller_of(show, visitor), animation_times(show, visitor));
-  show.posed_for = number_who_touched(show, visitor);
+  show.cast.posed_for = number_who_touched(show, visitor);
 }
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
   light_world(show, visitor.lamps.lit);
-  if (show.posed_as == teller_of(show, visitor).number &&
-      show.posed_for == number_who_touched(show, visitor))
+  if (show.cast.posed_as == teller_of(show, visitor).number &&
+      show.cast.posed_for == number_who_touched(show, visitor))
     return;
   begin_world_of(show, visitor);
 }

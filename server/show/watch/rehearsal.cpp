@@ -165,13 +165,13 @@ std::string write_problems(const std::vector<Problem>& problems) {
 }
 
 void set_problems(Show& show, std::vector<Problem> problems) {
-  const std::string message = problems.empty() && show.problems_message.empty()
+  const std::string message = problems.empty() && show.stage.problems_message.empty()
                                   ? std::string()  // nothing was ever wrong
                                   : write_problems(problems);
-  show.problems = std::move(problems);
-  if (message == show.problems_message) return;
-  show.problems_message = message;
-  for (Visitor& visitor : show.visitors)
+  show.stage.problems = std::move(problems);
+  if (message == show.stage.problems_message) return;
+  show.stage.problems_message = message;
+  for (Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed) visitor.link->send_text(message);
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "show/state/drawing.h"
 #include "unit/show/show_stage.h"
 
 #include <gtest/gtest.h>
@@ -61,14 +62,14 @@ void ShowStage::turn(double yaw, double forward, size_t visitor) {
 
 void ShowStage::step(double seconds) {
   tick(*show, arrivals, now += seconds);
-  for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-  show->renderer.worker.wait();
+  for (Visitor& visitor : show->visits.visitors) visitor.shown.encoder->task.wait();
+  show->drawing->renderer.worker.wait();
   take_sent();
 }
 
 void ShowStage::step_on() {
   tick(*show, arrivals, now += tick_seconds);
-  for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
+  for (Visitor& visitor : show->visits.visitors) visitor.shown.encoder->task.wait();
   take_sent();
 }
 
@@ -133,8 +134,9 @@ Image8 ShowStage::truth(const View& view, int samples) {
   settings.spp = samples;
   settings.transport = show->settings.transport;
   Image8 picture;
-  tonemap(render_still(*show->still_technique, *show->world, show->lights, view, settings),
-          Tonemap{show->exhibit.exposure}, picture);
+  tonemap(render_still(*show->stage.still_technique, *show->stage.world, show->stage.lights, view,
+                       settings),
+          Tonemap{show->stage.exhibit.exposure}, picture);
   return picture;
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "frame/tonemap.h"
+#include "show/state/arrivals.h"
 #include "show/state/show.h"
 #include "unit/show/tiny_exhibit.h"
 #include "wire/packet.h"
@@ -54,7 +55,7 @@ struct ShowStage {
   }
   void take_sent();  // by every browser that reads; a step ends with it
 
-  Visitor& visitor() { return show->visitors.front(); }
+  Visitor& visitor() { return show->visits.visitors.front(); }
   const std::vector<Packet>& pictures(size_t visitor = 0) { return browsers[visitor].pictures; }
   PacketHeader header(size_t picture);  // the first visitor's
   Image8 image(size_t picture);

@@ -27,7 +27,9 @@ struct Groups : testing::Test, ShowStage {
     code = last("group", 0)["code"];
     order(R"({"type":"group","action":"follow","code":")" + code + R"("})", 1);
   }
-  const VisitorPlace& place(size_t i) { return std::next(show->visitors.begin(), long(i))->place; }
+  const VisitorPlace& place(size_t i) {
+    return std::next(show->visits.visitors.begin(), long(i))->place;
+  }
 };
 
 TEST_F(Groups, FollowersGoWhereTheLeaderGoesAndStrangersDoNot) {
@@ -104,7 +106,7 @@ TEST_F(Groups, EndsWhenTheLeaderLeavesAndCodesAreChecked) {
   order(R"({"type":"group","action":"leave"})", 0);
   for (size_t i : {1, 2}) {
     EXPECT_EQ(last("group", i)["role"], "none");
-    EXPECT_TRUE(std::next(show->visitors.begin(), long(i))->group.follows.empty());
+    EXPECT_TRUE(std::next(show->visits.visitors.begin(), long(i))->group.follows.empty());
   }
 }
 

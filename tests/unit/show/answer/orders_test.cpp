@@ -9,6 +9,7 @@
 
 #include "show/exhibit/exhibit_lights.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
@@ -37,7 +38,7 @@ struct Orders : testing::Test, ShowStage {
   std::string input(double yaw) {
     return json{{"type", "input"}, {"seq", ++seq}, {"look", {yaw, 0}}}.dump();
   }
-  Visitor& other() { return show->visitors.back(); }
+  Visitor& other() { return show->visits.visitors.back(); }
 };
 
 TEST_F(Orders, OfOneKindTheNewestIsCarriedOutATick) {
@@ -91,7 +92,7 @@ TEST_F(Orders, TurnsAddUpAndEverySeqIsAnswered) {
     say(input(0.25));
   }
   step();
-  const Viewpoint& corner = show->exhibit.viewpoints[1].view;
+  const Viewpoint& corner = show->stage.exhibit.viewpoints[1].view;
   EXPECT_EQ(visitor().place.view.position, corner.position);
   EXPECT_NEAR(visitor().place.view.yaw, corner.yaw + 0.25, 1e-5);
   EXPECT_EQ(visitor().place.seq, seq);
@@ -169,13 +170,13 @@ TEST_F(Orders, WhoeverOrdersTooMuchDoesNotKeepOthersFromBeingDrawn) {
   };
   for (const auto& storm : storms) {
     begin(true);
-    const double began = other().picture.drawn_at;
+    const double began = other().picture->drawn_at;
     int drawn = 0, ticks = 0;
     for (double last = began; drawn < 10 && ticks < 20000; ticks++) {
       for (int i = 0; i < 6; i++) say(storm(6 * ticks + i).dump());
       turn(0.02, 0, 1);
       step_on();
-      if (other().picture.drawn_at > last) last = other().picture.drawn_at, drawn++;
+      if (other().picture->drawn_at > last) last = other().picture->drawn_at, drawn++;
     }
     EXPECT_EQ(drawn, 10) << storm(0) << " in " << ticks << " ticks";
   }

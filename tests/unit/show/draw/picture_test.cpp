@@ -38,7 +38,7 @@ TEST(Picture, IsRightForAnEyeInSolidGlassToo) {
     stage.join(160, 90);
     stage.run(2);
     const View& view = stage.visitor().place.last_view;
-    EXPECT_EQ(stage.show->visibility->rasterises(view), !glass);
+    EXPECT_EQ(stage.show->stage.visibility->rasterises(view), !glass);
     Image8 truth = stage.truth(view, 64), shown = stage.last_image();
     ASSERT_EQ(shown.rgb.size(), truth.rgb.size());
     double light = 0, shown_light = 0;
