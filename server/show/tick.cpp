@@ -82,7 +82,7 @@ void read_visitors(Show& show, double dt) {
     visitor->left = true;
     visitor->welcomed = false;
     visitor->link->close("bye");
-    bool in_pass = show.drawing->pass.visitor == &*visitor;
+    bool in_pass = show.drawing->pass.visitor == visitor->link->id;
     if (in_pass) show.drawing->pass.given_up = true;
     if (visitor->picture->at_work || in_pass) continue;  // its work ends soon
     log::info("visitor {} left", visitor->link->id);
@@ -291,8 +291,9 @@ void watch_baker(Show& show) {
   if (show.time - looks.told_at < looks_every) return;
   looks.told_at = show.time;
   show.stage.baker->look(looks_of(show));
-  const bool walks = std::ranges::any_of(
-      show.visits.visitors, [](const Visitor& visitor) { return visitor.picture->job.passing; });
+  const bool walks = std::ranges::any_of(show.visits.visitors, [](const Visitor& visitor) {
+    return visitor.picture->drawn_at >= 0 && !is_still(visitor.picture->job);
+  });
   if (walks && show.time - looks.took_at < most_light_waits) return;
   if (auto maps = show.stage.baker->take()) {
     use_better_maps(show, std::move(maps));
@@ -350,8 +351,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   read_cameras(show);
   if (free) forget_lights(show);
   for (Visitor& visitor : show.visits.visitors)
-    if (visitor.welcomed && !visitor.picture->at_work && show.drawing->renderer.drawn != &visitor &&
-        lamps_wait(show, visitor))
+    if (visitor.welcomed && !visitor.picture->at_work &&
+        show.drawing->renderer.drawn != visitor.link->id && lamps_wait(show, visitor))
       light_lamps(show, visitor);
   if (free && !show.drawing->renderer.drawn) watch_baker(show);
   narrate(show, dt);
@@ -384,11 +385,12 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   }
   watch_pass(show);
   Renderer& renderer = show.drawing->renderer;
-  if (renderer.drawn && is_outdated(show, renderer.job, *renderer.drawn)) renderer.given_up = true;
-  if (!show.settings.background) draw_now(show, demand.waiting);
-  else if (free) use_renderer(show, demand.waiting);
+  if (renderer.drawn != 0 &&
+      is_outdated(show, renderer.job, visitor_of(show.visits, renderer.drawn)))
+    renderer.given_up = true;
+  if (free) use_renderer(show, demand.waiting);
   steer(show);
-  if (show.settings.background) present_all(show);
+  present_all(show);
   for (Visitor& visitor : show.visits.visitors) {
     if (!visitor.welcomed) continue;
     send_pose(show, visitor);
@@ -413,8 +415,8 @@ double seconds_to_next_tick(const Show& show, double now) {
 void wait_for_tick(const Show& show, double now) {
   double seconds = seconds_to_next_tick(show, now);
   const Renderer& renderer = show.drawing->renderer;
-  bool nothing_comes = !renderer.drawn && renderer.brokers.empty() && !show.drawing->pass.at_work &&
-                       !renderer.skin.at_work;
+  bool nothing_comes = renderer.drawn == 0 && renderer.asking.empty() &&
+                       !show.drawing->pass.at_work && !renderer.skin.at_work;
   if (nothing_comes) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   else renderer.worker.wait_for(seconds);
 }

@@ -55,10 +55,9 @@ Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int h
   return {};
 }
 
-// A page that had keyframes gets a finished picture next, and the other way round. A show that
-// draws nothing in the background has no keyframes.
+// A page that had keyframes gets a finished picture next, and the other way round.
 void set_display(const Show& show, Visitor& visitor, const std::string& display) {
-  const bool local = display == "local" && show.settings.background;
+  const bool local = display == "local";
   PictureWishes& wants = visitor.wants;
   if (wants.local == local) return;
   wants.local = local;

@@ -78,7 +78,7 @@ void watch_presence(Show& show, double dt) {
     const bool silent = idle && presence.quiet > settings.idle_after + settings.idle_answer;
     const bool unseen = settings.hidden_after > 0 && presence.hidden > settings.hidden_after;
     if (!silent && !unseen) continue;
-    const bool in_pass = show.drawing->pass.visitor == &*visitor;
+    const bool in_pass = show.drawing->pass.visitor == visitor->link->id;
     if (in_pass) show.drawing->pass.given_up = true;
     if (!visitor->picture->at_work && !in_pass) send_to_rest(show, visitor);  // else soon
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drives the renderer from tick to tick: takes what it has finished, and carries out on it what was
-// decided (show/draw/decide.h). By the tick alone; never waits, but for draw_now().
+// decided (show/draw/decide.h). By the tick alone; never waits.
 #pragma once
 #include "show/draw/decide.h"
 #include "show/state/show.h"
@@ -13,8 +13,5 @@ bool take_finished(Show& show);
 // Carries out a decision on show.visits.visitors in their order, while the renderer is idle.
 // `waiting` visitors share the time.
 void carry_out(Show& show, const Decision& decision, int waiting);
-// Draws all pictures that are due, one after the other, while the tick waits: for shows that draw
-// nothing in the background.
-void draw_now(Show& show, int waiting);
 
 }  // namespace wellspring::show

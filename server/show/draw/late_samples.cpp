@@ -19,26 +19,27 @@
 
 namespace wellspring::show {
 
-bool request_samples(Show& show) {
+std::vector<Broker*> request_samples(Show& show) {
   Renderer& renderer = show.drawing->renderer;
-  renderer.brokers.clear();
+  std::vector<Broker*> brokers;
   renderer.seconds = 0;
   Visitor* first = nullptr;  // visitors who see another world wait for the next turn
   for (Visitor& visitor : show.visits.visitors) {
     if (visitor.picture->broker_seconds <= 0) continue;
     if (!first) go_on_in_world_of(show, *(first = &visitor));
     else if (!see_the_same(show, *first, visitor)) continue;
-    renderer.brokers.push_back(&visitor.picture->broker);
+    brokers.push_back(&visitor.picture->broker);
+    renderer.asking.push_back(visitor.link->id);
     renderer.seconds += std::exchange(visitor.picture->broker_seconds, 0.0);
     visitor.picture->at_work = true;
   }
-  return !renderer.brokers.empty();
+  return brokers;
 }
 
-void trace_samples(const Show& show, Renderer& renderer) {
+void trace_samples(const Show& show, std::span<Broker* const> brokers, Renderer& renderer) {
   std::mutex guard;
   double began = seconds_now();
-  renderer.traced = trace_waiting(renderer.brokers, *show.stage.world, show.stage.lights,
+  renderer.traced = trace_waiting(brokers, *show.stage.world, show.stage.lights,
                                   show.cast.pose_number, began + renderer.seconds, guard);
   renderer.traced_seconds = seconds_now() - began;
 }
@@ -49,17 +50,13 @@ void finish_samples(Show& show) {
   if (renderer.traced > 0 && renderer.traced_seconds > 0)
     smooth(show.drawing->samples_per_second,
            float(double(renderer.traced) / renderer.traced_seconds));
-  for (Visitor& visitor : show.visits.visitors) {
-    auto found =
-        std::find(renderer.brokers.begin(), renderer.brokers.end(), &visitor.picture->broker);
-    if (found == renderer.brokers.end()) continue;
-    smooth(visitor.times.trace,
-           float(1000 * renderer.traced_seconds / double(renderer.brokers.size())));
+  const double each = renderer.traced_seconds / double(renderer.asking.size());
+  for (uint64_t id : std::exchange(renderer.asking, {})) {
+    Visitor& visitor = visitor_of(show.visits, id);
+    smooth(visitor.times.trace, float(1000 * each));
     visitor.picture->at_work = false;
-    visitor.picture->served +=
-        renderer.traced_seconds / double(renderer.brokers.size()) * charge_weight(show, visitor);
+    visitor.picture->served += each * charge_weight(show, visitor);
   }
-  renderer.brokers.clear();
 }
 
 namespace {
@@ -171,7 +168,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   }
   cache.attend();
   int most_asked = int(more_asked * float(job.samples));
-  bool late = !job.still && may_be_late(show, cache, technique, most_asked);
+  bool late = !is_still(job) && may_be_late(show, cache, technique, most_asked);
   int asked = late ? most_asked : job.samples;
   work.ahead.clear();
   if (job.ahead != job.view && !technique.begin_pass)
@@ -230,8 +227,7 @@ void remember_traced(const Show& show, const PictureJob& job, const Technique& t
   picture.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for the samples only when it is kept for
   // long.
-  bool kept_long = !job.passing && picture.cache.is_still();
-  if (!job.still || !(job.learns || kept_long)) return;
+  if (!is_still(job) || !(job.learns || picture.cache.is_still())) return;
   picture.compositor.follow_changes(picture.cache);
   picture.compositor.add_samples(job.view, work.requests, work.samples);
   picture.costs.kept_samples = mean_count(picture.compositor.samples());

@@ -6,11 +6,11 @@
 
 namespace wellspring::show {
 
-// Begins a turn, by the tick, while the renderer is idle. Returns whether there is anything to
-// trace.
-bool request_samples(Show& show);
-// Traces, on the renderer.
-void trace_samples(const Show& show, Renderer& renderer);
+// Begins a turn, by the tick, while the renderer is idle. Returns the brokers whose requests are to
+// be traced.
+std::vector<Broker*> request_samples(Show& show);
+// Traces them, on the renderer.
+void trace_samples(const Show& show, std::span<Broker* const> brokers, Renderer& renderer);
 // Ends the turn, by the tick, when tracing is done.
 void finish_samples(Show& show);
 

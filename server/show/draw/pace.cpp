@@ -76,13 +76,13 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.same_view = picture.job.view == place.last_view;
   // The renderer brings the picture that it draws to the present light.
   state.other_light =
-      show.drawing->renderer.drawn != &visitor &&
+      show.drawing->renderer.drawn != visitor.link->id &&
       (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour);
   state.sees_moving = state.welcomed && sees_moving(show, visitor, place.last_view);
-  state.drew_moving = picture.job.moving;
+  state.drew_moving = picture.job.sees_moving;
   state.unshown = picture.unshown;
   state.backdrop = picture.backdrop;
-  state.in_pass = show.drawing->pass.visitor == &visitor;
+  state.in_pass = show.drawing->pass.visitor == visitor.link->id;
   state.came_at = visitor.came_at;
   state.drawn_at = picture.drawn_at;
   state.posed_at = picture.posed_at;
@@ -171,7 +171,7 @@ double picture_rate(const Show& show, const Visitor& visitor) {
     rate = std::min(rate, sees_motion(show, visitor, visitor.place.last_view) ? still_rate
                           : rests(show, visitor)                              ? resting_rate
                                                                               : settling_rate);
-  } else if (show.settings.background) {
+  } else {
     // All get the same rate, whosever warps cost most.
     if (double seconds = showing_seconds(show); seconds > 0)
       rate = std::min(rate, warping_share / seconds);
@@ -196,14 +196,12 @@ double watching_rate(const Show& show, const Visitor& visitor) {
 double drawing_rate(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = *visitor.picture;
   double rate = picture_rate(show, visitor);
-  if (!stands(show, visitor))
-    return show.settings.background ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
-                                    : rate;
+  if (!stands(show, visitor)) return std::min(rate, 1 / plan_next_keyframe(show, visitor).period);
   if (rests(show, visitor)) rate = std::min(rate, watching_rate(show, visitor));
   if (picture.backdrop) rate = std::min(rate, backdrop_rate);
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.drawing->pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
-  first &= picture.backdrop || !picture.job.moving;
+  first &= picture.backdrop || !picture.job.sees_moving;
   return first ? std::min(rate, picture.backdrop ? learning_backdrop_rate : learning_rate) : rate;
 }
 
@@ -272,15 +270,14 @@ RendererState renderer_state(const Show& show) {
   const Renderer& renderer = show.drawing->renderer;
   RendererState state;
   state.idle = renderer.idle();
-  state.background = show.settings.background;
   int index = 0;
   for (const Visitor& visitor : show.visits.visitors) {
-    if (&visitor == renderer.drawn) state.drawn = index;
+    if (visitor.link->id == renderer.drawn) state.drawn = index;
     index++;
   }
   state.traces = renderer.step == DrawingStep::trace;
   state.can_reconstruct = show.drawing->pass.denoiser != nullptr;
-  state.in_pass = show.drawing->pass.visitor != nullptr;
+  state.in_pass = show.drawing->pass.visitor != 0;
   state.has_skin = !show.stage.skin.places.empty();
   state.skin_at = renderer.skin.time;
   state.skin_interval = renderer.skin.interval;

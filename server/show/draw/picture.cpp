@@ -37,7 +37,7 @@ bool shows_points(const Show& show) { return show.settings.display == Display::p
 // Returns whether moving things are drawn by themselves: if they are little of the picture, as what
 // they cover is kept.
 bool draws_backdrop(const Show& show, const PictureJob& job) {
-  if (!in_steps(job) || !job.moving || job.passing || shows_points(show)) return false;
+  if (!is_still(job) || !job.sees_moving || shows_points(show)) return false;
   if (!show.stage.visibility->rasterises(job.view)) return false;
   if (!job.dynamic.empty()) return true;
   PictureWindow window = moving_window(*show.stage.world, job.view);
@@ -48,7 +48,7 @@ bool draws_backdrop(const Show& show, const PictureJob& job) {
 // later.
 void light_dynamically(Show& show, const PictureJob& job, const View& view, Visitor& visitor) {
   DynamicImage& image = show.drawing->renderer.work.dynamic;
-  const bool any = !job.dynamic.empty() && job.passing;
+  const bool any = !job.dynamic.empty() && !is_still(job);
   if (any)
     compute_dynamic_light(*show.stage.world, show.stage.lights, *show.stage.visibility, view,
                           job.dynamic, dynamic_splat_settings(), image);
@@ -100,22 +100,21 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   double began = seconds_now();
   const double cores_began = process_seconds_now();
   remember_traced(show, job, technique, work, visitor);
-  if (job.samples_only) {
+  if (job.kind == PictureKind::samples) {
     cache.end_frame();
     return DrawingStep::done;
   }
   const Tonemap curve{show.stage.exhibit.exposure};
   costs.backdrop = draws_backdrop(show, job);
   light_dynamically(show, job, job.view, visitor);
-  const bool points = shows_points(show), passing = job.passing && !points;
+  const bool points = shows_points(show), passing = !is_still(job) && !points;
   if (points) paint_points(cache, job.view, work.frame);
   else if (passing)
-    compositor.draw(cache, job.view, *show.stage.visibility, curve, work.picture,
-                    job.keep ? &work.depth : nullptr);
+    compositor.draw(cache, job.view, *show.stage.visibility, curve, work.picture, &work.depth);
   else
     compositor.draw_still(cache, job.view, *show.stage.visibility, work.frame,
                           costs.backdrop ? StillShows::backdrop : StillShows::all);
-  if (job.reconstruct) {
+  if (job.kind == PictureKind::reconstruction) {
     std::swap(work.frame, show.drawing->pass.frame);
     work.guided = 0;
     costs.guide_seconds = seconds_now() - began;
@@ -124,15 +123,14 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   double painted = seconds_now();
   if (!passing) tonemap(work.frame, curve, work.picture);
   work.seen = job.note_seen ? note_seen(job, work.picture, cache) : nullptr;
-  if (job.keep)
-    make_keyframe(job.view, work.picture, passing ? work.depth : work.frame.depth, work.keyframe);
+  make_keyframe(job.view, work.picture, passing ? work.depth : work.frame.depth, work.keyframe);
   double finished = seconds_now();
 
   costs.core_seconds += process_seconds_now() - cores_began;
   costs.drawing = points ? 0 : compositor.drawing_ms();
   costs.display += float(1000 * (painted - began)) - costs.drawing;
   costs.tonemap = float(1000 * (finished - painted));
-  if (job.passing)
+  if (!is_still(job))
     costs.light = std::exchange(costs.display, 0.0f) + std::exchange(costs.tonemap, 0.0f);
   return DrawingStep::done;
 }
@@ -175,11 +173,6 @@ DrawingStep draw_step(Show& show, const PictureJob& job, DrawingStep step, Visit
   return step;
 }
 
-void draw_picture(Show& show, const PictureJob& job, Visitor& visitor) {
-  for (DrawingStep step = DrawingStep::plan; step != DrawingStep::done;)
-    step = draw_step(show, job, step, visitor);
-}
-
 // Frees memory that came with somebody else's larger picture.
 static void fit_memory(VisitorPicture& picture) {
   auto fit = [](auto& v) {
@@ -187,7 +180,6 @@ static void fit_memory(VisitorPicture& picture) {
   };
   for (Keyframe* keyframe : {&picture.keyframe, &picture.around.keyframe})
     fit(keyframe->color), fit(keyframe->disparity), fit(keyframe->farthest), fit(keyframe->nearest);
-  fit(picture.image.rgb);
 }
 
 void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
@@ -207,31 +199,32 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
     return;
   }
   if (!costs.late) smooth(times.trace, costs.trace);
-  if (job.samples_only || job.reconstruct) {
+  if (job.kind == PictureKind::samples || job.kind == PictureKind::reconstruction) {
     picture.drawn_at = job.time;
     picture.job.settled = job.settled;
-    if (job.reconstruct) begin_pass(show, job, visitor);
+    if (job.kind == PictureKind::reconstruction) begin_pass(show, job, visitor);
     show.drawing->renderer.work_bytes =
         memory_bytes(show.drawing->renderer.work) + memory_bytes(show.drawing->pass);
     return;
   }
   if (job.scale != picture.job.scale)
     carry_times(keyframe_cost(job.scale) / keyframe_cost(picture.job.scale), times);
-  const float share = job.still ? 0.1f : soon;
-  if (job.passing) {
+  const bool still = is_still(job);
+  const float share = still ? 0.1f : soon;
+  if (!still) {
     smooth(times.light, costs.light, share);
   } else {
     smooth(times.display, costs.display);
     smooth(times.tonemap, costs.tonemap);
   }
   smooth(times.drawing, costs.drawing, share);
-  if (!job.still) smooth(times.whole, float(1000 * costs.seconds), share);
+  if (!still) smooth(times.whole, float(1000 * costs.seconds), share);
   double interval = job.time - picture.drawn_at;
   if (interval > 0 && interval < 1) {
     smooth(picture.drawn_fps, float(1 / interval));
-    if (!job.still) smooth(times.interval, float(1000 * interval), share);
+    if (!still) smooth(times.interval, float(1000 * interval), share);
   }
-  if (!job.still)
+  if (!still)
     show.visits.capacity->note_drawn(double(visitor.wants.width) * visitor.wants.height,
                                      costs.core_seconds / keyframe_cost(job.scale));
   picture.drawn_at = job.time;
@@ -241,17 +234,15 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   picture.stats = picture.cache.stats();
   picture.cache_bytes = picture.cache.memory_bytes() + picture.compositor.memory_bytes();
   if (seen) visitor.looks.seen = seen, visitor.looks.seen_at = job.time;
-  // Otherwise its keyframe has the colours.
-  if (!job.keep) std::swap(show.drawing->renderer.work.picture, picture.image);
-  if (std::exchange(picture.fades_next, false) && job.keep && !picture.keyframe.empty() &&
+  if (std::exchange(picture.fades_next, false) && !picture.keyframe.empty() &&
       picture.keyframe.view == show.drawing->renderer.work.keyframe.view)
     begin_fade(picture.keyframe, show.time, picture.fade);
   std::swap(show.drawing->renderer.work.keyframe, picture.keyframe);
   picture.around.drawn = false;
   picture.relief = visitor.wants.local ? uncovered_a_metre(picture.keyframe) : 0;
-  if (job.passing || job.dynamic.empty()) picture.surfaces = {}, picture.settled = {};
-  bool settles = job.still && !job.passing;  // samples of its pixels take that memory
-  if (settles || job.camera_cuts != picture.around.camera_cuts) picture.around = {};
+  if (!still || job.dynamic.empty()) picture.surfaces = {}, picture.settled = {};
+  // At rest, samples of its pixels take that memory.
+  if (still || job.camera_cuts != picture.around.camera_cuts) picture.around = {};
   fit_memory(picture);
   picture.memory_bytes = picture_memory(visitor);
   show.drawing->renderer.work_bytes =

@@ -349,20 +349,20 @@ static void send_layer(Show& show, Visitor& visitor) {
 static void present_keyframe(Show& show, Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
   picture.fade = {};  // the page passes from one picture to the next
-  const bool stays = picture.job.still && picture.job.keep && !picture.keyframe.empty();
+  const bool stays = is_still(picture.job) && !picture.keyframe.empty();
   visitor.shown.sent_layer = stays && takes_layer(picture, visitor.shown);
   if (visitor.shown.sent_layer) return send_layer(show, visitor);
   if (!picture.unshown && std::exchange(picture.around.unsent, false))
     return send_surroundings(show, visitor);
   if (!picture.unshown) return refine(show, visitor);
-  if (show.drawing->renderer.posed == &visitor) return;
+  if (show.drawing->renderer.posed == visitor.link->id) return;
   const PictureJob& job = picture.job;
   const View& view = job.view;
   copy_colors(picture.keyframe, {0, 0, view.width, view.height}, visitor.shown.encoder->image);
   if (!picture.moving.empty()) lay_over(picture.moving, visitor.shown.encoder->image);
-  const bool stood = job.still && view == visitor.place.last_view;
-  visitor.shown.has_layer &= job.still;
-  send(show, visitor, view, stood ? visitor.place.seq : job.seq, job.still);
+  const bool stood = is_still(job) && view == visitor.place.last_view;
+  visitor.shown.has_layer &= is_still(job);
+  send(show, visitor, view, stood ? visitor.place.seq : job.seq, is_still(job));
 }
 
 void present(Show& show, Visitor& visitor) {
@@ -370,19 +370,17 @@ void present(Show& show, Visitor& visitor) {
   VisitorDelivery& shown = visitor.shown;
   const PictureJob& job = picture.job;
   if (job.camera_cuts != visitor.place.camera_cuts || picture.drawn_at < 0) return;
-  // The tick does not wait for a picture that is still being encoded: others would wait, too. If
-  // the tick draws itself, they do anyway.
-  if (!show.settings.background) shown.encoder->task.wait();
+  // The tick does not wait for a picture that is still being encoded: others would wait, too.
   if (!may_take(show, visitor) || shown.encoder->task.busy()) return;
   const View view = visitor.place.last_view;
-  bool stood = job.still && job.view == view;
-  if (shown.lost && job.keep && (stood || visitor.wants.local)) picture.unshown = true;
+  bool stood = is_still(job) && job.view == view;
+  if (shown.lost && (stood || visitor.wants.local)) picture.unshown = true;
   if (visitor.wants.local) {
     note_encoded(show, visitor);
     return present_keyframe(show, visitor);
   }
   bool fades = !picture.fade.from.rgb.empty() && show.time - shown.sent_at >= 1 / fade_rate;
-  if (!picture.unshown && !fades && (!job.keep || view == shown.view)) {
+  if (!picture.unshown && !fades && view == shown.view) {
     refine(show, visitor);
     return;
   }
@@ -396,17 +394,16 @@ void present(Show& show, Visitor& visitor) {
   note_encoded(show, visitor);
   const float newer = fade_share(picture.fade, view, show.time);
   if ((picture.unshown || fades) && job.view == view) {  // drawn for this very view
-    if (job.keep) copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);
-    else std::swap(encoder.image, picture.image);
+    copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);
     if (newer < 1) mix_fade(picture.fade, newer, encoder.image);
     else picture.fade = {};
     if (!picture.moving.empty()) lay_over(picture.moving, encoder.image);
-    send(show, visitor, view, visitor.place.seq, job.still && newer == 1);
+    send(show, visitor, view, visitor.place.seq, is_still(job) && newer == 1);
     return;
   }
   picture.fade = {};
   // the renderer reads the keyframe, and has soon done so
-  if (show.drawing->renderer.posed == &visitor) return;
+  if (show.drawing->renderer.posed == visitor.link->id) return;
   merge_moving(picture);
   if (warp(show, visitor, view)) {
     send(show, visitor, view, visitor.place.seq, false);

@@ -185,12 +185,7 @@ void steer(Show& show) {
   if (!next) return;
   analysis.visitor = next->link->id;
   next->looks.analysed_at = show.time;
-  if (show.settings.background) {
-    analysis.worker.run([&analysis] { analysis.cores.execute([&] { analyse(analysis); }); });
-  } else {
-    analyse(analysis);
-    take_analysis(show);
-  }
+  analysis.worker.run([&analysis] { analysis.cores.execute([&] { analyse(analysis); }); });
 }
 
 std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,

@@ -26,7 +26,7 @@ constexpr double slice = 0.02, least_step = 0.004;  // seconds
 void begin_pass(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
   StillPass& pass = show.drawing->pass;
-  pass.visitor = &visitor;
+  pass.visitor = visitor.link->id;
   pass.job = job;
   pass.backdrop = picture.costs.backdrop;
   pass.step = StillPass::Step::compute;
@@ -39,14 +39,14 @@ void begin_pass(Show& show, const PictureJob& job, Visitor& visitor) {
   picture.rest.passed_samples = picture.rest.samples;
 }
 
-void go_on_with_pass(Show& show) {
+void go_on_with_pass(Show& show, Visitor& visitor) {
   StillPass& pass = show.drawing->pass;
   double began = seconds_now();
   if (pass.step == StillPass::Step::compute) {
     double seconds = std::clamp(show.drawing->renderer.until_moving, least_step, slice);
     if (!pass.denoiser->advance(seconds, &pass.given_up)) pass.step = StillPass::Step::finish;
   } else if (pass.step == StillPass::Step::finish) {
-    finish_reconstruction(pass.visitor->picture->compositor.samples(), *pass.denoiser, pass.work,
+    finish_reconstruction(visitor.picture->compositor.samples(), *pass.denoiser, pass.work,
                           pass.frame);
     tonemap(pass.frame, Tonemap{show.stage.exhibit.exposure}, pass.picture);
     make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
@@ -57,11 +57,11 @@ void go_on_with_pass(Show& show) {
 
 void take_pass(Show& show) {
   StillPass& pass = show.drawing->pass;
-  Visitor& visitor = *pass.visitor;
+  Visitor& visitor = visitor_of(show.visits, pass.visitor);
   pass.at_work = false;
   if (pass.step != StillPass::Step::compute) visitor.picture->at_work = false;
   if (pass.given_up) {
-    pass.visitor = nullptr;
+    pass.visitor = 0;
     show.totals.given_up++;
     return;
   }
@@ -79,15 +79,15 @@ void take_pass(Show& show) {
   log::debug("visitor {}: reconstruction took {:.0f} ms", visitor.link->id, 1000 * pass.seconds);
   show.totals.reconstructed++;
   show.totals.reconstruction_ms = float(1000 * pass.seconds);
-  pass.visitor = nullptr;
+  pass.visitor = 0;
 }
 
 void watch_pass(Show& show) {
   StillPass& pass = show.drawing->pass;
-  if (!pass.visitor) return;
-  if (is_outdated(show, pass.job, *pass.visitor)) pass.given_up = true;
+  if (pass.visitor == 0) return;
+  if (is_outdated(show, pass.job, visitor_of(show.visits, pass.visitor))) pass.given_up = true;
   if (pass.given_up && !pass.at_work) {
-    pass.visitor = nullptr;
+    pass.visitor = 0;
     show.totals.given_up++;
   }
 }

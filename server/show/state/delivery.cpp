@@ -13,7 +13,8 @@ static constexpr double most_keyframes = 10, most_layers = 25;
 FlowWishes flow_wishes(const Show& show, const Visitor& visitor) {
   const PictureWishes& wants = visitor.wants;
   double rate = wants.fps > 0 ? double(wants.fps) : double(show.settings.fps);
-  if (wants.local) rate = std::min(rate, visitor.picture->job.still ? most_layers : most_keyframes);
+  if (wants.local)
+    rate = std::min(rate, is_still(visitor.picture->job) ? most_layers : most_keyframes);
   return {wants.best_quality, rate, double(wants.width) * wants.height, wants.bandwidth};
 }
 

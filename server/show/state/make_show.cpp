@@ -88,7 +88,7 @@ void begin_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
       show.stage.exhibit.lamps.empty() ? show.stage.lights.known : show.stage.switches.all.known;
   if (maps == baker.known) baker.shown_error = maps->error;
   use_maps(show, std::move(maps));
-  if (settings.cache.empty() || !settings.bakes || !settings.background) return;
+  if (settings.cache.empty() || !settings.bakes) return;
   baker.file = settings.cache + "/" + show.stage.exhibit.id;
   baker.source = show.stage.exhibit.folder;
   baker.places = eye_places(show.stage.exhibit);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/show.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,14 @@ ExhibitStage::~ExhibitStage() = default;
 
 Show::Show() : drawing(std::make_unique<ShowDrawing>()) {}
 Show::~Show() = default;
+
+const Visitor& visitor_of(const ShowVisits& visits, uint64_t id) {
+  return *std::ranges::find(visits.visitors, id, [](const Visitor& one) { return one.link->id; });
+}
+
+Visitor& visitor_of(ShowVisits& visits, uint64_t id) {
+  return const_cast<Visitor&>(visitor_of(std::as_const(visits), id));
+}
 
 const Visitor* leader_of(const Show& show, const Visitor& visitor) {
   const VisitorGroup& group = visitor.group;

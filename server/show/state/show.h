@@ -76,6 +76,9 @@ struct Show {
   std::unique_ptr<ShowDrawing> drawing;  // never null; reads much of the above: ends before it
 };
 
+// Return the visitor of that Link::id, which is one of them.
+Visitor& visitor_of(ShowVisits& visits, uint64_t id);
+const Visitor& visitor_of(const ShowVisits& visits, uint64_t id);
 // Returns the visitor whose place, storyteller and lamps this one follows at the moment; null:
 // nobody's.
 const Visitor* leader_of(const Show& show, const Visitor& visitor);

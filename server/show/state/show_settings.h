@@ -25,7 +25,6 @@ struct ShowSettings {
   std::string still_technique =
       "path";  // used while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}, .splat = {}};
-  bool background = true;  // pictures are drawn while the show goes on, and warped meanwhile
   // Folder of the networks' weights (denoise/denoise.h); empty: pictures at rest are only drawn.
   std::string weights;
   // Folder for what is found once about an exhibit and kept for the next start; empty: none.

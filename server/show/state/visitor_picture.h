@@ -62,7 +62,6 @@ struct VisitorPicture {
   CacheStats stats;
   double drawn_at = -1e9;  // show time of its job
   float drawn_fps = 0;
-  Image8 image;       // picture, until it is shown
   Keyframe keyframe;  // keyframe from which pictures are warped until the next
   float relief = 0;   // uncovered_a_metre() of the keyframe
   Surroundings around;

@@ -32,7 +32,7 @@ struct Crowd : testing::Test, ShowStage {
     add_storyteller(exhibit, "otto", {-2, 0, 2});
     add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
     exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
-    ShowSettings settings = settings_for("direct", false, 1);
+    ShowSettings settings = settings_for("direct", 1);
     settings.idle_after = 0;  // the quiet one stays
     tick_seconds = 0.25;
     begin(std::move(exhibit), settings);

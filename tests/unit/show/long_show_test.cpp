@@ -15,7 +15,7 @@ namespace {
 
 struct House : ShowStage {
   explicit House(int visitors) {
-    begin(make_tiny_exhibit(), settings_for("direct", false, 50));
+    begin(make_tiny_exhibit(), settings_for("direct", 50));
     for (int i = 0; i < visitors; i++) join(48, 32);
   }
 };

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/state/drawing.h"
 #include "unit/show/show_stage.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "frame/jpeg.h"
+#include "show/state/drawing.h"
+#include "show/draw/picture.h"
 #include "show/state/make_show.h"
 #include "show/tick.h"
 
@@ -16,11 +17,10 @@ namespace wellspring::test {
 
 using nlohmann::json;
 
-ShowSettings settings_for(const std::string& technique, bool background, float fps) {
+ShowSettings settings_for(const std::string& technique, float fps) {
   ShowSettings settings;
   settings.technique = technique;
   settings.still_technique = technique == "gather" ? "path" : technique;
-  settings.background = background;
   settings.fps = fps;
   return settings;
 }
@@ -82,6 +82,11 @@ void ShowStage::run(double seconds) { steps(int(std::ceil(seconds / tick_seconds
 void ShowStage::order(const std::string& text, size_t visitor) {
   say(text, visitor);
   run(0.1);
+}
+
+void ShowStage::draw_all(const PictureJob& job, Visitor& visitor) {
+  for (DrawingStep step = DrawingStep::plan; step != DrawingStep::done;)
+    step = draw_step(*show, job, step, visitor);
 }
 
 void ShowStage::take_sent() {

@@ -17,7 +17,6 @@ namespace {
 struct ShowTest : testing::Test, ShowStage {
   void begin(dvec3 origin = dvec3(0), ShowSettings settings = {}) {
     settings.fps = 50;
-    settings.background = false;
     ShowStage::begin(make_tiny_exhibit(origin), settings);
     join(96, 64);
   }

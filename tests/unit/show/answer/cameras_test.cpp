@@ -19,7 +19,7 @@ struct Cameras : testing::Test, ShowStage {
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
     add_storyteller(exhibit, "anna", {-2, 0, 1});
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
   }
   std::shared_ptr<Link> connect_camera(const std::string& name) {
     auto link = std::make_shared<Link>(next_link++, LinkKind::eye, "test");

@@ -27,7 +27,7 @@ struct ComeBack : testing::Test, ShowStage {
     add_storyteller(exhibit, "otto", {-2, 0, 2});
     add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
     exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
-    ShowSettings settings = settings_for("direct", false, 10);
+    ShowSettings settings = settings_for("direct", 10);
     settings.cache = folder.path;
     settings.bakes = false;
     tick_seconds = 0.1;

@@ -45,7 +45,7 @@ struct GoTest : testing::Test, ShowStage {
     return exhibit;
   }
   void begin(Exhibit exhibit) {
-    ShowSettings settings = settings_for("direct", false, 5);
+    ShowSettings settings = settings_for("direct", 5);
     ShowStage::begin(std::move(exhibit), settings);
     join(96, 64);
     run(0.3);

@@ -20,7 +20,7 @@ struct Groups : testing::Test, ShowStage {
     add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
     exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
     tick_seconds = 0.04;
-    begin(std::move(exhibit), settings_for("direct", false, 25));
+    begin(std::move(exhibit), settings_for("direct", 25));
     for (int i = 0; i < 3; i++) join(32, 32);  // a leader, a follower, a stranger
     run(0.2);
     order(R"({"type":"group","action":"lead"})", 0);

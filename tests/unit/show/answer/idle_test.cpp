@@ -17,7 +17,7 @@ struct Idle : testing::Test, ShowStage {
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
     add_storyteller(exhibit, "anna", {-2, 0, 1});
-    ShowSettings settings = settings_for("direct", true, 10);
+    ShowSettings settings = settings_for("direct", 10);
     settings.idle_after = 20, settings.idle_answer = 5, settings.hidden_after = 4;
     tick_seconds = 0.1;
     begin(std::move(exhibit), settings);

@@ -31,7 +31,7 @@ struct MineAndOurs : testing::Test, ShowStage {
   void begin(bool shared) {
     browsers.clear();
     tick_seconds = 0.04;
-    ShowStage::begin(make_shared_room(shared), settings_for("direct", false, 25));
+    ShowStage::begin(make_shared_room(shared), settings_for("direct", 25));
     for (int i = 0; i < 2; i++) join(32, 32);
     run(0.5);
   }

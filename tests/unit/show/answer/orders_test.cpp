@@ -28,10 +28,10 @@ Exhibit make_room() {
 }
 
 struct Orders : testing::Test, ShowStage {
-  void SetUp() override { begin(false); }
-  void begin(bool background) {
+  void SetUp() override { begin(); }
+  void begin() {
     browsers.clear();
-    ShowStage::begin(make_room(), settings_for("direct", background, 25));
+    ShowStage::begin(make_room(), settings_for("direct", 25));
     for (int i = 0; i < 2; i++) join(32, 32);
     run(0.5);
   }
@@ -169,7 +169,7 @@ TEST_F(Orders, WhoeverOrdersTooMuchDoesNotKeepOthersFromBeingDrawn) {
       },
   };
   for (const auto& storm : storms) {
-    begin(true);
+    begin();
     const double began = other().picture->drawn_at;
     int drawn = 0, ticks = 0;
     for (double last = began; drawn < 10 && ticks < 20000; ticks++) {

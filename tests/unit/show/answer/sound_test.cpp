@@ -95,7 +95,7 @@ struct SoundTest : testing::Test, ShowStage {
     exhibit.storytellers[1].voice.variant = "m2";
     tick_seconds = 0.04;
     exhibit.shared_storyteller = true;
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
     show->cast.speech.find = [this](const SpeechRequest& r) {
       return kept.contains(r.text) ? kept[r.text] : nullptr;
     };

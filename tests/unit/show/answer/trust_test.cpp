@@ -15,7 +15,7 @@ const std::string any = "a token for any kiosk", hall = "the token of the hall";
 
 struct Trust : testing::Test, ShowStage {
   void SetUp() override {
-    ShowSettings settings = settings_for("direct", false);
+    ShowSettings settings = settings_for("direct");
     settings.kiosk_tokens = {{"", any}, {"hall", hall}};
     begin(make_tiny_exhibit(), settings);
   }

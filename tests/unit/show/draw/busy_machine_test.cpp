@@ -45,7 +45,7 @@ class BusyMachine {
 TEST(BusyMachine, PicturesCostNoMoreThanTheProcessorTimeOfAll) {
   constexpr int width = 480, height = 270, pictures = 40, guessed = 30;
   ShowStage stage;
-  stage.begin(make_tiny_exhibit(), settings_for("direct", false));
+  stage.begin(make_tiny_exhibit(), settings_for("direct"));
   stage.join(width, height);
   stage.step();
   const auto known = stage.show->totals.drawn;

@@ -25,8 +25,8 @@ ChangingLight torch() {
 
 struct DynamicPictures : testing::Test, ShowStage {
   test::Folder folder;
-  void begin_with(std::vector<ChangingLight> lights, bool background = true) {
-    begin_with(std::move(lights), settings_for("direct", background, 50));
+  void begin_with(std::vector<ChangingLight> lights) {
+    begin_with(std::move(lights), settings_for("direct", 50));
   }
   void begin_with(std::vector<ChangingLight> lights, const ShowSettings& settings) {
     Exhibit exhibit = make_tiny_exhibit();
@@ -114,7 +114,7 @@ TEST_F(DynamicPictures, AreLitOnTheWay) {
 
 // The maps' own light, found at the start, is off by some codes.
 TEST_F(DynamicPictures, AreLitOverIlluminationMaps) {
-  ShowSettings settings = settings_for("gather", true, 50);
+  ShowSettings settings = settings_for("gather", 50);
   settings.cache = folder.path.string();
   begin_with({torch()}, settings);
   ASSERT_TRUE(show->stage.lights.maps);
@@ -124,12 +124,6 @@ TEST_F(DynamicPictures, AreLitOverIlluminationMaps) {
   run(6);
   EXPECT_TRUE(last_header().flags & packet_still);
   expect_lit(9);
-}
-
-TEST_F(DynamicPictures, AreLitWithoutBackground) {
-  begin_with({torch()}, false);
-  run(3);
-  expect_lit(6);
 }
 
 // When it goes out the picture is again what stands still.

@@ -23,7 +23,7 @@ struct LatePictures : testing::Test, ShowStage {
   std::promise<void> held;
 
   void begin(int visitors = 1) {
-    ShowStage::begin(make_tiny_exhibit(), settings_for("direct", true, 50));
+    ShowStage::begin(make_tiny_exhibit(), settings_for("direct", 50));
     for (int i = 0; i < visitors; i++) join(96, 64);
   }
   // Makes the renderer busy from now on, as if a picture took long.
@@ -190,9 +190,9 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   hold_renderer();
   Visitor& one = visitor();
   PictureJob job = make_picture_job(*show, one, 1);
-  ASSERT_TRUE(job.still);
+  ASSERT_TRUE(is_still(job));
   EXPECT_FALSE(is_outdated(*show, job, one));
-  show->drawing->renderer.drawn = &one;  // as if the renderer were at work on it
+  show->drawing->renderer.drawn = one.link->id;  // as if the renderer were at work on it
   show->drawing->renderer.job = job;
   one.picture->at_work = true;
   step_on();
@@ -206,7 +206,7 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   Keyframe keyframe = one.picture->keyframe;
   uint64_t drawn = show->totals.drawn;
   release_renderer();
-  draw_picture(*show, job, one);
+  draw_all(job, one);
   EXPECT_TRUE(one.picture->costs.given_up);
   EXPECT_EQ(one.picture->costs.samples, 0u);
   turn(0.02);
@@ -217,7 +217,7 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   EXPECT_EQ(last_header().seq, seq);
   steps(2);
   EXPECT_EQ(show->totals.drawn, drawn + 1);  // the next, after what lies around the visitor now
-  EXPECT_FALSE(one.picture->job.still);
+  EXPECT_FALSE(is_still(one.picture->job));
   EXPECT_FALSE(one.picture->costs.given_up);
 }
 
@@ -225,7 +225,7 @@ TEST_F(LatePictures, AreOutdatedByCameraCutsAndByMotionAfterRest) {
   begin();
   Visitor unseen;
   PictureJob job;
-  job.still = true;
+  job.kind = PictureKind::still;
   job.expected = unseen.place.last_view;
   unseen.place.last_view.position.x += 1;
   EXPECT_FALSE(is_outdated(*show, job, unseen));  // there is nothing else to show
@@ -234,7 +234,7 @@ TEST_F(LatePictures, AreOutdatedByCameraCutsAndByMotionAfterRest) {
   unseen.picture->job.camera_cuts = job.camera_cuts = unseen.place.camera_cuts;
   unseen.picture->drawn_at = 1;
   EXPECT_TRUE(is_outdated(*show, job, unseen));
-  job.still = false;  // pictures of who moves are for views to come
+  job.kind = PictureKind::moving;  // pictures of who moves are for views to come
   EXPECT_FALSE(is_outdated(*show, job, unseen));
   unseen.left = true;
   EXPECT_TRUE(is_outdated(*show, job, unseen));
@@ -307,7 +307,7 @@ TEST_F(LatePictures, VisitorsLeaveWhileTheirsIsDrawn) {
     steps(3);
     EXPECT_EQ(show->visits.visitors.size(), size_t(i));
   }
-  EXPECT_EQ(show->drawing->renderer.drawn, nullptr);
+  EXPECT_EQ(show->drawing->renderer.drawn, 0u);
 }
 
 // Whenever a picture or its samples are finished, also in the midst of a tick, somebody gets the
@@ -324,7 +324,7 @@ TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
     auto at_work = std::count_if(show->visits.visitors.begin(), show->visits.visitors.end(),
                                  [](auto& one) { return one.picture->at_work; });
     ASSERT_EQ(size_t(at_work),
-              show->drawing->renderer.brokers.size() + (show->drawing->renderer.drawn ? 1 : 0))
+              show->drawing->renderer.asking.size() + (show->drawing->renderer.drawn ? 1 : 0))
         << "tick " << i;
   }
   step();
@@ -337,7 +337,7 @@ TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
   std::vector<int> drawn(3, 0);
   for (int i = 0; i < 120; i++) {
     step();
-    if (show->drawing->renderer.drawn) drawn[size_t(show->drawing->renderer.drawn->link->id - 1)]++;
+    if (show->drawing->renderer.drawn) drawn[size_t(show->drawing->renderer.drawn - 1)]++;
   }
   // The renderer's time is shared, not pictures: what one costs differs with the machine's load.
   for (int count : drawn) EXPECT_GT(count, 10);

@@ -35,10 +35,10 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
     for (Visitor& visitor : stage.show->visits.visitors) {
       const VisitorPicture& picture = *visitor.picture;
       most[k] = std::max(most[k], picture.memory_bytes);
-      if (k == 0 && !picture.job.still) walking = std::max(walking, picture.memory_bytes);
+      if (k == 0 && !is_still(picture.job)) walking = std::max(walking, picture.memory_bytes);
       if (k == 0) widest = std::max(widest, picture.keyframe.view.width);
       still[k] = pictures[k] >= 8;
-      if (!picture.job.passing && picture.job.tick != last[k]) pictures[k]++;
+      if (is_still(picture.job) && picture.job.tick != last[k]) pictures[k]++;
       last[k] = picture.job.tick;
       k++;
     }

@@ -124,7 +124,7 @@ TEST_F(Moving, OthersNeedNotWaitForLight) {
   size_t traced = show->drawing->renderer.work.traced;
   ASSERT_LT(traced, show->drawing->renderer.work.requests.size());
   join(64, 64);
-  ASSERT_TRUE(step_until([&] { return show->drawing->renderer.drawn != &visitor(); }, 8));
+  ASSERT_TRUE(step_until([&] { return show->drawing->renderer.drawn != visitor().link->id; }, 8));
   EXPECT_EQ(visitor().picture->costs.samples, traced);
   EXPECT_TRUE(step_until([&] { return show->visits.visitors.back().picture->drawn_at > 0; }, 8));
 }
@@ -135,7 +135,7 @@ TEST_F(Moving, WhoLeavesBetweenStepsIsForgotten) {
   ASSERT_TRUE(is_between_steps());
   browsers[0].link->mark_closed();
   EXPECT_TRUE(step_until([&] { return show->visits.visitors.empty(); }, 50));
-  EXPECT_EQ(show->drawing->renderer.drawn, nullptr);
+  EXPECT_EQ(show->drawing->renderer.drawn, 0u);
 }
 TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   ASSERT_TRUE(rested());
@@ -143,7 +143,7 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   vec3 here(-2, 1, 0.5f);
   EXPECT_GT(red_at(last_image(), here), 40);
   show->cast.teller.visible = false;
-  ASSERT_TRUE(step_until([&] { return !visitor().picture->job.moving; }));
+  ASSERT_TRUE(step_until([&] { return !visitor().picture->job.sees_moving; }));
   steps(30);
   EXPECT_LT(red_at(last_image(), here), 20);
   EXPECT_FALSE(visitor().picture->backdrop);
@@ -156,7 +156,7 @@ TEST_F(Moving, NoGhostStaysWhereSheStood) {
   show->cast.teller.visible = false;
   const uint64_t drawn = show->totals.drawn;
   ASSERT_TRUE(
-      step_until([&] { return show->totals.drawn > drawn && !visitor().picture->job.moving; }));
+      step_until([&] { return show->totals.drawn > drawn && !visitor().picture->job.sees_moving; }));
   const size_t sent = pictures().size();
   ASSERT_TRUE(step_until([&] { return pictures().size() > sent; }));
   const Image8 after = last_image();

@@ -34,7 +34,7 @@ TEST(Picture, IsRightForAnEyeInSolidGlassToo) {
   for (bool glass : {true, false}) {
     ShowStage stage;  // a visitor of the first viewpoint, after two seconds
     stage.tick_seconds = 0.05;
-    stage.begin(make_cubed(glass), settings_for("direct", false));
+    stage.begin(make_cubed(glass), settings_for("direct"));
     stage.join(160, 90);
     stage.run(2);
     const View& view = stage.visitor().place.last_view;

@@ -47,8 +47,8 @@ Exhibit make_cubes() {
 }
 
 struct Steering : testing::Test, ShowStage {
-  void begin(bool background = false, int width = 160, int height = 90) {
-    ShowSettings settings = settings_for("direct", background);
+  void begin(int width = 160, int height = 90) {
+    ShowSettings settings = settings_for("direct");
     settings.late_samples = false;
     browsers.clear(), seq = 0, now = 0;
     ShowStage::begin(make_cubes(), settings);
@@ -144,7 +144,7 @@ TEST_F(Steering, OnlyWhereAttentionIsWanted) {
 }
 
 TEST_F(Steering, RestsWhenThereIsNothingLeftToLearn) {
-  begin(false, 64, 48);
+  begin(64, 48);
   // Nothing but a wall.
   say(json{{"type", "camera"}, {"seq", 1}, {"position", {-2.5, 1.6, 2}}, {"yaw", pi / 2}}.dump());
   ASSERT_TRUE(step_until([&] { return rests(*show, visitor()); }, 4000));
@@ -165,7 +165,7 @@ TEST_F(Steering, RestsWhenThereIsNothingLeftToLearn) {
 }
 
 TEST_F(Steering, GoesOnBesideDrawing) {
-  begin(true);
+  begin();
   ASSERT_TRUE(step_until([&] { return visitor().picture->job.weights != nullptr; }));
   EXPECT_GT(show->totals.attention_analyses, 0u);
   point_at(right);

@@ -14,7 +14,7 @@ namespace {
 
 struct WholePass : testing::Test, ShowStage {
   void open() {
-    ShowSettings settings = settings_for("instant_radiosity", false);
+    ShowSettings settings = settings_for("instant_radiosity");
     begin(make_tiny_exhibit(), settings);
     join(96, 64);
     steps(3);
@@ -63,7 +63,7 @@ TEST_F(WholePass, ItsSamplesAreOfPixelsOfThePicturesLight) {
 
 // At rest its pictures go to what the same technique renders.
 TEST_F(WholePass, PicturesAtRestGetNearToTheTruth) {
-  ShowSettings settings = settings_for("instant_radiosity", false);
+  ShowSettings settings = settings_for("instant_radiosity");
   settings.still_technique = "instant_radiosity";
   begin(make_tiny_exhibit(), settings);
   join(96, 64);

@@ -29,7 +29,7 @@ struct DynamicLightsOfAShow : testing::Test, ShowStage {
     add_lamp({"hearth", {}, {}}, exhibit.scene);
     exhibit.lamps = {{"hearth", {{"en", "Hearth"}}}};
     exhibit.lights = std::move(lights);
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
     join(64, 48), join(64, 48);
     run(0.5);
   }

@@ -19,7 +19,7 @@ struct Hour : testing::Test, ShowStage {
     browsers.clear();
     Exhibit exhibit = make_tiny_exhibit();
     add_day(exhibit);
-    ShowSettings settings = settings_for(technique, false, 50);
+    ShowSettings settings = settings_for(technique, 50);
     settings.cache = folder.path;
     settings.bakes = false;
     ShowStage::begin(std::move(exhibit), settings);
@@ -135,7 +135,7 @@ TEST_F(Hour, GoesOnWithTheVisit) {
 }
 
 TEST_F(Hour, IsRefusedWhereThereIsNoDay) {
-  ShowStage::begin(make_tiny_exhibit(), settings_for("direct", false, 50));
+  ShowStage::begin(make_tiny_exhibit(), settings_for("direct", 50));
   join(64, 48);
   hour(9);
   run(0.2);

@@ -36,9 +36,8 @@ Exhibit make_lit_exhibit(bool on_at_first = true) {
 }
 
 struct Lamps : testing::Test, ShowStage {
-  void begin(Exhibit exhibit, int visitors, const std::string& technique = "gather",
-             bool background = false) {
-    ShowStage::begin(std::move(exhibit), settings_for(technique, background, 50));
+  void begin(Exhibit exhibit, int visitors, const std::string& technique = "gather") {
+    ShowStage::begin(std::move(exhibit), settings_for(technique, 50));
     for (int i = 0; i < visitors; i++) join(96, 64, i ? "de" : "en", i ? "kiosk" : "visitor");
   }
   void lamp(size_t visitor, const char* name, bool on) {
@@ -53,27 +52,24 @@ struct Lamps : testing::Test, ShowStage {
 };
 
 TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
-  for (bool background : {false, true}) {
-    browsers.clear();
-    begin(make_lit_exhibit(), 2, "gather", background);
-    run(1.5);
-    EXPECT_EQ(last("welcome")["lamps"],
-              json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true,"shared":true}])"));
-    EXPECT_EQ(last("welcome", 1)["lamps"][0]["title"], "Decke");
-    double lit[2] = {level(0), level(1)};
-    lamp(1, "ceiling", false);
-    step();
-    step();
-    for (size_t i : {0, 1})
-      EXPECT_EQ(last("state", i)["lamps"], json::parse(R"({"ceiling":false})")) << i;
-    run(0.5);
-    double dark[2] = {level(0), level(1)};
-    for (size_t i : {0, 1}) EXPECT_LT(dark[i], 0.6 * lit[i]) << i;
-    lamp(0, "ceiling", true);
-    run(1);
-    for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
-    EXPECT_EQ(make_report(*show).totals.lamps_switched, 2u);
-  }
+  begin(make_lit_exhibit(), 2);
+  run(1.5);
+  EXPECT_EQ(last("welcome")["lamps"],
+            json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true,"shared":true}])"));
+  EXPECT_EQ(last("welcome", 1)["lamps"][0]["title"], "Decke");
+  double lit[2] = {level(0), level(1)};
+  lamp(1, "ceiling", false);
+  step();
+  step();
+  for (size_t i : {0, 1})
+    EXPECT_EQ(last("state", i)["lamps"], json::parse(R"({"ceiling":false})")) << i;
+  run(0.5);
+  double dark[2] = {level(0), level(1)};
+  for (size_t i : {0, 1}) EXPECT_LT(dark[i], 0.6 * lit[i]) << i;
+  lamp(0, "ceiling", true);
+  run(1);
+  for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+  EXPECT_EQ(make_report(*show).totals.lamps_switched, 2u);
 }
 
 // The change of light is computed once for all caches that knew the same lamps, and kept until the
@@ -111,31 +107,28 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
 
 // Each sees the room in their own light, in one world that is lit for one after the other.
 TEST_F(Lamps, WhatIsNotSharedIsSwitchedForOneselfAlone) {
-  for (bool background : {false, true}) {
-    browsers.clear();
-    Exhibit exhibit = make_lit_exhibit();
-    exhibit.lamps[0].shared = false;
-    begin(std::move(exhibit), 3, "gather", background);
-    run(1.5);
-    EXPECT_EQ(last("welcome")["lamps"][0]["shared"], false);
-    double lit[3] = {level(0), level(1), level(2)};
-    lamp(1, "ceiling", false);
-    run(1);
-    EXPECT_EQ(last("state", 0)["lamps"]["ceiling"], true);
-    EXPECT_EQ(last("state", 1)["lamps"]["ceiling"], false);
-    EXPECT_LT(level(1), 0.6 * lit[1]);
-    for (size_t i : {0, 2}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
-    EXPECT_EQ(show->stage.switches.others.size(), 1u);
-    lamp(2, "ceiling", false);
-    lamp(1, "ceiling", true);
-    run(1);
-    EXPECT_LT(level(2), 0.6 * lit[2]);
-    for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
-    lamp(2, "ceiling", true);
-    run(1);
-    EXPECT_TRUE(show->stage.switches.others.empty()) << "nobody sees it any more";
-    EXPECT_TRUE(show->stage.switches.steps.empty());
-  }
+  Exhibit exhibit = make_lit_exhibit();
+  exhibit.lamps[0].shared = false;
+  begin(std::move(exhibit), 3);
+  run(1.5);
+  EXPECT_EQ(last("welcome")["lamps"][0]["shared"], false);
+  double lit[3] = {level(0), level(1), level(2)};
+  lamp(1, "ceiling", false);
+  run(1);
+  EXPECT_EQ(last("state", 0)["lamps"]["ceiling"], true);
+  EXPECT_EQ(last("state", 1)["lamps"]["ceiling"], false);
+  EXPECT_LT(level(1), 0.6 * lit[1]);
+  for (size_t i : {0, 2}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+  EXPECT_EQ(show->stage.switches.others.size(), 1u);
+  lamp(2, "ceiling", false);
+  lamp(1, "ceiling", true);
+  run(1);
+  EXPECT_LT(level(2), 0.6 * lit[2]);
+  for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+  lamp(2, "ceiling", true);
+  run(1);
+  EXPECT_TRUE(show->stage.switches.others.empty()) << "nobody sees it any more";
+  EXPECT_TRUE(show->stage.switches.steps.empty());
 }
 
 TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {

@@ -38,7 +38,7 @@ struct Maps : testing::Test, ShowStage {
   }
   // Opens a show that draws by paths, which need no preparation.
   void open(Display display = Display::automatic, const std::string& technique = "path") {
-    ShowSettings settings = settings_for(technique, false);
+    ShowSettings settings = settings_for(technique);
     settings.cache = folder.path.string();
     settings.display = display;
     begin(std::move(exhibit), settings);
@@ -54,7 +54,7 @@ TEST_F(Maps, KeptOnesAreUsedFromTheStart) {
   open();
   ASSERT_TRUE(show->stage.lights.maps);
   EXPECT_EQ(show->stage.lights.maps->nodes.light, saved->nodes.light);
-  EXPECT_FALSE(show->stage.baker) << "nothing is done in the background";
+  EXPECT_FALSE(show->stage.baker) << "nothing is baked";
   ASSERT_GT(show->stage.mapped.size(), 2u);
   EXPECT_TRUE(show->stage.mapped[1]);
   EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 1\n"));
@@ -75,7 +75,7 @@ TEST_F(Maps, LightTheFirstPicture) {
 }
 
 TEST_F(Maps, WithoutAnyFileCoarseLightIsThereFromTheStart) {
-  begin(std::move(exhibit), settings_for("gather", false));
+  begin(std::move(exhibit), settings_for("gather"));
   ASSERT_TRUE(show->stage.lights.maps);
   EXPECT_EQ(show->stage.lights.maps, show->stage.lights.known);
   EXPECT_EQ(show->stage.lights.maps->error, 1) << "nobody knows how good it is";
@@ -95,7 +95,7 @@ TEST_F(Maps, ThePackagesOwnServeWithoutACache) {
   keep_map();
   exhibit.folder = folder.path.string();
   std::filesystem::rename(folder.file("tiny.maps"), shipped_light(exhibit.folder));
-  begin(std::move(exhibit), settings_for("path", false));
+  begin(std::move(exhibit), settings_for("path"));
   ASSERT_TRUE(show->stage.lights.maps);
   EXPECT_EQ(show->stage.lights.maps->nodes.light, saved->nodes.light);
   EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 1\n"));
@@ -158,7 +158,7 @@ TEST_F(Maps, TechniquesThatKnowNothingOfThemGetNone) {
 
 TEST_F(Maps, WithoutACacheThereAreNone) {
   keep_map();
-  ShowSettings settings = settings_for("path", false);
+  ShowSettings settings = settings_for("path");
   begin(std::move(exhibit), settings);
   EXPECT_FALSE(show->stage.lights.maps);
   EXPECT_FALSE(show->stage.baker);

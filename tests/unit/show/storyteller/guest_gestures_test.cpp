@@ -13,7 +13,7 @@ struct GuestGestures : testing::Test, ShowStage {
     add_storyteller(exhibit, "anna", {-2, 0, 1});
     exhibit.stories.push_back(exhibit.stories[0]);
     exhibit.stories[1].id = "other";
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
     show->kiosks.eyes.push_back(
         Eye{std::make_shared<Link>(99, LinkKind::eye, "test"), {}, -1e9, 0});
   }

@@ -58,7 +58,7 @@ struct HeldPropTest : testing::Test, ShowStage {
           "<hold name='nothing'/>Then she put it away, and told the rest of it all "
           "without a light, which took her a long while.");
     tick_seconds = 0.1;
-    ShowStage::begin(std::move(exhibit), settings_for("direct", false, 25));
+    ShowStage::begin(std::move(exhibit), settings_for("direct", 25));
   }
   // Somebody new, who looks away, so that their pictures cost little.
   void join() {

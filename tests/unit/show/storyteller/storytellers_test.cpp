@@ -29,7 +29,7 @@ struct StorytellersTest : testing::Test, ShowStage {
     exhibit.stories[1].id = "bell";
     exhibit.stories[1].storyteller_index = 1;
     tick_seconds = 0.04;
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
     show->cast.speech.find = [](const SpeechRequest&) { return nullptr; };
     show->cast.speech.speak = [this](const SpeechRequest& request) {
       asked.push_back(request);
@@ -82,7 +82,7 @@ TEST(Storytellers, OneIsInFinishedPictures) {
     exhibit.tours.clear();
     exhibit.viewpoints[0].view.position = {0, 1.6, 3.5};  // sees the world's origin, too
     exhibit.viewpoints[0].view.yaw = 0, exhibit.viewpoints[0].view.pitch = -0.3f;
-    std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct", false));
+    std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct"));
     return StillRoom(*show).make({.width = 64, .height = 48, .seconds = 600, .spp = 4}).jpeg;
   };
   const dvec3 in_view(0, 0, 1.5), behind_the_wall(-3, 0, -3);

@@ -38,7 +38,7 @@ struct TourLips : testing::Test, ShowStage {
     open.displacements = {{0, 0.01f, 0}};
     storyteller_place.character.displacers = {open};
     tick_seconds = 0.04;
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
     show->cast.speech.find = [this](const SpeechRequest& request) {
       auto& speech = kept[request.text];
       if (!speech) speech = make_vowel(request.text);

@@ -18,7 +18,7 @@ namespace wellspring::test {
 namespace {
 
 struct Problems : testing::Test, ShowStage {
-  void SetUp() override { begin(make_tiny_exhibit(), settings_for("direct", false)); }
+  void SetUp() override { begin(make_tiny_exhibit(), settings_for("direct")); }
 };
 
 TEST_F(Problems, AreToldToAllAndTakenBack) {
