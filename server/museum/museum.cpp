@@ -122,7 +122,8 @@ void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
   auto outcome = room.rehearsal->take();
   if (!outcome) return;
   // Only people who work on an exhibit want its pages to show problems.
-  if (room.show->settings.watched) set_problems(*room.show, std::move(outcome->problems));
+  if (room.show->settings.watched)
+    set_problems(room.show->stage, room.show->visits, std::move(outcome->problems));
   room.next = std::move(outcome->show);
   if (room.next) changed = true;
 }
@@ -131,7 +132,7 @@ void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
 // no other is baked; while an exhibit is loaded anew, or somebody waits for a still picture, none
 // is.
 void share_cores(Room& room, const std::list<Room>& rooms, const StillDesk& stills) {
-  room.draws = draws(*room.show);
+  room.draws = draws(room.show->visits, *room.show->drawing, room.show->time);
   room.show->drawing->others_draw =
       stills.status().waiting > 0 || std::ranges::any_of(rooms, [&](const Room& other) {
         return (&other != &room && other.draws) || (other.rehearsal && other.rehearsal->at_work());

@@ -48,8 +48,8 @@ constexpr double listening_interval = 0.01;
 
 }  // namespace
 
-bool draws(const Show& show) {
-  return !show.visits.visitors.empty() && show.time - show.drawing->drew_at <= idle_before_bake;
+bool draws(const ShowVisits& visits, const ShowDrawing& drawing, double time) {
+  return !visits.visitors.empty() && time - drawing.drew_at <= idle_before_bake;
 }
 
 namespace {
@@ -57,7 +57,7 @@ namespace {
 void welcome_links(Show& show, Arrivals& arrivals) {
   for (Arrival& one : arrivals.take()) {
     if (one.link->kind == LinkKind::eye) {
-      welcome_camera(show, std::move(one.link));
+      welcome_camera(show.kiosks, show.time, std::move(one.link));
       continue;
     }
     log::info("visitor {} connected from {}", one.link->id, one.link->peer);
@@ -96,7 +96,8 @@ void read_visitors(Show& show, double dt) {
 void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance,
                    bool storyteller) {
   const Exhibit& exhibit = show.stage.exhibit;
-  const StorytellerPlace* storyteller_place = storyteller_of(show, teller_of(show, visitor));
+  const StorytellerPlace* storyteller_place =
+      storyteller_of(show.stage, show.cast, teller_of(show.cast, show.visits, visitor));
   std::string text, speaker;
   if (const auto* line =
           utterance ? line_in(utterance->line, visitor.lang, exhibit.languages) : nullptr)
@@ -108,25 +109,25 @@ void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utteranc
 }
 
 // Returns whether the visitor hears the narrator of a tour of their own, or of their leader's.
-bool is_narrated(const Show& show, const Visitor& visitor) {
-  const Visitor* leader = leader_of(show, visitor);
+bool is_narrated(const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
   const Voice& voice = (leader ? *leader : visitor).hearing.narration.voice;
   return !voice.queue.empty() && !voice.paused;
 }
 
 void show_subtitles(Show& show, const Teller& teller, const Utterance* utterance) {
   for (Visitor& visitor : show.visits.visitors)
-    if (!is_narrated(show, visitor) && listens_to(show, visitor, teller))
+    if (!is_narrated(show.visits, visitor) && listens_to(show, visitor, teller))
       show_subtitle(show, visitor, utterance, true);
 }
 
 // Moves the camera of whoever asked for the story to where its marks want it.
-void follow_story(Show& show, const Teller& teller, const VoiceEvents& events) {
+void follow_story(ShowVisits& visits, const ExhibitStage& stage, const Teller& teller,
+                  const VoiceEvents& events) {
   for (const ActionEvent& act : events.acts) {
-    int viewpoint =
-        act.kind == StoryMarkKind::view ? find_viewpoint(show.stage.exhibit, act.name) : -1;
+    int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(stage.exhibit, act.name) : -1;
     if (viewpoint < 0) continue;
-    for (Visitor& visitor : show.visits.visitors)
+    for (Visitor& visitor : visits.visitors)
       if (visitor.link->id == teller.voice.asked_by && visitor.place.tour.tour < 0 &&
           visitor.place.move == vec3(0))
         glide_to(visitor.place.tour, viewpoint, visitor.place.view);
@@ -141,7 +142,7 @@ void narrate(Show& show, float dt) {
     if (dt >= 1) narration.sounding.going = false;  // the show stood still while the sound went on
     VoiceEvents said = advance_narration(show, visitor, dt);
     for (Visitor& listener : show.visits.visitors) {
-      if (&listener != &visitor && leader_of(show, listener) != &visitor) continue;
+      if (&listener != &visitor && leader_of(show.visits, listener) != &visitor) continue;
       if (said.begun) show_subtitle(show, listener, said.begun, false);
       else if (said.fell_silent) show_subtitle(show, listener, nullptr, false);
     }
@@ -156,7 +157,7 @@ void narrate(Show& show, float dt) {
 // Gives the storyteller the guests of the kiosk that it is with; while it is with none, motion
 // before any kiosk.
 void see_guests(Show& show, StorytellerInput& input) {
-  const Kiosk* kiosk = her_kiosk(show);
+  const Kiosk* kiosk = her_kiosk(show.kiosks);
   input.visit = show.kiosks.her_visits;
   if (kiosk) {
     input.kiosk_motion = kiosk->audience.state == Presence::motion;
@@ -171,10 +172,10 @@ void see_guests(Show& show, StorytellerInput& input) {
 }
 
 void greet_or_part(Show& show, Teller& teller, const StorytellerEvents& events) {
-  const StorytellerPlace& place = *storyteller_of(show, teller);
+  const StorytellerPlace& place = *storyteller_of(show.stage, show.cast, teller);
   if (events.greeted) {
     show.totals.greetings++;
-    if (Kiosk* kiosk = her_kiosk(show)) {
+    if (Kiosk* kiosk = her_kiosk(show.kiosks)) {
       const std::string& name = kiosk->settings.name;
       if (!kiosk->visit.greeted) count(show, "kiosk_visits", name.empty() ? "-" : name);
       kiosk->visit.greeted = true;
@@ -196,7 +197,7 @@ void behave(Show& show, Teller& teller, float dt) {
   if (said.fell_silent && !story.empty()) count(show, "stories_heard", story);
   if (said.begun) show_subtitles(show, teller, said.begun);
   else if (said.fell_silent) show_subtitles(show, teller, nullptr);
-  follow_story(show, teller, said);
+  follow_story(show.visits, show.stage, teller, said);
 
   StorytellerInput input;
   input.time = show.time;
@@ -243,21 +244,21 @@ void behave(Show& show, Teller& teller, float dt) {
 // Returns whether the storyteller has anything to do. A visitor's own does nothing while it is
 // silent, holds nothing and is not to be seen; nor does the house's while nobody shares it.
 bool is_noticed(const Show& show, const Teller& teller) {
-  if (&teller == &show.cast.teller && connected_cameras(show) > 0) return true;
+  if (&teller == &show.cast.teller && connected_cameras(show.kiosks) > 0) return true;
   const bool news =
       !teller.voice.queue.empty() || teller.agent_sent_at < 0 || teller.held.prop >= 0;
   return std::any_of(show.visits.visitors.begin(), show.visits.visitors.end(),
                      [&](const Visitor& visitor) {
-                       if (&teller_of(show, visitor) != &teller) return false;
+                       if (&teller_of(show.cast, show.visits, visitor) != &teller) return false;
                        return &teller == &show.cast.teller || news ||
-                              sees_figure(show, teller, visitor.place.last_view);
+                              sees_figure(show.cast, teller, visitor.place.last_view);
                      });
 }
 
 void behave(Show& show, float dt) {
   follow_kiosks(show);
   if (show.cast.figures.empty()) return;
-  for (Teller* teller : tellers_of(show))
+  for (Teller* teller : tellers_of(show.cast, show.visits))
     if (is_noticed(show, *teller)) behave(show, *teller, dt);
 }
 
@@ -269,10 +270,10 @@ void use_renderer(Show& show, int waiting) {
 }
 
 // Returns rays over what visitors see.
-std::vector<Ray> looks_of(const Show& show) {
+std::vector<Ray> looks_of(const ShowVisits& visits) {
   constexpr int across = 24, down = 14;
   std::vector<Ray> rays;
-  for (const Visitor& visitor : show.visits.visitors) {
+  for (const Visitor& visitor : visits.visitors) {
     const View& view = visitor.picture->keyframe.view;
     for (int i = 0; i < across * down && view.width > 0; i++)
       rays.push_back(view_ray(view, (float(i % across) + 0.5f) * float(view.width) / across,
@@ -285,18 +286,19 @@ std::vector<Ray> looks_of(const Show& show) {
 // rest for long. Better light waits until nobody walks, so that it fades in, but not for ever.
 void watch_baker(Show& show) {
   if (!show.stage.baker) return;
-  const bool free = !show.drawing->others_draw && (show.visits.visitors.empty() || !draws(show));
+  const bool free = !show.drawing->others_draw &&
+                    (show.visits.visitors.empty() || !draws(show.visits, *show.drawing, show.time));
   show.stage.baker->allow(free ? BakerCores::all : BakerCores::spare);
   BakerLooks& looks = show.stage.baker_looks;
   if (show.time - looks.told_at < looks_every) return;
   looks.told_at = show.time;
-  show.stage.baker->look(looks_of(show));
+  show.stage.baker->look(looks_of(show.visits));
   const bool walks = std::ranges::any_of(show.visits.visitors, [](const Visitor& visitor) {
     return visitor.picture->drawn_at >= 0 && !is_still(visitor.picture->job);
   });
   if (walks && show.time - looks.took_at < most_light_waits) return;
   if (auto maps = show.stage.baker->take()) {
-    use_better_maps(show, std::move(maps));
+    use_better_maps(show.stage, show.visits, std::move(maps));
     looks.took_at = show.time;
   }
 }
@@ -316,15 +318,14 @@ void pace_tour(Visitor& visitor) {
 }
 
 // Sends a page that moves its own camera the view to which it is led, or has to be.
-void send_pose(const Show& show, Visitor& visitor) {
+void send_pose(const ExhibitStage& stage, const ShowVisits& visits, double time, Visitor& visitor) {
   const View& view = visitor.place.last_view;
   // a kiosk's window follows a head at once
   const double interval = visitor.kiosk ? 0 : pose_interval;
-  if (!visitor.wants.local || view == visitor.posed || show.time - visitor.posed_at < interval)
-    return;
+  if (!visitor.wants.local || view == visitor.posed || time - visitor.posed_at < interval) return;
   visitor.posed = view;
-  visitor.posed_at = show.time;
-  visitor.link->send_text(pose_message(show, visitor));
+  visitor.posed_at = time;
+  visitor.link->send_text(pose_message(stage, visits, visitor));
 }
 
 void send_state(Show& show, Visitor& visitor) {
@@ -348,8 +349,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   welcome_links(show, arrivals);
   follow_house(show, arrivals);
   read_visitors(show, double(dt));
-  read_cameras(show);
-  if (free) forget_lights(show);
+  read_cameras(show.kiosks, show.totals, show.time);
+  if (free) forget_lights(show.stage, show.visits);
   for (Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && !visitor.picture->at_work &&
         show.drawing->renderer.drawn != visitor.link->id && lamps_wait(show, visitor))
@@ -372,14 +373,15 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     if (!visitor.welcomed) continue;
     std::optional<dvec3> person;
     const Teller& teller = teller_of(show, visitor);
-    if (const StorytellerPlace* who = teller.visible ? storyteller_of(show, teller) : nullptr)
+    if (const StorytellerPlace* who =
+            teller.visible ? storyteller_of(show.stage, show.cast, teller) : nullptr)
       person = who->position;
     pace_tour(visitor);
     TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.stage.world,
                                  show.stage.exhibit, show.stage.roads, person, dt);
     count_place(show, visitor, step.finished, double(dt));
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
-    follow_leader(show, visitor, dt);
+    follow_leader(show.visits, show.time, visitor, dt);
     look_through(show, visitor, dt);
     watch(show, visitor);
   }
@@ -393,7 +395,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   present_all(show);
   for (Visitor& visitor : show.visits.visitors) {
     if (!visitor.welcomed) continue;
-    send_pose(show, visitor);
+    send_pose(show.stage, show.visits, show.time, visitor);
     send_state(show, visitor);
     send_token(show, visitor);
   }

@@ -13,7 +13,7 @@ void tick(Show& show, Arrivals& arrivals, double now);
 
 // Returns whether somebody is there, and something was drawn for them lately: the cores are not
 // free then.
-bool draws(const Show& show);
+bool draws(const ShowVisits& visits, const ShowDrawing& drawing, double time);
 
 // Returns how long the caller may sleep after a tick, at time `now` on the same clock.
 double seconds_to_next_tick(const Show& show, double now);

@@ -48,7 +48,7 @@ void VisitStage::light(bool on) {
   if (before == after) return;
   change_.emplace(exhibit().scene, show_->stage.switches.all, show_->stage.switches.cells, before,
                   after);
-  light_world(*show_, after);
+  light_world(show_->stage, after);
 }
 
 void VisitStage::begin(const VisitTrace& trace) {
@@ -84,8 +84,8 @@ void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
                    show.cast.teller.pose, events);
   advance_voice(show.cast.teller.voice, dt);
   pose_figure(*show.stage.world, show.cast.figures[show.cast.teller.index],
-              storyteller_of(show, show.cast.teller)->character, show.cast.teller.pose,
-              show.cast.teller.storyteller.placement, show.cast.scratch);
+              storyteller_of(show.stage, show.cast, show.cast.teller)->character,
+              show.cast.teller.pose, show.cast.teller.storyteller.placement, show.cast.scratch);
   show.stage.world->commit();
 }
 

@@ -32,10 +32,10 @@ inline constexpr size_t most_lost_cameras = 32;  // more: the one longest lost i
 // More are told so and sent away: of an exhibit, and of one kiosk.
 inline constexpr size_t most_cameras = 64, most_kiosk_cameras = 8;
 
-void welcome_camera(Show& show, std::shared_ptr<Link> link);
+void welcome_camera(ShowKiosks& kiosks, double time, std::shared_ptr<Link> link);
 // Takes in what cameras have said since the last call.
-void read_cameras(Show& show);
-size_t connected_cameras(const Show& show);
+void read_cameras(ShowKiosks& kiosks, ShowTotals& totals, double time);
+size_t connected_cameras(const ShowKiosks& kiosks);
 bool is_lost(const Eye& eye);
 bool is_silent(const Eye& eye, double now);  // it says nothing, connected or not
 

@@ -35,22 +35,22 @@ json place_of(const Viewpoint& view) {
 }
 
 // All but the day.
-json describe(const Show& show, const Visitor& visitor) {
+json describe(const ExhibitStage& stage, const Visitor& visitor) {
   const VisitorPlace& place = visitor.place;
   json about = {{"id", visitor.id},
-                {"exhibit", show.stage.exhibit.id},
+                {"exhibit", stage.exhibit.id},
                 {"place", place_of(place.view)},
                 {"viewpoint", place.viewpoint}};
   for (size_t i = 0; i < visitor.lamps.own.size(); i++)
     if (visitor.lamps.own[i])
-      about["lamps"][show.stage.exhibit.lamps[i].id] = bool(visitor.lamps.wish[i]);
+      about["lamps"][stage.exhibit.lamps[i].id] = bool(visitor.lamps.wish[i]);
   if (visitor.lamps.hour) about["hour"] = *visitor.lamps.hour;
   if (const TourRide& ride = place.tour; ride.state != TourRide::State::none && ride.tour >= 0)
-    about["tour"] = {{"id", show.stage.exhibit.tours[size_t(ride.tour)].id},
+    about["tour"] = {{"id", stage.exhibit.tours[size_t(ride.tour)].id},
                      {"stop", ride.stop},
                      {"paused", ride.state == TourRide::State::paused}};
   if (const Teller* teller = visitor.own_teller.get()) {
-    about["teller"] = {{"id", show.stage.exhibit.storytellers[teller->index].id},
+    about["teller"] = {{"id", stage.exhibit.storytellers[teller->index].id},
                        {"visible", teller->visible},
                        {"humanlike", teller->humanlike}};
     if (!teller->voice.story.empty() && !teller->voice.queue.empty())
@@ -64,10 +64,10 @@ json describe(const Show& show, const Visitor& visitor) {
 }
 
 // Returns whether the kept visit is one of this exhibit, and not too old.
-bool is_valid(const Show& show, const json& about) {
-  if (!about.is_object() || about.value("exhibit", json()) != show.stage.exhibit.id) return false;
+bool is_valid(const ExhibitStage& stage, const ShowHouse& house, const json& about) {
+  if (!about.is_object() || about.value("exhibit", json()) != stage.exhibit.id) return false;
   const json day = about.value("day", json());
-  return day.is_number_integer() && day >= show.house.local_time.day - token_days &&
+  return day.is_number_integer() && day >= house.local_time.day - token_days &&
          about.value("id", json()).is_string();
 }
 
@@ -94,7 +94,7 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   place.viewpoint = known ? int(viewpoint) : -1;
   const json lamps = about.value("lamps", json::object());
   for (const auto& [name, on] : lamps.items()) switch_lamp(show, visitor, name, on.get<bool>());
-  if (about.contains("hour")) set_hour(show, visitor, about["hour"].get<double>());
+  if (about.contains("hour")) set_hour(show.stage, visitor, about["hour"].get<double>());
   if (about.contains("leads")) {
     const std::string code = about["leads"];
     const bool taken = std::ranges::any_of(
@@ -105,7 +105,7 @@ void restore(Show& show, Visitor& visitor, const json& about) {
     GroupOrder order;
     order.action = GroupAction::follow;
     order.code = about["follows"];
-    if (!handle_group(show, visitor, order)) return;
+    if (!handle_group(show.visits, visitor, order)) return;
   }
   if (about.contains("tour")) {
     const json& ride = about["tour"];
@@ -138,9 +138,9 @@ void restore(Show& show, Visitor& visitor, const json& about) {
 }
 
 // As it was when its line broke.
-bool take_kept(Show& show, Visitor& visitor, const std::string& id) {
-  auto kept = std::ranges::find(show.visits.kept, id, &KeptVisit::id);
-  if (kept == show.visits.kept.end()) return false;
+bool take_kept(ShowVisits& visits, Visitor& visitor, const std::string& id) {
+  auto kept = std::ranges::find(visits.kept, id, &KeptVisit::id);
+  if (kept == visits.kept.end()) return false;
   Visitor& before = kept->visitor.front();
   if (before.own_teller && before.own_teller->voice.asked_by == before.link->id)
     before.own_teller->voice.asked_by = visitor.link->id;
@@ -153,7 +153,7 @@ bool take_kept(Show& show, Visitor& visitor, const std::string& id) {
   visitor.group = std::move(before.group);
   visitor.hearing.narration = std::move(before.hearing.narration);
   visitor.picture = std::move(before.picture);
-  show.visits.kept.erase(kept);
+  visits.kept.erase(kept);
   return true;
 }
 
@@ -166,7 +166,7 @@ void send_token(Show& show, Visitor& visitor) {
   if (!came_to_rest && show.time - visitor.told_at < token_interval) return;
   visitor.told_at = show.time;
   if (visitor.id.empty()) visitor.id = make_id();
-  std::string now = describe(show, visitor).dump();
+  std::string now = describe(show.stage, visitor).dump();
   if (now == visitor.told) return;
   visitor.told = std::move(now);
   visitor.link->send_text(json{{"type", "keep"}, {"token", visit_token(show, visitor)}}.dump());
@@ -174,7 +174,7 @@ void send_token(Show& show, Visitor& visitor) {
 
 std::string visit_token(const Show& show, Visitor& visitor) {
   if (visitor.id.empty()) visitor.id = make_id();
-  json dated = describe(show, visitor);
+  json dated = describe(show.stage, visitor);
   dated["day"] = show.house.local_time.day;
   return show.visits.seal->close(dated.dump());
 }
@@ -207,9 +207,9 @@ bool come_back(Show& show, Visitor& visitor, const std::string& token) {
   const auto text = show.visits.seal->open(token);
   if (!text || visitor.kiosk) return false;
   const json about = json::parse(*text, nullptr, false);
-  if (!is_valid(show, about)) return false;
+  if (!is_valid(show.stage, show.house, about)) return false;
   visitor.id = about["id"];
-  if (take_kept(show, visitor, visitor.id)) return true;
+  if (take_kept(show.visits, visitor, visitor.id)) return true;
   visitor.place.camera_cuts++;
   try {
     restore(show, visitor, about);

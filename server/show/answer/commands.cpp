@@ -90,8 +90,9 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);
-  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.stage.exhibit,
-                  visitor.kiosk ? kiosk_viewpoint(show, kiosk) : show.stage.exhibit.start);
+  go_to_viewpoint(
+      visitor.place, visitor.hearing.narration.voice, show.stage.exhibit,
+      visitor.kiosk ? kiosk_viewpoint(show.stage, show.cast, kiosk) : show.stage.exhibit.start);
   // Another thread may be drawing a picture of a visitor who is here already.
   const bool goes_on = is_first && !hello.resume.empty() && come_back(show, visitor, hello.resume);
   if (!goes_on) show.totals.visits++;
@@ -101,7 +102,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   const Kiosk* own = kiosk_of(show, visitor);
   const std::string& state = own ? own->message : show.kiosks.message;
   if (!state.empty() && (own || !visitor.kiosk)) visitor.link->send_text(state);
-  tell_house(show, visitor);
+  tell_house(show.house, show.time, visitor);
   if (!show.stage.problems_message.empty()) visitor.link->send_text(show.stage.problems_message);
   return {};
 }
@@ -111,7 +112,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Input& input) {
   if (input.pointer) visitor.looks.pointer = input.pointer, visitor.looks.pointed_at = show.time;
   place.seq = input.seq;
   if (input.move != vec3(0)) go_away(visitor);
-  if (leader_of(show, visitor)) {  // looks round from the leader's place
+  if (leader_of(show.visits, visitor)) {  // looks round from the leader's place
     VisitorGroup& group = visitor.group;
     group.look = glm::clamp(group.look + input.look, vec2(-pi), vec2(pi));
     if (input.look != vec2(0)) group.looked_at = show.time;
@@ -164,7 +165,7 @@ Answer handle_one(Show& show, Visitor& visitor, const GoTo& order) {
 Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
   VisitorPlace& place = visitor.place;
   Voice& narrator = visitor.hearing.narration.voice;
-  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
   switch (order.action) {
     case TourAction::play: {
       bool resume =
@@ -190,19 +191,19 @@ Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const LampOrder& order) {
-  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
   if (switch_lamp(show, visitor, order.name, order.on)) return {};
   return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const HourOrder& order) {
-  if (Answer wrong = check_not_following(show, visitor)) return wrong;
-  if (set_hour(show, visitor, order.value)) return {};
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
+  if (set_hour(show.stage, visitor, order.value)) return {};
   return WireError{"no_day", "the hour of the day cannot be chosen here"};
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const PlayOrder& order) {
-  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
   if (play_animation(show, visitor, order.name, order.on)) return {};
   return WireError{"unknown_animation",
                    "there is no animation '" + order.name + "' that is started by touch"};
@@ -217,7 +218,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Ask& question) {
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const GroupOrder& order) {
-  return handle_group(show, visitor, order);
+  return handle_group(show.visits, visitor, order);
 }
 
 Answer handle_one(Show&, Visitor& visitor, const KioskTouch&) {

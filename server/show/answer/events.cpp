@@ -70,7 +70,7 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
                           ? json(nullptr)
                           : json(exhibit.storytellers[size_t(story.storyteller_index)].id);
   }
-  const std::vector<char> lamps = switches_of(show, visitor);
+  const std::vector<char> lamps = switches_of(show.stage, show.visits, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"].push_back({{"name", exhibit.lamps[i].id},
                                 {"title", text(exhibit.lamps[i].title)},
@@ -107,8 +107,8 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
         {"viewpoint", exhibit.viewpoints[size_t(storyteller_place.kiosk_viewpoint)].view.name}};
   };
   message["storyteller"] = nullptr;
-  const Teller& teller = teller_of(show, visitor);
-  if (const StorytellerPlace* storyteller_place = storyteller_of(show, teller)) {
+  const Teller& teller = teller_of(show.cast, show.visits, visitor);
+  if (const StorytellerPlace* storyteller_place = storyteller_of(show.stage, show.cast, teller)) {
     message["storyteller"] = about(*storyteller_place);
     message["storyteller"]["visible"] = teller.visible;
   }
@@ -137,7 +137,7 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   if (place.around.point >= 0 && !place.around.leaves)
     message["around"] = exhibit.points[size_t(place.around.point)].id;
   if (!exhibit.lamps.empty()) message["lamps"] = json::object();
-  const std::vector<char> lamps = switches_of(show, visitor);
+  const std::vector<char> lamps = switches_of(show.stage, show.visits, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"][exhibit.lamps[i].id] = bool(lamps[i]);
   if (exhibit.day) message["hour"] = hour_of(show, visitor).value_or(exhibit.day->settings.at);
@@ -154,18 +154,19 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string pose_message(const Show& show, const Visitor& visitor) {
+std::string pose_message(const ExhibitStage& stage, const ShowVisits& visits,
+                         const Visitor& visitor) {
   const VisitorPlace& place = visitor.place;
   const View& view = place.last_view;
   const vec3 forward = view.forward;
   const float yaw = std::atan2(-forward.x, -forward.z);
   const vec3 level(std::cos(yaw), 0, -std::sin(yaw));
-  const bool led = place.around.point >= 0 || place.glide.path || leader_of(show, visitor) ||
+  const bool led = place.around.point >= 0 || place.glide.path || leader_of(visits, visitor) ||
                    place.tour.state == TourRide::State::playing || place.tour.pace > 0 ||
                    visitor.window.place != visitor.window.aim;
   return json{{"type", "pose"},
               {"seq", place.seq},
-              {"position", triple(show.stage.exhibit.scene.origin + dvec3(view.position))},
+              {"position", triple(stage.exhibit.scene.origin + dvec3(view.position))},
               {"yaw", yaw},
               {"pitch", std::asin(std::clamp(forward.y, -1.0f, 1.0f))},
               {"roll", std::atan2(dot(view.right, cross(level, forward)), dot(view.right, level))},
@@ -219,11 +220,11 @@ std::string speech_stop_message(uint32_t utterance) {
 }
 
 // The mouth as the next picture shows it, in the utterance's own time.
-json mouth_message(const Show& show, const Teller& teller) {
+json mouth_message(const ShowDrawing& drawing, const Teller& teller) {
   const Speech* speech = teller.sounding.going ? heard(teller.voice) : nullptr;
   if (!speech) return nullptr;
-  double at = double(teller.voice.elapsed + show.drawing->picture_lead);
-  VisemeWeights weights = mouth_shape(teller.voice, show.drawing->picture_lead);
+  double at = double(teller.voice.elapsed + drawing.picture_lead);
+  VisemeWeights weights = mouth_shape(teller.voice, drawing.picture_lead);
   size_t strongest = size_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
   return {{"utterance", teller.sounding.number},
           {"seconds", std::round(at * 1e3) / 1e3},
@@ -241,7 +242,7 @@ json face_message(const FaceState& face) {
 }
 
 std::string agent_message(const Show& show, const Teller& teller) {
-  const StorytellerPlace* place = storyteller_of(show, teller);
+  const StorytellerPlace* place = storyteller_of(show.stage, show.cast, teller);
   json message = {
       {"type", "agent"},
       {"mood", to_string(teller.mind.mood)},
@@ -258,7 +259,7 @@ std::string agent_message(const Show& show, const Teller& teller) {
   message["gaze"] = {std::round(gaze.yaw * 1e4) / 1e4, std::round(gaze.pitch * 1e4) / 1e4};
   message["guest"] = gaze.guest;
   message["face"] = face_message(teller.mind.face);
-  message["mouth"] = mouth_message(show, teller);
+  message["mouth"] = mouth_message(*show.drawing, teller);
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -273,11 +274,11 @@ double hundredths(float value) { return std::round(100 * double(value)) / 100; }
 
 }  // namespace
 
-std::string kiosk_message(const Show& show) {
+std::string kiosk_message(const ShowKiosks& kiosks) {
   Presence state = Presence::absent;
   size_t people = 0;
   float nearest = 0;
-  for (const Kiosk& kiosk : show.kiosks.all) {
+  for (const Kiosk& kiosk : kiosks.all) {
     const Audience& audience = kiosk.audience;
     state = std::max(state, audience.state);
     people += audience.guests.size();
@@ -287,7 +288,7 @@ std::string kiosk_message(const Show& show) {
   json message = {{"type", "kiosk"},
                   {"state", to_string(state)},
                   {"people", people},
-                  {"cameras", connected_cameras(show)}};
+                  {"cameras", connected_cameras(kiosks)}};
   put_distance(message, nearest);
   return message.dump();
 }
@@ -348,10 +349,11 @@ std::string announce_message(const Announcement& announcement, double seconds) {
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string reply_message(const Show& show, const Visitor& visitor, const std::string& question,
-                          const FoundAnswer& found, const LocalScript& said) {
+std::string reply_message(const ExhibitStage& stage, const Visitor& visitor,
+                          const std::string& question, const FoundAnswer& found,
+                          const LocalScript& said) {
   constexpr const char* kinds[] = {"none", "partly", "sure"};
-  const Exhibit& exhibit = show.stage.exhibit;
+  const Exhibit& exhibit = stage.exhibit;
   std::string text;
   for (size_t i = 0; i < line_count(said); i++) {
     const LocalLine line = line_at(said, i);
@@ -366,7 +368,7 @@ std::string reply_message(const Show& show, const Visitor& visitor, const std::s
                   {"score", std::round(found.score * 100) / 100},
                   {"share", std::round(found.share * 100) / 100}};
   if (found.passage >= 0) {
-    const Passage& passage = show.stage.questions.passages[size_t(found.passage)];
+    const Passage& passage = stage.questions.passages[size_t(found.passage)];
     message["from"] = {{"kind", passage_kinds[int(passage.kind)]},
                        {"id", passage.id},
                        {"title", text_in(passage.title, visitor.lang, exhibit.languages)}};

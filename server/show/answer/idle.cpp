@@ -23,16 +23,16 @@ bool tells_of_nobody(const BrowserMessage& message) {
 }
 
 bool is_told_something(const Show& show, const Visitor& visitor) {
-  const Visitor* leader = leader_of(show, visitor);
+  const Visitor* leader = leader_of(show.visits, visitor);
   const Voice& narrator = (leader ? *leader : visitor).hearing.narration.voice;
   if (!narrator.queue.empty() && !narrator.paused) return true;
-  const Teller& teller = teller_of(show, visitor);
+  const Teller& teller = teller_of(show.cast, show.visits, visitor);
   return !teller.voice.queue.empty() && !teller.voice.paused && listens_to(show, visitor, teller);
 }
 
-bool leads_somebody(const Show& show, const Visitor& visitor) {
+bool leads_somebody(const ShowVisits& visits, const Visitor& visitor) {
   return !visitor.group.leads.empty() &&
-         std::ranges::any_of(show.visits.visitors, [&](const Visitor& other) {
+         std::ranges::any_of(visits.visitors, [&](const Visitor& other) {
            return other.group.follows == visitor.group.leads;
          });
 }
@@ -67,7 +67,7 @@ void watch_presence(Show& show, double dt) {
     auto visitor = next++;
     VisitorPresence& presence = visitor->presence;
     if (!visitor->welcomed || visitor->kiosk) continue;
-    const bool busy = is_told_something(show, *visitor) || leads_somebody(show, *visitor);
+    const bool busy = is_told_something(show, *visitor) || leads_somebody(show.visits, *visitor);
     if (busy || visitor->place.moved_at == show.time) presence.quiet = 0;
     else presence.quiet += dt;
     if (presence.hidden >= 0) presence.hidden = busy ? 0 : presence.hidden + dt;
@@ -124,14 +124,14 @@ void follow_house(Show& show, Arrivals& arrivals) {
     announce(show, std::move(announcement));
 }
 
-void tell_house(const Show& show, Visitor& visitor) {
+void tell_house(const ShowHouse& house, double time, Visitor& visitor) {
   if (visitor.kiosk) {
-    visitor.loaded_night = show.house.state.night;
-    visitor.link->send_text(show.house.message);
+    visitor.loaded_night = house.state.night;
+    visitor.link->send_text(house.message);
   }
-  const double left = show.house.announced_until - show.time;
-  if (left > 0 && !show.house.announced.text.empty())
-    visitor.link->send_text(announce_message(show.house.announced, left));
+  const double left = house.announced_until - time;
+  if (left > 0 && !house.announced.text.empty())
+    visitor.link->send_text(announce_message(house.announced, left));
 }
 
 }  // namespace wellspring::show

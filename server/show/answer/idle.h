@@ -24,6 +24,6 @@ void watch_presence(Show& show, double dt);
 void follow_house(Show& show, Arrivals& arrivals);
 
 // To a page that has just been welcomed: how the house is, and what is announced at the moment.
-void tell_house(const Show& show, Visitor& visitor);
+void tell_house(const ShowHouse& house, double time, Visitor& visitor);
 
 }  // namespace wellspring::show

@@ -105,16 +105,16 @@ const OrderBound* bound_of(const BrowserMessage& order) {
   return found == order_bounds().end() ? nullptr : &*found;
 }
 
-bool is_due(const Show& show, VisitorOrders& orders, const BrowserMessage& order) {
+bool is_due(double time, VisitorOrders& orders, const BrowserMessage& order) {
   const OrderBound* bound = bound_of(order);
   if (!bound) return true;
   RateBound& spent = orders.spent[order.index()];
   spent.rate = bound->rate, spent.burst = bound->burst;
-  return spent.take(1, show.time);
+  return spent.take(1, time);
 }
 
-void refuse(Show& show, Visitor& visitor, const WireError& error) {
-  show.totals.refused_messages++;
+void refuse(ShowTotals& totals, Visitor& visitor, const WireError& error) {
+  totals.refused_messages++;
   visitor.link->send_text(write_error(error));
 }
 
@@ -125,7 +125,7 @@ void carry_out(Show& show, Visitor& visitor, const WaitingOrder& order) {
   const std::optional<WireError> error = handle(show, visitor, order.message);
   // Inputs that came after a late one have been carried out.
   if (order.late && is_later(seq, visitor.place.seq)) visitor.place.seq = seq;
-  if (error) refuse(show, visitor, *error);
+  if (error) refuse(show.totals, visitor, *error);
   else note_touch(visitor, order.message);
 }
 
@@ -141,10 +141,10 @@ void follow_orders(Show& show, Visitor& visitor) {
     if (auto* message = std::get_if<BrowserMessage>(&heard.said))
       show.totals.orders_left_out += put(std::move(*message), orders.waiting);
     else if (const WireError* wrong = std::get_if<WireError>(&heard.said))
-      refuse(show, visitor, *wrong);
+      refuse(show.totals, visitor, *wrong);
   }
   for (WaitingOrder& order : std::exchange(orders.waiting, {})) {
-    if (is_due(show, orders, order.message)) {
+    if (is_due(show.time, orders, order.message)) {
       carry_out(show, visitor, order);
     } else {
       order.late = true;
@@ -183,12 +183,12 @@ void keep_kiosks(Show& show) {
                         [&](const KioskSettings& one) { return one.name == kiosk.settings.name; });
   });
   for (const KioskSettings& one : wanted)
-    if (!find_kiosk(show, one.name)) show.kiosks.all.emplace_back().settings = one;
+    if (!find_kiosk(show.kiosks, one.name)) show.kiosks.all.emplace_back().settings = one;
 }
 
 // Whether the storyteller tells something that this page asked for.
-bool is_told(const Show& show, const Visitor& page) {
-  return show.cast.teller.voice.asked_by == page.link->id && !show.cast.teller.voice.queue.empty();
+bool is_told(const ShowCast& cast, const Visitor& page) {
+  return cast.teller.voice.asked_by == page.link->id && !cast.teller.voice.queue.empty();
 }
 
 KioskInput read_pages(Show& show, const Kiosk& kiosk) {
@@ -196,7 +196,7 @@ KioskInput read_pages(Show& show, const Kiosk& kiosk) {
   input.closed = !show.house.state.open;
   for (Visitor& page : show.visits.visitors) {
     if (!is_page_of(show, page, kiosk)) continue;
-    const bool told = is_told(show, page);
+    const bool told = is_told(show.cast, page);
     const TourRide::State tour = page.place.tour.state;
     input.touched |= std::exchange(page.screen.touched, false);
     input.showing = std::max(input.showing, page.screen.showing);
@@ -215,11 +215,11 @@ void see_off(Show& show, const Kiosk& kiosk) {
     page.lamps.own.clear();
     page.lamps.wish.clear();
     page.lamps.hour.reset();
-    if (is_told(show, page)) fall_silent(show, show.cast.teller);
+    if (is_told(show.cast, page)) fall_silent(show, show.cast.teller);
     if (page.place.tour.state != TourRide::State::none)
       handle(show, page, Tour{TourAction::stop, ""});
     go_to_viewpoint(page.place, page.hearing.narration.voice, show.stage.exhibit,
-                    kiosk_viewpoint(show, kiosk.settings.name));
+                    kiosk_viewpoint(show.stage, show.cast, kiosk.settings.name));
   }
 }
 
@@ -229,7 +229,7 @@ void note_story(Show& show, Kiosk& kiosk) {
   if (story.empty() || !is_visit(kiosk.stage.now)) return;
   if (std::find(heard.begin(), heard.end(), story) != heard.end()) return;
   for (const Visitor& page : show.visits.visitors)
-    if (is_page_of(show, page, kiosk) && is_told(show, page)) return heard.push_back(story);
+    if (is_page_of(show, page, kiosk) && is_told(show.cast, page)) return heard.push_back(story);
 }
 
 // A kiosk's own storyteller comes there with its guest.
@@ -245,8 +245,8 @@ void call_teller(Show& show, const Kiosk& kiosk) {
 }
 
 void find_her_kiosk(Show& show) {
-  if (!storyteller_of(show, show.cast.teller)) return;
-  const Kiosk* with = her_kiosk(show);
+  if (!storyteller_of(show.stage, show.cast, show.cast.teller)) return;
+  const Kiosk* with = her_kiosk(show.kiosks);
   if (with && is_visit(with->stage.now)) return;
   show.kiosks.her_kiosk.reset();
   const Kiosk* first = nullptr;
@@ -260,7 +260,7 @@ void find_her_kiosk(Show& show) {
 }
 
 void tell_pages(Show& show) {
-  std::string all = kiosk_message(show);
+  std::string all = kiosk_message(show.kiosks);
   const bool news = all != show.kiosks.message;
   if (news) show.kiosks.message = std::move(all);
   for (Visitor& visitor : show.visits.visitors)
@@ -276,7 +276,7 @@ void tell_pages(Show& show) {
 
 void tell_eyes(Show& show) {
   for (Eye& eye : show.kiosks.eyes) {
-    const Kiosk* kiosk = eye.observations > 0 ? find_kiosk(show, eye.kiosk) : nullptr;
+    const Kiosk* kiosk = eye.observations > 0 ? find_kiosk(show.kiosks, eye.kiosk) : nullptr;
     if (!kiosk || is_lost(eye)) continue;
     const bool page = std::any_of(show.visits.visitors.begin(), show.visits.visitors.end(),
                                   [&](auto& visitor) { return is_page_of(show, visitor, *kiosk); });
@@ -304,7 +304,7 @@ void follow_kiosks(Show& show) {
     if (kiosk.changed && now == Stage::farewell) see_off(show, kiosk);
     // Who comes back is not talked to as somebody who goes.
     const bool back = kiosk.changed && before == Stage::farewell && has_guest(now);
-    if (back && her_kiosk(show) == &kiosk && show.cast.teller.voice.story.empty())
+    if (back && her_kiosk(show.kiosks) == &kiosk && show.cast.teller.voice.story.empty())
       fall_silent(show, show.cast.teller);
   }
   find_her_kiosk(show);
@@ -329,9 +329,9 @@ void note_touch(Visitor& visitor, const BrowserMessage& message) {
   }
 }
 
-Kiosk* her_kiosk(Show& show) {
-  for (Kiosk& kiosk : show.kiosks.all)
-    if (show.kiosks.her_kiosk == kiosk.settings.name) return &kiosk;
+Kiosk* her_kiosk(ShowKiosks& kiosks) {
+  for (Kiosk& kiosk : kiosks.all)
+    if (kiosks.her_kiosk == kiosk.settings.name) return &kiosk;
   return nullptr;
 }
 
@@ -345,8 +345,8 @@ Visitor* find_page(Show& show, const Kiosk& kiosk) {
 }
 
 // A story's number after that of the one told last, or that one again.
-size_t next_story(const Show& show, const KioskVisit& visit, bool again) {
-  const std::vector<StoryText>& stories = show.stage.exhibit.stories;
+size_t next_story(const ExhibitStage& stage, const KioskVisit& visit, bool again) {
+  const std::vector<StoryText>& stories = stage.exhibit.stories;
   auto told = std::find_if(stories.begin(), stories.end(), [&](const StoryText& story) {
     return story.id == visit.gestured_story;
   });
@@ -360,17 +360,18 @@ size_t next_story(const Show& show, const KioskVisit& visit, bool again) {
   return (index + 1) % stories.size();
 }
 
-StorytellerOrder order_of(const Show& show, const KioskVisit& visit, const std::string& gesture) {
+StorytellerOrder order_of(const ExhibitStage& stage, const ShowCast& cast, const KioskVisit& visit,
+                          const std::string& gesture) {
   StorytellerOrder order;
-  const std::vector<StoryText>& stories = show.stage.exhibit.stories;
-  const bool telling = !show.cast.teller.voice.story.empty();
+  const std::vector<StoryText>& stories = stage.exhibit.stories;
+  const bool telling = !cast.teller.voice.story.empty();
   if (gesture.size() == 1 && gesture[0] >= '1' && gesture[0] <= '9') {
     const size_t number = size_t(gesture[0] - '1');
     if (number < stories.size()) order.story = stories[number].id;
   } else if (gesture == "swipe_left" || gesture == "swipe_right") {
     const bool back = gesture == "swipe_right";
     if (telling) order.action = back ? "restart" : "skip";
-    else if (!stories.empty()) order.story = stories[next_story(show, visit, back)].id;
+    else if (!stories.empty()) order.story = stories[next_story(stage, visit, back)].id;
   } else if (gesture == "swipe_down" && telling) {
     order.action = "stop";
   }
@@ -394,7 +395,7 @@ void follow_gestures(Show& show, Kiosk& kiosk) {
       show.totals.gestures++;
       continue;
     }
-    const StorytellerOrder order = order_of(show, kiosk.visit, one.second);
+    const StorytellerOrder order = order_of(show.stage, show.cast, kiosk.visit, one.second);
     if (order == StorytellerOrder{}) continue;
     if (handle(show, *page, order)) continue;
     if (!order.story.empty()) kiosk.visit.gestured_story = order.story;

@@ -44,7 +44,7 @@ void follow_kiosks(Show& show);
 void note_touch(Visitor& visitor, const BrowserMessage& message);
 
 // The kiosk that the storyteller is with; null: none.
-Kiosk* her_kiosk(Show& show);
+Kiosk* her_kiosk(ShowKiosks& kiosks);
 
 // Guests before a kiosk ask with a hand for what they could ask its page with a touch. While the
 // page shows something whose pages it turns itself (book, topics, partners, slides), gestures are

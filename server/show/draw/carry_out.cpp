@@ -21,23 +21,23 @@ namespace wellspring::show {
 
 namespace {
 
-void use_cores(Show& show, std::function<void()> work) {
-  show.drawing->renderer.worker.run([&show, work = std::move(work)] {
+void use_cores(ShowDrawing& drawing, std::function<void()> work) {
+  drawing.renderer.worker.run([&drawing, work = std::move(work)] {
     const double began = seconds_now();
-    show.drawing->renderer.cores.execute(work);
-    show.drawing->renderer.work_seconds = seconds_now() - began;
+    drawing.renderer.cores.execute(work);
+    drawing.renderer.work_seconds = seconds_now() - began;
   });
 }
 
 // Whoever has had the renderer's time comes later with the next picture, given up or not.
-void charge(Show& show, double seconds) {
-  Renderer& renderer = show.drawing->renderer;
-  const uint64_t id = show.drawing->pass.at_work ? show.drawing->pass.visitor
-                      : renderer.posed           ? renderer.posed
-                                                 : renderer.drawn;
+void charge(ShowVisits& visits, ShowDrawing& drawing, double time, double seconds) {
+  Renderer& renderer = drawing.renderer;
+  const uint64_t id = drawing.pass.at_work ? drawing.pass.visitor
+                      : renderer.posed     ? renderer.posed
+                                           : renderer.drawn;
   if (id == 0) return;
-  Visitor& visitor = visitor_of(show.visits, id);
-  visitor.picture->served += seconds * charge_weight(show, visitor);
+  Visitor& visitor = visitor_of(visits, id);
+  visitor.picture->served += seconds * charge_weight(visits, time, visitor);
 }
 
 void draw_what_moves(Show& show, Visitor& visitor) {
@@ -49,7 +49,7 @@ void draw_what_moves(Show& show, Visitor& visitor) {
   renderer.posed_lights = visitor.dynamic;
   renderer.posed_layer = visitor.wants.local;
   visitor.picture->at_work = true;
-  use_cores(show, [&show, &visitor] { draw_moving(show, visitor); });
+  use_cores(*show.drawing, [&show, &visitor] { draw_moving(*show.drawing, show.stage, visitor); });
 }
 
 // The next of its steps, or all of them.
@@ -57,7 +57,7 @@ void go_on_drawing(Show& show) {
   Visitor& visitor = visitor_of(show.visits, show.drawing->renderer.drawn);
   go_on_in_world_of(show, visitor);
   show.drawing->renderer.until_moving = seconds_to_moving(show);
-  use_cores(show, [&show, &visitor] {
+  use_cores(*show.drawing, [&show, &visitor] {
     Renderer& renderer = show.drawing->renderer;
     if (renderer.surrounds) {
       draw_surroundings(show, renderer.job, visitor);
@@ -90,7 +90,8 @@ void use_cores_for_pass(Show& show) {
   pass.at_work = true;
   Visitor& visitor = visitor_of(show.visits, pass.visitor);
   if (pass.step == StillPass::Step::finish) visitor.picture->at_work = true;
-  use_cores(show, [&show, &visitor] { go_on_with_pass(show, visitor); });
+  use_cores(*show.drawing,
+            [&show, &visitor] { go_on_with_pass(*show.drawing, show.stage, visitor); });
 }
 
 }  // namespace
@@ -100,18 +101,19 @@ bool take_finished(Show& show) {
   if (!renderer.idle()) return false;
   const double seconds = std::exchange(renderer.work_seconds, 0);
   if (!renderer.asking.empty()) finish_samples(show);
-  else if (!renderer.skin.at_work) charge(show, seconds);
+  else if (!renderer.skin.at_work) charge(show.visits, *show.drawing, show.time, seconds);
   if (show.drawing->pass.at_work) take_pass(show);
-  if (renderer.skin.at_work) finish_skin_light(show);
+  if (renderer.skin.at_work) finish_skin_light(*show.drawing, show.totals);
   if (const uint64_t posed = std::exchange(renderer.posed, 0); posed != 0) {
     Visitor& visitor = visitor_of(show.visits, posed);
-    finish_moving(show, visitor);
+    finish_moving(*show.drawing, show.totals, visitor);
     if (posed != renderer.drawn) visitor.picture->at_work = false;
     return true;
   }
   if (renderer.drawn == 0 || renderer.step != DrawingStep::done) return true;
   Visitor& drawn = visitor_of(show.visits, std::exchange(renderer.drawn, 0));
-  if (std::exchange(renderer.surrounds, false)) finish_surroundings(show, renderer.job, drawn);
+  if (std::exchange(renderer.surrounds, false))
+    finish_surroundings(*show.drawing, show.totals, renderer.job, drawn);
   else finish_picture(show, renderer.job, drawn);
   drawn.picture->at_work = false;
   return true;
@@ -127,13 +129,13 @@ void carry_out(Show& show, const Decision& decision, int waiting) {
     case Drawing::skin:
       go_on_in_world_of(show, visitor());
       begin_skin_light(show, visitor());
-      return use_cores(show, [&show] { compute_skin_light(show); });
+      return use_cores(*show.drawing, [&show] { compute_skin_light(show.stage, *show.drawing); });
     case Drawing::go_on:
       if (decision.hurry) show.drawing->renderer.step = DrawingStep::draw;
       return go_on_drawing(show);
     case Drawing::samples:
-      return use_cores(show, [&show, brokers = request_samples(show)] {
-        trace_samples(show, brokers, show.drawing->renderer);
+      return use_cores(*show.drawing, [&show, brokers = request_samples(show)] {
+        trace_samples(show.stage, show.cast, brokers, show.drawing->renderer);
       });
     case Drawing::pass: return use_cores_for_pass(show);
     case Drawing::picture: return begin_picture(show, visitor(), waiting, decision);

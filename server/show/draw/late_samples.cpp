@@ -27,7 +27,7 @@ std::vector<Broker*> request_samples(Show& show) {
   for (Visitor& visitor : show.visits.visitors) {
     if (visitor.picture->broker_seconds <= 0) continue;
     if (!first) go_on_in_world_of(show, *(first = &visitor));
-    else if (!see_the_same(show, *first, visitor)) continue;
+    else if (!see_the_same(show.cast, show.visits, *first, visitor)) continue;
     brokers.push_back(&visitor.picture->broker);
     renderer.asking.push_back(visitor.link->id);
     renderer.seconds += std::exchange(visitor.picture->broker_seconds, 0.0);
@@ -36,11 +36,12 @@ std::vector<Broker*> request_samples(Show& show) {
   return brokers;
 }
 
-void trace_samples(const Show& show, std::span<Broker* const> brokers, Renderer& renderer) {
+void trace_samples(const ExhibitStage& stage, const ShowCast& cast,
+                   std::span<Broker* const> brokers, Renderer& renderer) {
   std::mutex guard;
   double began = seconds_now();
-  renderer.traced = trace_waiting(brokers, *show.stage.world, show.stage.lights,
-                                  show.cast.pose_number, began + renderer.seconds, guard);
+  renderer.traced = trace_waiting(brokers, *stage.world, stage.lights, cast.pose_number,
+                                  began + renderer.seconds, guard);
   renderer.traced_seconds = seconds_now() - began;
 }
 
@@ -55,7 +56,7 @@ void finish_samples(Show& show) {
     Visitor& visitor = visitor_of(show.visits, id);
     smooth(visitor.times.trace, float(1000 * each));
     visitor.picture->at_work = false;
-    visitor.picture->served += each * charge_weight(show, visitor);
+    visitor.picture->served += each * charge_weight(show.visits, show.time, visitor);
   }
 }
 
@@ -73,16 +74,15 @@ constexpr float more_asked = 1.2f;   // times what is measured to fit into the t
 // Returns whether answers may come after the picture: a walking visitor is shown those of the
 // picture before, and is shown it the sooner. A place never seen yet, or a still camera's picture,
 // waits for its own.
-bool may_be_late(const Show& show, const RenderCache& cache, const Technique& technique,
+bool may_be_late(const ShowSettings& settings, const RenderCache& cache, const Technique& technique,
                  int samples) {
-  return show.settings.late_samples && show.settings.display != Display::points &&
-         !technique.begin_pass && samples <= BrokerSettings{}.most_waiting &&
-         cache.covered() > barely_covered;
+  return settings.late_samples && settings.display != Display::points && !technique.begin_pass &&
+         samples <= BrokerSettings{}.most_waiting && cache.covered() > barely_covered;
 }
 
-TransportSettings transport_of(const Show& show, const PictureJob& job) {
-  TransportSettings transport = show.settings.transport;
-  if (!job.settled) transport.clamp = show.settings.moving_clamp;
+TransportSettings transport_of(const ShowSettings& settings, const PictureJob& job) {
+  TransportSettings transport = settings.transport;
+  if (!job.settled) transport.clamp = settings.moving_clamp;
   return transport;
 }
 
@@ -95,10 +95,9 @@ bool spreads_samples(const PictureJob& job, const Technique& technique) {
 }
 
 // Returns how many samples are traced at a time.
-size_t slice_of_samples(const Show& show) {
-  double seconds =
-      std::clamp(show.drawing->renderer.until_moving, least_slice_seconds, longest_slice);
-  return size_t(std::max(seconds * double(show.drawing->samples_per_second), double(least_slice)));
+size_t slice_of_samples(const ShowDrawing& drawing) {
+  double seconds = std::clamp(drawing.renderer.until_moving, least_slice_seconds, longest_slice);
+  return size_t(std::max(seconds * double(drawing.samples_per_second), double(least_slice)));
 }
 
 // Returns the same view in as many pixels as there are samples.
@@ -145,22 +144,22 @@ void spread_samples(const View& view, int count, Visitor& visitor, std::vector<R
 
 }  // namespace
 
-void take_answers(const Show& show, VisitorPicture& picture) {
-  land(picture.broker.collect(), *show.stage.world, show.cast.pose_number, picture.cache);
+void take_answers(const ExhibitStage& stage, const ShowCast& cast, VisitorPicture& picture) {
+  land(picture.broker.collect(), *stage.world, cast.pose_number, picture.cache);
 }
 
 void plan_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
                   Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
   RenderCache& cache = picture.cache;
-  follow_lamps(show, visitor);
+  follow_lamps(show.stage, visitor);
   cache.set_attention(job.attention);
   cache.set_weights(job.weights ? std::span(*job.weights) : std::span<const float>());
   cache.set_reference(job.settled);
   picture.compositor.set_reconstructed(job.learns);
   cache.resize(job.expected.width, job.expected.height);
   cache.move_points(*show.stage.world);
-  take_answers(show, picture);
+  take_answers(show.stage, show.cast, picture);
   cache.project(job.view);
   if (technique.finish_pass) {
     work.pass = pass_view(job.view, job.samples);
@@ -168,7 +167,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   }
   cache.attend();
   int most_asked = int(more_asked * float(job.samples));
-  bool late = !is_still(job) && may_be_late(show, cache, technique, most_asked);
+  bool late = !is_still(job) && may_be_late(show.settings, cache, technique, most_asked);
   int asked = late ? most_asked : job.samples;
   work.ahead.clear();
   if (job.ahead != job.view && !technique.begin_pass)
@@ -188,13 +187,13 @@ bool begin_samples(Show& show, const PictureJob& job, const Technique& technique
   work.samples.clear();
   work.traced = 0;
   if (picture.costs.late) {
-    picture.broker.ask(job.view, {&technique, transport_of(show, job)}, work.requests);
+    picture.broker.ask(job.view, {&technique, transport_of(show.settings, job)}, work.requests);
     return false;
   }
   picture.broker.forget();  // answers that were still on their way
   work.pose = show.cast.pose_number;
   if (technique.begin_pass)
-    technique.begin_pass(*show.stage.world, transport_of(show, job),
+    technique.begin_pass(*show.stage.world, transport_of(show.settings, job),
                          technique.finish_pass ? work.pass : job.view, pass_seed(visitor.link->id),
                          uint32_t(job.tick), show.stage.lights);
   return true;
@@ -202,9 +201,9 @@ bool begin_samples(Show& show, const PictureJob& job, const Technique& technique
 
 bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work) {
   size_t all = work.requests.size(), count = all - work.traced;
-  if (!technique.begin_pass) count = std::min(count, slice_of_samples(show));
+  if (!technique.begin_pass) count = std::min(count, slice_of_samples(*show.drawing));
   work.samples.resize(all);
-  trace(technique, *show.stage.world, show.stage.lights, transport_of(show, job),
+  trace(technique, *show.stage.world, show.stage.lights, transport_of(show.settings, job),
         std::span(work.requests).subspan(work.traced, count),
         std::span(work.samples).subspan(work.traced, count));
   work.traced += count;

@@ -28,8 +28,8 @@ constexpr double settled_samples = 8;       // samples a pixel, after which the 
 
 // Returns the seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
-  const int walkers = count_moving(show);
-  if (!stands(show, visitor)) busy = std::max(busy, walkers);
+  const int walkers = count_moving(show.visits, show.time);
+  if (!stands(show.time, visitor)) busy = std::max(busy, walkers);
   double period =
       (1 - moving_share(show)) / std::max(drawing_rate(show, visitor), least_sampling_rate);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
@@ -37,7 +37,9 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
   // If many walk, keyframes come late enough without samples: the time that one keyframe takes is
   // what counts.
   if (walkers > 1)
-    least = std::max(least / walkers, least_share * drawing_costs(show, visitor).drawing_seconds);
+    least =
+        std::max(least / walkers,
+                 least_share * drawing_costs(show.visits, *show.drawing, visitor).drawing_seconds);
   return std::max((period - slack) / std::max(busy, 1) - display, least);
 }
 
@@ -54,12 +56,12 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
   const View& now = place.last_view;
   job.expected = job.view = job.ahead = now;
   job.seq = place.seq;
-  job.sees_moving = sees_moving(show, visitor, now);
+  job.sees_moving = sees_moving(show.cast, show.visits, visitor, now);
   job.camera_cuts = place.camera_cuts;
   job.rest = picture.rest;
   // The first picture of a place, while others walk, is to be there soon.
   const bool hurried = place.camera_cuts != picture.job.camera_cuts &&
-                       count_moving(show) > int(!stands(show, visitor));
+                       count_moving(show.visits, show.time) > int(!stands(show.time, visitor));
   job.dynamic = visitor.dynamic;
   // Over pictures at rest, the light of dynamic lights is put with moving things
   // (show/draw/still_pass.h).
@@ -82,10 +84,10 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
   job.note_seen = wants_seen(show, visitor);
   job.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
   const bool moves = !still && (hurried || visitor.shown.frame_number > 0);
-  if (moves) job.scale = plan_next_keyframe(show, visitor).scale;
+  if (moves) job.scale = plan_next_keyframe(show.visits, *show.drawing, show.time, visitor).scale;
   const View shown = scaled_view(now, job.scale);
   const double pixels = double(shown.width) * double(shown.height);
-  DrawingCosts costs = drawing_costs(show, visitor);
+  DrawingCosts costs = drawing_costs(show.visits, *show.drawing, visitor);
   double factor = keyframe_cost(job.scale) / keyframe_cost(before.scale);
   costs.drawing_seconds *= factor, costs.light_seconds *= factor;
   job.samples = sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, still);
@@ -126,7 +128,7 @@ bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor
       visitor.picture->drawn_at >= 0 && visitor.picture->job.camera_cuts == job.camera_cuts;
   return has_one && is_still(job) &&
          (visitor.place.last_view != job.expected || lamps_wait(show, visitor) ||
-          job.sees_moving != sees_moving(show, visitor, visitor.place.last_view));
+          job.sees_moving != sees_moving(show.cast, show.visits, visitor, visitor.place.last_view));
 }
 
 }  // namespace wellspring::show

@@ -54,10 +54,10 @@ constexpr double most_unlike = 3;      // largest ratio by which charge_weight()
 
 // Returns the seconds that a picture for each moving visitor takes: a warp takes all cores, its
 // JPEG one.
-double showing_seconds(const Show& show) {
+double showing_seconds(const ShowVisits& visits, double time) {
   double milliseconds = 0;
-  for (const Visitor& visitor : show.visits.visitors)
-    if (is_shown(visitor) && !stands(show, visitor))
+  for (const Visitor& visitor : visits.visitors)
+    if (is_shown(visitor) && !stands(time, visitor))
       milliseconds += double(visitor.times.warp) +
                       double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
   return 0.001 * milliseconds;
@@ -70,15 +70,16 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   VisitorDrawState state;
   state.welcomed = is_shown(visitor);
   state.at_work = picture.at_work;
-  state.can_take = may_take(show, visitor);
-  state.stands = stands(show, visitor);
+  state.can_take = may_take(show.time, visitor);
+  state.stands = stands(show.time, visitor);
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
   // The renderer brings the picture that it draws to the present light.
   state.other_light =
       show.drawing->renderer.drawn != visitor.link->id &&
       (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour);
-  state.sees_moving = state.welcomed && sees_moving(show, visitor, place.last_view);
+  state.sees_moving =
+      state.welcomed && sees_moving(show.cast, show.visits, visitor, place.last_view);
   state.drew_moving = picture.job.sees_moving;
   state.unshown = picture.unshown;
   state.backdrop = picture.backdrop;
@@ -103,7 +104,8 @@ int count_backdrops(const Show& show) {
 double moving_rate(const Show& show, const Visitor& visitor, int backdrops) {
   double seconds = 0.001 * double(visitor.times.moving) * double(std::max(backdrops, 1));
   double rate = picture_rate(show, visitor);
-  const double share = count_moving(show) > 0 ? least_moving_share : most_moving_share;
+  const double share =
+      count_moving(show.visits, show.time) > 0 ? least_moving_share : most_moving_share;
   return seconds > 0 ? std::min(rate, share / seconds) : rate;
 }
 
@@ -129,8 +131,8 @@ void watch(const Show& show, Visitor& visitor) {
   visitor.dynamic = dynamic_lights_in(view, dynamic_lights_of(show, visitor, show.time));
 }
 
-bool stands(const Show& show, const Visitor& visitor) {
-  return visitor.shown.frame_number > 0 && show.time - visitor.place.moved_at > still_after &&
+bool stands(double time, const Visitor& visitor) {
+  return visitor.shown.frame_number > 0 && time - visitor.place.moved_at > still_after &&
          visitor.place.velocity == vec3(0) && visitor.place.move == vec3(0);
 }
 
@@ -139,41 +141,41 @@ bool rests(const Show& show, const Visitor& visitor) {
 }
 
 bool asks_for_samples(const Show& show, const Visitor& visitor) {
-  if (!stands(show, visitor)) return true;
+  if (!stands(show.time, visitor)) return true;
   return keeps_picture(facts_of(show, visitor)) ? !has_all_samples(visitor.picture->rest)
                                                 : visitor.picture->stats.converged < nearly_all;
 }
 
-int count_moving(const Show& show) {
-  auto moves = [&](const Visitor& one) { return is_shown(one) && !stands(show, one); };
-  return int(std::count_if(show.visits.visitors.begin(), show.visits.visitors.end(), moves));
+int count_moving(const ShowVisits& visits, double time) {
+  auto moves = [&](const Visitor& one) { return is_shown(one) && !stands(time, one); };
+  return int(std::count_if(visits.visitors.begin(), visits.visitors.end(), moves));
 }
 
-double charge_weight(const Show& show, const Visitor& visitor) {
-  if (stands(show, visitor)) return standing_weight;
+double charge_weight(const ShowVisits& visits, double time, const Visitor& visitor) {
+  if (stands(time, visitor)) return standing_weight;
   double sum = 0;
   int count = 0;
-  for (const Visitor& one : show.visits.visitors)
-    if (is_shown(one) && !stands(show, one) && one.times.whole > 0)
+  for (const Visitor& one : visits.visitors)
+    if (is_shown(one) && !stands(time, one) && one.times.whole > 0)
       sum += double(one.times.whole), count++;
   if (count == 0 || !(visitor.times.whole > 0)) return 1;
   return std::clamp(sum / count / double(visitor.times.whole), 1 / most_unlike, most_unlike);
 }
 
-bool may_take(const Show& show, const Visitor& visitor) {
+bool may_take(double time, const Visitor& visitor) {
   return is_shown(visitor) && !visitor.link->picture_pending() &&
-         may_send(visitor.shown.flow, show.time);
+         may_send(visitor.shown.flow, time);
 }
 
 double picture_rate(const Show& show, const Visitor& visitor) {
-  double rate = picture_plan(show, visitor).rate;
-  if (stands(show, visitor)) {
+  double rate = picture_plan(show.settings, visitor).rate;
+  if (stands(show.time, visitor)) {
     rate = std::min(rate, sees_motion(show, visitor, visitor.place.last_view) ? still_rate
                           : rests(show, visitor)                              ? resting_rate
                                                                               : settling_rate);
   } else {
     // All get the same rate, whosever warps cost most.
-    if (double seconds = showing_seconds(show); seconds > 0)
+    if (double seconds = showing_seconds(show.visits, show.time); seconds > 0)
       rate = std::min(rate, warping_share / seconds);
   }
   if (visitor.kiosk && !show.house.state.open) rate = closed_rate;
@@ -184,9 +186,8 @@ namespace {
 
 // Returns the pictures a second whose samples are to find changes of the light: fewer the longer
 // none was found, as many in a minute as in the first few seconds.
-double watching_rate(const Show& show, const Visitor& visitor) {
-  const double since =
-      show.time - std::max(visitor.place.moved_at, visitor.picture->rest.passed_at);
+double watching_rate(double time, const Visitor& visitor) {
+  const double since = time - std::max(visitor.place.moved_at, visitor.picture->rest.passed_at);
   return std::clamp(resting_rate * settled_seconds / std::max(since, settled_seconds), rested_rate,
                     resting_rate);
 }
@@ -196,8 +197,10 @@ double watching_rate(const Show& show, const Visitor& visitor) {
 double drawing_rate(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = *visitor.picture;
   double rate = picture_rate(show, visitor);
-  if (!stands(show, visitor)) return std::min(rate, 1 / plan_next_keyframe(show, visitor).period);
-  if (rests(show, visitor)) rate = std::min(rate, watching_rate(show, visitor));
+  if (!stands(show.time, visitor))
+    return std::min(rate,
+                    1 / plan_next_keyframe(show.visits, *show.drawing, show.time, visitor).period);
+  if (rests(show, visitor)) rate = std::min(rate, watching_rate(show.time, visitor));
   if (picture.backdrop) rate = std::min(rate, backdrop_rate);
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.drawing->pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
@@ -225,14 +228,15 @@ double seconds_to_moving(const Show& show) {
   return std::max(seconds, 0.0);
 }
 
-DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
+DrawingCosts drawing_costs(const ShowVisits& visits, const ShowDrawing& drawing,
+                           const Visitor& visitor) {
   const StageTimes& times = visitor.times;
   auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
-  DrawingCosts costs{show.drawing->samples_per_second, seconds(times.drawing),
+  DrawingCosts costs{drawing.samples_per_second, seconds(times.drawing),
                      seconds(times.display + times.tonemap), seconds(times.light)};
   // A newcomer's first picture is expected to cost what others' have cost.
   if (visitor.picture->drawn_at < 0 && costs.drawing_seconds == 0)
-    costs.drawing_seconds = show.visits.capacity->standing().cost.drawn *
+    costs.drawing_seconds = visits.capacity->standing().cost.drawn *
                             weighed_pixels(double(visitor.wants.width) * visitor.wants.height) /
                             oneapi::tbb::info::default_concurrency();
   return costs;
@@ -246,10 +250,11 @@ static Ageing ageing_of(const Visitor& visitor) {
   return {motion.speed * visitor.picture->relief, motion.turn / across};
 }
 
-KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {
-  const DrawingCosts costs = drawing_costs(show, visitor);
+KeyframePlan plan_next_keyframe(const ShowVisits& visits, const ShowDrawing& drawing, double time,
+                                const Visitor& visitor) {
+  const DrawingCosts costs = drawing_costs(visits, drawing, visitor);
   double light = costs.light_seconds > 0 ? costs.light_seconds : costs.display_seconds;
-  return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(show), 1),
+  return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(visits, time), 1),
                        visitor.picture->job.scale,
                        visitor.wants.local ? longest_period(ageing_of(visitor)) : finished_period);
 }

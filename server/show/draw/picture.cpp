@@ -32,26 +32,28 @@ void carry_times(double factor, StageTimes& times) {
 }
 
 // Returns whether pictures are as the render cache was published: points alone.
-bool shows_points(const Show& show) { return show.settings.display == Display::points; }
+bool shows_points(const ShowSettings& settings) { return settings.display == Display::points; }
 
 // Returns whether moving things are drawn by themselves: if they are little of the picture, as what
 // they cover is kept.
-bool draws_backdrop(const Show& show, const PictureJob& job) {
-  if (!is_still(job) || !job.sees_moving || shows_points(show)) return false;
-  if (!show.stage.visibility->rasterises(job.view)) return false;
+bool draws_backdrop(const ExhibitStage& stage, const ShowSettings& settings,
+                    const PictureJob& job) {
+  if (!is_still(job) || !job.sees_moving || shows_points(settings)) return false;
+  if (!stage.visibility->rasterises(job.view)) return false;
   if (!job.dynamic.empty()) return true;
-  PictureWindow window = moving_window(*show.stage.world, job.view);
+  PictureWindow window = moving_window(*stage.world, job.view);
   return !window.empty() && may_be_laid_over(window, job.view);
 }
 
 // Adds the light of lights that move or change to a picture of `view`; to one at rest it is added
 // later.
-void light_dynamically(Show& show, const PictureJob& job, const View& view, Visitor& visitor) {
-  DynamicImage& image = show.drawing->renderer.work.dynamic;
+void light_dynamically(ShowDrawing& drawing, const ExhibitStage& stage, const PictureJob& job,
+                       const View& view, Visitor& visitor) {
+  DynamicImage& image = drawing.renderer.work.dynamic;
   const bool any = !job.dynamic.empty() && !is_still(job);
   if (any)
-    compute_dynamic_light(*show.stage.world, show.stage.lights, *show.stage.visibility, view,
-                          job.dynamic, dynamic_splat_settings(), image);
+    compute_dynamic_light(*stage.world, stage.lights, *stage.visibility, view, job.dynamic,
+                          dynamic_splat_settings(), image);
   visitor.picture->compositor.set_dynamic(any ? &image : nullptr);
 }
 
@@ -105,9 +107,9 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
     return DrawingStep::done;
   }
   const Tonemap curve{show.stage.exhibit.exposure};
-  costs.backdrop = draws_backdrop(show, job);
-  light_dynamically(show, job, job.view, visitor);
-  const bool points = shows_points(show), passing = !is_still(job) && !points;
+  costs.backdrop = draws_backdrop(show.stage, show.settings, job);
+  light_dynamically(*show.drawing, show.stage, job, job.view, visitor);
+  const bool points = shows_points(show.settings), passing = !is_still(job) && !points;
   if (points) paint_points(cache, job.view, work.frame);
   else if (passing)
     compositor.draw(cache, job.view, *show.stage.visibility, curve, work.picture, &work.depth);
@@ -136,13 +138,14 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
 }
 
 // Does one visibility pass of a reconstruction's guides; the last step encodes the network's input.
-DrawingStep find_guides(Show& show, const PictureJob& job, VisitorPicture& picture) {
-  DrawingWork& work = show.drawing->renderer.work;
-  StillPass& pass = show.drawing->pass;
+DrawingStep find_guides(ShowDrawing& drawing, const ExhibitStage& stage, const PictureJob& job,
+                        VisitorPicture& picture) {
+  DrawingWork& work = drawing.renderer.work;
+  StillPass& pass = drawing.pass;
   double began = seconds_now();
   bool all = work.guided == guide_places;
   if (!all)
-    add_still_guides(*show.stage.world, show.stage.lights, *show.stage.visibility, job.view,
+    add_still_guides(*stage.world, stage.lights, *stage.visibility, job.view,
                      picture.costs.backdrop ? RasterShows::still : RasterShows::all, work.guided++,
                      pass.work.guides, pass.work.followed);
   else begin_reconstruction(picture.compositor.samples(), pass.frame, *pass.denoiser, pass.work);
@@ -167,7 +170,7 @@ DrawingStep draw_step(Show& show, const PictureJob& job, DrawingStep step, Visit
   } else if (step == DrawingStep::draw) {
     step = paint_picture(show, job, technique, visitor);
   } else {
-    step = find_guides(show, job, *visitor.picture);
+    step = find_guides(*show.drawing, show.stage, job, *visitor.picture);
   }
   visitor.picture->costs.seconds += seconds_now() - began;
   return step;
@@ -202,7 +205,7 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   if (job.kind == PictureKind::samples || job.kind == PictureKind::reconstruction) {
     picture.drawn_at = job.time;
     picture.job.settled = job.settled;
-    if (job.kind == PictureKind::reconstruction) begin_pass(show, job, visitor);
+    if (job.kind == PictureKind::reconstruction) begin_pass(*show.drawing, job, visitor);
     show.drawing->renderer.work_bytes =
         memory_bytes(show.drawing->renderer.work) + memory_bytes(show.drawing->pass);
     return;
@@ -255,24 +258,25 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
 void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
   DrawingWork& work = show.drawing->renderer.work;
-  follow_lamps(show, visitor);
-  take_answers(show, picture);
-  light_dynamically(show, job, *job.around, visitor);
+  follow_lamps(show.stage, visitor);
+  take_answers(show.stage, show.cast, picture);
+  light_dynamically(*show.drawing, show.stage, job, *job.around, visitor);
   picture.compositor.draw(picture.cache, *job.around, *show.stage.visibility,
                           Tonemap{show.stage.exhibit.exposure}, work.picture, &work.depth);
   make_keyframe(*job.around, work.picture, work.depth, work.around);
 }
 
-void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
+void finish_surroundings(ShowDrawing& drawing, ShowTotals& totals, const PictureJob& job,
+                         Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
   Surroundings& around = picture.around;
-  std::swap(show.drawing->renderer.work.around, around.keyframe);
+  std::swap(drawing.renderer.work.around, around.keyframe);
   around.unsent = visitor.wants.local;
   around.camera_cuts = job.camera_cuts;
   around.drawn = true;
   fit_memory(picture);
   picture.memory_bytes = picture_memory(visitor);
-  show.totals.surroundings++;
+  totals.surroundings++;
 }
 
 }  // namespace wellspring::show

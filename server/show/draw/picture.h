@@ -20,6 +20,7 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor);
 // Draws surroundings before the picture, if the job has some; they are shown as soon as they are
 // there.
 void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor);
-void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor);
+void finish_surroundings(ShowDrawing& drawing, ShowTotals& totals, const PictureJob& job,
+                         Visitor& visitor);
 
 }  // namespace wellspring::show

@@ -86,10 +86,10 @@ vec2 faced_place(const Person& person, const ScreenSize& screen, const View& res
   return {0.5f + 0.5f * at.x / half_width, 0.5f - 0.5f * at.y / half_height};
 }
 
-const PointOfInterest* find_shown(const Show& show, const Voice& voice) {
+const PointOfInterest* find_shown(const ExhibitStage& stage, const Voice& voice) {
   if (voice.queue.empty() || voice.paused) return nullptr;
   const std::string& object = voice.held.point.empty() ? voice.held.look : voice.held.point;
-  return object.empty() ? nullptr : find_point(show.stage.exhibit, object);
+  return object.empty() ? nullptr : find_point(stage.exhibit, object);
 }
 
 AttentionCause find_cause(const Show& show, const Visitor& visitor) {
@@ -200,13 +200,13 @@ std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,
     kind.weight *= std::clamp(person->confidence, 0.0f, 1.0f);
     const Kiosk* kiosk = kiosk_of(show, visitor);
     vec2 place = faced_place(*person, kiosk ? kiosk->settings.screen : ScreenSize(),
-                             rest_view(show, visitor));
+                             rest_view(show.stage, visitor));
     bool faces =
         std::abs(person->rotation.x) < 0.4f * pi && std::abs(person->rotation.y) < 0.4f * pi;
     if (faces) add_hint(seen, place_in_picture(now, place), kind, hints);
   }
-  const PointOfInterest* shown = find_shown(show, visitor.hearing.narration.voice);
-  if (!shown) shown = find_shown(show, teller_of(show, visitor).voice);
+  const PointOfInterest* shown = find_shown(show.stage, visitor.hearing.narration.voice);
+  if (!shown) shown = find_shown(show.stage, teller_of(show.cast, show.visits, visitor).voice);
   if (shown)
     add_hint(seen, vec3(shown->place - show.stage.exhibit.scene.origin), shown_hint, hints);
   return hints;

@@ -23,9 +23,9 @@ constexpr double slice = 0.02, least_step = 0.004;  // seconds
 
 }  // namespace
 
-void begin_pass(Show& show, const PictureJob& job, Visitor& visitor) {
+void begin_pass(ShowDrawing& drawing, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
-  StillPass& pass = show.drawing->pass;
+  StillPass& pass = drawing.pass;
   pass.visitor = visitor.link->id;
   pass.job = job;
   pass.backdrop = picture.costs.backdrop;
@@ -39,16 +39,16 @@ void begin_pass(Show& show, const PictureJob& job, Visitor& visitor) {
   picture.rest.passed_samples = picture.rest.samples;
 }
 
-void go_on_with_pass(Show& show, Visitor& visitor) {
-  StillPass& pass = show.drawing->pass;
+void go_on_with_pass(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& visitor) {
+  StillPass& pass = drawing.pass;
   double began = seconds_now();
   if (pass.step == StillPass::Step::compute) {
-    double seconds = std::clamp(show.drawing->renderer.until_moving, least_step, slice);
+    double seconds = std::clamp(drawing.renderer.until_moving, least_step, slice);
     if (!pass.denoiser->advance(seconds, &pass.given_up)) pass.step = StillPass::Step::finish;
   } else if (pass.step == StillPass::Step::finish) {
     finish_reconstruction(visitor.picture->compositor.samples(), *pass.denoiser, pass.work,
                           pass.frame);
-    tonemap(pass.frame, Tonemap{show.stage.exhibit.exposure}, pass.picture);
+    tonemap(pass.frame, Tonemap{stage.exhibit.exposure}, pass.picture);
     make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
     pass.step = StillPass::Step::done;
   }
@@ -114,9 +114,9 @@ void begin_skin_light(Show& show, const Visitor& visitor) {
   bool alike = true;  // all visitors see the same moving things
   for (const Visitor& one : show.visits.visitors) {
     const View& view = one.place.last_view;
-    if (!one.welcomed || !sees_moving(show, one, view)) continue;
-    alike &= see_the_same(show, one, visitor);
-    if (!see_the_same(show, one, visitor)) continue;
+    if (!one.welcomed || !sees_moving(show.cast, show.visits, one, view)) continue;
+    alike &= see_the_same(show.cast, show.visits, one, visitor);
+    if (!see_the_same(show.cast, show.visits, one, visitor)) continue;
     const float seen =
         see_skin(*show.stage.world, show.stage.skin, view, sight_rays, job.turn).pixels;
     if (seen > 0) job.views.push_back(view);
@@ -137,26 +137,25 @@ void begin_skin_light(Show& show, const Visitor& visitor) {
   job.at_work = true;
 }
 
-void compute_skin_light(Show& show) {
-  SkinJob& job = show.drawing->renderer.skin;
+void compute_skin_light(ExhibitStage& stage, ShowDrawing& drawing) {
+  SkinJob& job = drawing.renderer.skin;
   job.traced = 0;
   if (job.update.samples <= 0) return;
-  job.traced =
-      size_t(update_skin(*show.stage.world, show.stage.lights, job.update, show.stage.skin));
-  smooth_skin(*show.stage.world, show.stage.skin, job.cycles);
+  job.traced = size_t(update_skin(*stage.world, stage.lights, job.update, stage.skin));
+  smooth_skin(*stage.world, stage.skin, job.cycles);
 }
 
-void finish_skin_light(Show& show) {
-  show.drawing->renderer.skin.at_work = false;
-  show.totals.samples += show.drawing->renderer.skin.traced;
+void finish_skin_light(ShowDrawing& drawing, ShowTotals& totals) {
+  drawing.renderer.skin.at_work = false;
+  totals.samples += drawing.renderer.skin.traced;
 }
 
 namespace {
 
 // Finds the light of moving lights on still surfaces in the visitor's picture, and on moving
 // things.
-void light_picture(Show& show, VisitorPicture& picture) {
-  Renderer& renderer = show.drawing->renderer;
+void light_picture(ShowDrawing& drawing, const ExhibitStage& stage, VisitorPicture& picture) {
+  Renderer& renderer = drawing.renderer;
   DynamicImage& image = renderer.work.dynamic;
   const DynamicLights& from = renderer.posed_lights;
   const SplatSettings settings = dynamic_splat_settings();
@@ -164,48 +163,44 @@ void light_picture(Show& show, VisitorPicture& picture) {
   BackdropSurfaces& surfaces = picture.surfaces;
   SettledBounce& settled = picture.settled;
   if (surfaces.view != view) {
-    find_backdrop_surfaces(*show.stage.visibility, view, surfaces);
+    find_backdrop_surfaces(*stage.visibility, view, surfaces);
     settled = {};
   }
-  see_surfaces(*show.stage.visibility, dynamic_light_view(view), image.surfaces,
-               RasterShows::moving);
+  see_surfaces(*stage.visibility, dynamic_light_view(view), image.surfaces, RasterShows::moving);
   DynamicLights others = from;
   take_settled(settled, others);
   if (wants_pass(settled))
-    add_pass(*show.stage.world, show.stage.lights, surfaces.surfaces, settings, settled,
-             image.bounce);
-  begin_bounce(*show.stage.world, show.stage.lights, others, surfaces.surfaces, settings, {},
-               image.bounce);
-  light_surfaces(*show.stage.world, show.stage.lights, from, surfaces.surfaces, settings,
-                 image.bounce, renderer.work.backdrop_light);
+    add_pass(*stage.world, stage.lights, surfaces.surfaces, settings, settled, image.bounce);
+  begin_bounce(*stage.world, stage.lights, others, surfaces.surfaces, settings, {}, image.bounce);
+  light_surfaces(*stage.world, stage.lights, from, surfaces.surfaces, settings, image.bounce,
+                 renderer.work.backdrop_light);
   add_settled(settled, renderer.work.backdrop_light);
   if (!settled.lights.empty())
-    begin_bounce(*show.stage.world, show.stage.lights, from, surfaces.surfaces, settings, {},
-                 image.bounce);
-  light_surfaces(*show.stage.world, show.stage.lights, from, image.surfaces, settings, image.bounce,
+    begin_bounce(*stage.world, stage.lights, from, surfaces.surfaces, settings, {}, image.bounce);
+  light_surfaces(*stage.world, stage.lights, from, image.surfaces, settings, image.bounce,
                  image.light);
 }
 
 }  // namespace
 
-void draw_moving(Show& show, Visitor& visitor) {
-  Renderer& renderer = show.drawing->renderer;
+void draw_moving(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& visitor) {
+  Renderer& renderer = drawing.renderer;
   double began = seconds_now();
   VisitorPicture& picture = *visitor.picture;
   const bool dynamic = !renderer.posed_lights.empty();
-  if (dynamic) light_picture(show, picture);
+  if (dynamic) light_picture(drawing, stage, picture);
   const BackdropLight relit{picture.surfaces, renderer.work.backdrop_light};
   picture.compositor.set_dynamic(dynamic ? &renderer.work.dynamic : nullptr);
-  picture.compositor.draw_moving(*show.stage.world, picture.keyframe, dynamic ? &relit : nullptr,
-                                 *show.stage.visibility, Tonemap{show.stage.exhibit.exposure},
+  picture.compositor.draw_moving(*stage.world, picture.keyframe, dynamic ? &relit : nullptr,
+                                 *stage.visibility, Tonemap{stage.exhibit.exposure},
                                  renderer.posed_layer, renderer.work.moving_light,
                                  renderer.work.moving);
   renderer.posed_seconds = seconds_now() - began;
 }
 
-void finish_moving(Show& show, Visitor& visitor) {
+void finish_moving(ShowDrawing& drawing, ShowTotals& totals, Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
-  Renderer& renderer = show.drawing->renderer;
+  Renderer& renderer = drawing.renderer;
   const bool is_first = picture.posed_at < 0;
   picture.posed_at = renderer.posed_at;
   MovingPicture& moving = renderer.work.moving;
@@ -223,7 +218,7 @@ void finish_moving(Show& show, Visitor& visitor) {
   picture.job.time_us = renderer.posed_us;
   // A page that has the still part of the picture need not get it again.
   if (!layer || relit || is_first) picture.unshown = true;
-  show.totals.posed++;
+  totals.posed++;
 }
 
 void finish_backdrop(VisitorPicture& picture) {

@@ -58,7 +58,7 @@ ShowReport make_report(const Show& show) {
   }
   report.open = show.house.state.open;
   report.quiet = show.house.state.quiet;
-  report.connected_cameras = int(connected_cameras(show));
+  report.connected_cameras = int(connected_cameras(show.kiosks));
   for (const Eye& eye : show.kiosks.eyes) report.cameras.push_back(report_camera(eye, show.time));
   report.mood = show.cast.teller.mind.mood;
   report.totals = show.totals;
@@ -78,7 +78,7 @@ ShowReport make_report(const Show& show) {
     one.height = visitor.wants.height;
     one.budget = visitor.picture->job.samples;
     one.drawing_ms = visitor.times.drawing;
-    const PicturePlan plan = picture_plan(show, visitor);
+    const PicturePlan plan = picture_plan(show.settings, visitor);
     one.quality = plan.quality;
     one.eighths = plan.eighths;
     one.limit = limit(visitor.shown.way);

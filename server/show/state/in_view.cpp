@@ -20,9 +20,10 @@ vec3 above_feet(const Teller& teller, float height) {
 
 // Returns metres to the storyteller's head if the visitor may see it, else nobody_near.
 float distance_to_head(const Show& show, const Visitor& visitor, const Teller& teller) {
-  if (!visitor.welcomed || &teller_of(show, visitor) != &teller) return nobody_near;
+  if (!visitor.welcomed || &teller_of(show.cast, show.visits, visitor) != &teller)
+    return nobody_near;
   View view = view_of(show, visitor);
-  if (!sees_head(show, teller, view)) return nobody_near;
+  if (!sees_head(show.cast, teller, view)) return nobody_near;
   const vec3 head = above_feet(teller, head_height);
   const Kiosk* kiosk = kiosk_of(show, visitor);
   if (!kiosk || kiosk->audience.guests.empty()) return glm::length(view.position - head);
@@ -45,27 +46,27 @@ bool in_view(const View& view, vec3 centre, float radius) {
          slope * std::max(depth, 0.0f) + radius * std::sqrt(1 + slope * slope);
 }
 
-View rest_view(const Show& show, const Visitor& visitor) {
+View rest_view(const ExhibitStage& stage, const Visitor& visitor) {
   const Around& around = visitor.place.around;
   const Viewpoint& at = around.point >= 0 ? around.view : visitor.place.view;
-  View view = make_view(show.stage.exhibit.scene, at, visitor.wants.width, visitor.wants.height);
+  View view = make_view(stage.exhibit.scene, at, visitor.wants.width, visitor.wants.height);
   view.near = around.near;
   return view;
 }
 
 View view_of(const Show& show, const Visitor& visitor) {
-  const View rest = rest_view(show, visitor);
+  const View rest = rest_view(show.stage, visitor);
   const Kiosk* kiosk = kiosk_of(show, visitor);
   return kiosk ? through_window(rest, kiosk->settings.screen, visitor.window.place) : rest;
 }
 
-bool sees_head(const Show& show, const Teller& teller, const View& view) {
-  return !show.cast.figures.empty() && teller.visible &&
+bool sees_head(const ShowCast& cast, const Teller& teller, const View& view) {
+  return !cast.figures.empty() && teller.visible &&
          in_view(view, above_feet(teller, head_height), head_reach);
 }
 
-bool sees_figure(const Show& show, const Teller& teller, const View& view) {
-  return !show.cast.figures.empty() && teller.visible &&
+bool sees_figure(const ShowCast& cast, const Teller& teller, const View& view) {
+  return !cast.figures.empty() && teller.visible &&
          in_view(view, above_feet(teller, body_height), body_reach);
 }
 
@@ -84,7 +85,7 @@ const Visitor* heard_on_tour(const Show& show, const Teller& teller) {
 const PointOfInterest* looked_at_beside_her(const Show& show, const Teller& teller) {
   for (const Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && visitor.place.closer >= 0 && listens_to(show, visitor, teller) &&
-        sees_head(show, teller, view_of(show, visitor)))
+        sees_head(show.cast, teller, view_of(show, visitor)))
       return &show.stage.exhibit.points[size_t(visitor.place.closer)];
   return nullptr;
 }
@@ -102,7 +103,7 @@ using Start = ExhibitAnimation::Start;
 
 const Play& play_of(const Show& show, const Visitor& visitor, size_t i) {
   const Visitor* own =
-      show.stage.exhibit.animations[i].shared ? nullptr : who_touched(show, visitor);
+      show.stage.exhibit.animations[i].shared ? nullptr : who_touched(show.visits, visitor);
   return own ? own->plays[i] : show.cast.plays[i];
 }
 
@@ -122,8 +123,8 @@ void set_animation(Show& show, Visitor& visitor, size_t i, bool on) {
 
 }  // namespace
 
-const Visitor* who_touched(const Show& show, const Visitor& visitor) {
-  const Visitor* leader = leader_of(show, visitor);
+const Visitor* who_touched(const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
   const Visitor& who = leader ? *leader : visitor;
   return who.plays.empty() ? nullptr : &who;
 }
@@ -140,14 +141,17 @@ bool is_on(const Show& show, const Visitor& visitor, size_t animation) {
   return play_of(show, visitor, animation).on;
 }
 
-bool sees_moving(const Show& show, const Visitor& visitor, const View& view) {
-  return !visitor.dynamic.empty() || sees_figure(show, teller_of(show, visitor), view) ||
-         std::ranges::any_of(show.cast.movers.reach,
+bool sees_moving(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor,
+                 const View& view) {
+  return !visitor.dynamic.empty() || sees_figure(cast, teller_of(cast, visits, visitor), view) ||
+         std::ranges::any_of(cast.movers.reach,
                              [&](const Reach& reach) { return in_reach(view, reach); });
 }
 
 bool sees_motion(const Show& show, const Visitor& visitor, const View& view) {
-  if (!visitor.dynamic.empty() || sees_figure(show, teller_of(show, visitor), view)) return true;
+  if (!visitor.dynamic.empty() ||
+      sees_figure(show.cast, teller_of(show.cast, show.visits, visitor), view))
+    return true;
   for (size_t i = 0; i < show.stage.exhibit.animations.size(); i++)
     if (in_reach(view, show.cast.movers.reach[i]) &&
         is_running(show.stage.exhibit.animations[i], play_of(show, visitor, i), show.time))

@@ -24,33 +24,35 @@ Visitor& visitor_of(ShowVisits& visits, uint64_t id) {
   return const_cast<Visitor&>(visitor_of(std::as_const(visits), id));
 }
 
-const Visitor* leader_of(const Show& show, const Visitor& visitor) {
+const Visitor* leader_of(const ShowVisits& visits, const Visitor& visitor) {
   const VisitorGroup& group = visitor.group;
   if (group.follows.empty() || group.away) return nullptr;
-  for (const Visitor& other : show.visits.visitors)
+  for (const Visitor& other : visits.visitors)
     if (other.group.leads == group.follows && !other.left) return &other;
   return nullptr;
 }
 
-const Teller& teller_of(const Show& show, const Visitor& visitor) {
-  const Visitor* leader = leader_of(show, visitor);
+const Teller& teller_of(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
   const Visitor& who = leader ? *leader : visitor;
-  return who.own_teller ? *who.own_teller : show.cast.teller;
+  return who.own_teller ? *who.own_teller : cast.teller;
 }
 
 Teller& teller_of(Show& show, Visitor& visitor) {
-  return const_cast<Teller&>(teller_of(std::as_const(show), std::as_const(visitor)));
+  return const_cast<Teller&>(
+      teller_of(std::as_const(show).cast, std::as_const(show).visits, std::as_const(visitor)));
 }
 
-std::vector<Teller*> tellers_of(Show& show) {
-  std::vector<Teller*> all{&show.cast.teller};
-  for (Visitor& visitor : show.visits.visitors)
+std::vector<Teller*> tellers_of(ShowCast& cast, ShowVisits& visits) {
+  std::vector<Teller*> all{&cast.teller};
+  for (Visitor& visitor : visits.visitors)
     if (visitor.own_teller) all.push_back(visitor.own_teller.get());
   return all;
 }
 
-const StorytellerPlace* storyteller_of(const Show& show, const Teller& teller) {
-  return show.cast.figures.empty() ? nullptr : &show.stage.exhibit.storytellers[teller.index];
+const StorytellerPlace* storyteller_of(const ExhibitStage& stage, const ShowCast& cast,
+                                       const Teller& teller) {
+  return cast.figures.empty() ? nullptr : &stage.exhibit.storytellers[teller.index];
 }
 
 std::string kiosk_name(const Show& show, const std::string& said) {
@@ -64,14 +66,14 @@ std::string kiosk_name(const Show& show, const std::string& said) {
   return names.size() == 1 ? *names.begin() : "";
 }
 
-const Kiosk* find_kiosk(const Show& show, const std::string& name) {
-  for (const Kiosk& kiosk : show.kiosks.all)
+const Kiosk* find_kiosk(const ShowKiosks& kiosks, const std::string& name) {
+  for (const Kiosk& kiosk : kiosks.all)
     if (kiosk.settings.name == name) return &kiosk;
   return nullptr;
 }
 
 const Kiosk* kiosk_of(const Show& show, const Visitor& visitor) {
-  return visitor.kiosk ? find_kiosk(show, kiosk_name(show, visitor.name)) : nullptr;
+  return visitor.kiosk ? find_kiosk(show.kiosks, kiosk_name(show, visitor.name)) : nullptr;
 }
 
 bool hears_storyteller(const Show& show, const Visitor& visitor) {
@@ -80,7 +82,7 @@ bool hears_storyteller(const Show& show, const Visitor& visitor) {
 }
 
 bool listens_to(const Show& show, const Visitor& visitor, const Teller& teller) {
-  return visitor.welcomed && &teller_of(show, visitor) == &teller &&
+  return visitor.welcomed && &teller_of(show.cast, show.visits, visitor) == &teller &&
          hears_storyteller(show, visitor);
 }
 

@@ -81,18 +81,20 @@ Visitor& visitor_of(ShowVisits& visits, uint64_t id);
 const Visitor& visitor_of(const ShowVisits& visits, uint64_t id);
 // Returns the visitor whose place, storyteller and lamps this one follows at the moment; null:
 // nobody's.
-const Visitor* leader_of(const Show& show, const Visitor& visitor);
+const Visitor* leader_of(const ShowVisits& visits, const Visitor& visitor);
 // Return the storyteller that the visitor sees and hears.
 Teller& teller_of(Show& show, Visitor& visitor);
-const Teller& teller_of(const Show& show, const Visitor& visitor);
-std::vector<Teller*> tellers_of(Show& show);  // the house's storyteller, then visitors' own
+const Teller& teller_of(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor);
+std::vector<Teller*> tellers_of(ShowCast& cast,
+                                ShowVisits& visits);  // the house's storyteller, then visitors' own
 // Returns which of the exhibit's storytellers it is; null: the exhibit has none.
-const StorytellerPlace* storyteller_of(const Show& show, const Teller& teller);
+const StorytellerPlace* storyteller_of(const ExhibitStage& stage, const ShowCast& cast,
+                                       const Teller& teller);
 
 // Returns the name of the kiosk that a page or a camera means by what it calls itself: without a
 // name it belongs to the only kiosk that has one, if there is just one.
 std::string kiosk_name(const Show& show, const std::string& said);
-const Kiosk* find_kiosk(const Show& show, const std::string& name);  // null: there is none
+const Kiosk* find_kiosk(const ShowKiosks& kiosks, const std::string& name);  // null: there is none
 // Returns the kiosk of a kiosk's page; null: the page is a visitor's.
 const Kiosk* kiosk_of(const Show& show, const Visitor& visitor);
 // Returns whether the visitor hears the house's storyteller, which is with one kiosk at a time;

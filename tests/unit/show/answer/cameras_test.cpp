@@ -55,7 +55,7 @@ TEST_F(Cameras, ALostOneIsListedUntilItIsForgotten) {
   wait(90);
   speak(*right, "hall, right");
   EXPECT_EQ(listed(), (List{"1 hall, left disconnected 89", "2 hall, right good 0"}));
-  EXPECT_EQ(connected_cameras(*show), 1u);
+  EXPECT_EQ(connected_cameras(show->kiosks), 1u);
   const std::string text = write_metrics(make_report(*show));
   EXPECT_NE(text.find("wellspring_kiosk_cameras 1\n"), std::string::npos);
   EXPECT_NE(text.find("wellspring_kiosk_camera_seconds{camera=\"1\",name=\"hall, left\","

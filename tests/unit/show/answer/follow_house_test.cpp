@@ -103,7 +103,7 @@ TEST_F(FollowHouse, AtClosingAVisitIsBiddenFarewellAndTheEyeIdles) {
 TEST_F(FollowHouse, WhoWasNotGreetedIsNotBiddenFarewell) {
   const size_t hall = page("hall"), in_hall = camera("hall");
   see(in_hall, {near_screen});
-  step_until([&] { return has_guest(find_kiosk(*show, "hall")->stage.now); });
+  step_until([&] { return has_guest(find_kiosk(show->kiosks, "hall")->stage.now); });
   go(0.1);
   set_clock(17);
   go(0.3);

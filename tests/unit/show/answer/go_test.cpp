@@ -142,7 +142,7 @@ TEST_F(GoTest, LooksCloserThroughGlassWithAllOfItInThePicture) {
   ASSERT_EQ(last("went")["object"], "statue");
   EXPECT_EQ(place().closer, 0);
   arrive();
-  View view = rest_view(*show, show->visits.visitors.front());
+  View view = rest_view(show->stage, show->visits.visitors.front());
   for (int i = 0; i < 8; i++) {
     vec3 corner(i & 1 ? -3.2f : -2.9f, i & 2 ? 0.8f : 1.3f, i & 4 ? -3.2f : -2.9f);
     Projected seen = project_point(view, corner);
@@ -168,7 +168,7 @@ TEST_F(GoTest, AnObjectOfTheMapIsLookedAtFromBehindTheWallToo) {
 
 TEST_F(GoTest, SmallThingsNeedNoSteadyHand) {
   stand_at({-3.05f, 1.6f, -0.6f}, 0, -0.2f);
-  View view = rest_view(*show, show->visits.visitors.front());
+  View view = rest_view(show->stage, show->visits.visitors.front());
   Projected top = project_point(view, {-3.05f, 1.3f, -2.9f});
   Projected wall = project_point(view, {-3.05f, 1.35f, -4});
   auto near =
@@ -250,7 +250,7 @@ TEST_F(GoTest, AnObjectIsLookedAtFromAllSidesThroughWhatStandsInTheWay) {
   EXPECT_EQ(place().view.position, before.position) << "the visitor stays";
   std::vector<vec3> eyes;
   for (int i = 0; i < 8; i++) {
-    const View view = rest_view(*show, show->visits.visitors.front());
+    const View view = rest_view(show->stage, show->visits.visitors.front());
     const SeenStatue seen = see_statue(*show, view);
     EXPECT_GT(seen.pixels, 96 * 64 / 20) << i;
     EXPECT_FALSE(seen.cut) << i;
@@ -262,9 +262,10 @@ TEST_F(GoTest, AnObjectIsLookedAtFromAllSidesThroughWhatStandsInTheWay) {
   for (vec3 eye : eyes) EXPECT_NEAR(eye.y, eyes[0].y, 1e-3);
   say(R"({"type":"input","seq":71,"look":[0,-9]})");
   run(1);
-  EXPECT_FALSE(see_statue(*show, rest_view(*show, show->visits.visitors.front())).cut)
+  EXPECT_FALSE(see_statue(*show, rest_view(show->stage, show->visits.visitors.front())).cut)
       << "from above";
-  const float far = glm::length(rest_view(*show, show->visits.visitors.front()).position - eyes[0]);
+  const float far =
+      glm::length(rest_view(show->stage, show->visits.visitors.front()).position - eyes[0]);
   EXPECT_GT(far, 0.1f);
   const double far_away = place().around.distance;
   say(R"({"type":"input","seq":72,"move":[0,0,2]})");
@@ -275,7 +276,7 @@ TEST_F(GoTest, AnObjectIsLookedAtFromAllSidesThroughWhatStandsInTheWay) {
   run(2);
   EXPECT_TRUE(last("state")["around"].is_null());
   EXPECT_EQ(place().around.point, -1);
-  EXPECT_EQ(rest_view(*show, show->visits.visitors.front()).near, 0);
+  EXPECT_EQ(rest_view(show->stage, show->visits.visitors.front()).near, 0);
   EXPECT_EQ(place().view.position, before.position);
 }
 
@@ -307,7 +308,8 @@ TEST_F(GoTest, TheStorytellerTurnsToWhatIsLookedAtInHerSight) {
     return glm::length(vec3(dvec3(at[0], at[1], at[2]) - origin) - statue);
   };
   stand_at({-1, 1.6f, -0.6f}, 0.6f, -0.1f);
-  ASSERT_TRUE(sees_head(*show, show->cast.teller, rest_view(*show, show->visits.visitors.front())));
+  ASSERT_TRUE(sees_head(show->cast, show->cast.teller,
+                        rest_view(show->stage, show->visits.visitors.front())));
   run(1);
   EXPECT_GT(off(), 0.5f);
   place().closer = 0;

@@ -39,17 +39,18 @@ TEST_F(Kiosks, OneCameraLessSilencesNoOtherKiosk) {
   see(in_hall, {near_screen});
   see(in_attic, {near_screen});
   go(1);
-  const uint64_t guest = find_kiosk(*show, "attic")->audience.guests.at(0).id;
+  const uint64_t guest = find_kiosk(show->kiosks, "attic")->audience.guests.at(0).id;
   cameras[in_hall].on = false;
   cameras[in_hall].link->mark_closed();
   go(3);
   EXPECT_EQ(stage(attic), "person");
-  EXPECT_EQ(find_kiosk(*show, "attic")->audience.guests.at(0).id, guest) << "the same as before";
+  EXPECT_EQ(find_kiosk(show->kiosks, "attic")->audience.guests.at(0).id, guest)
+      << "the same as before";
   EXPECT_EQ(heard(hall)["cameras"], 0);
   camera("hall");
   see(2, {near_screen});
   go(1);
-  EXPECT_NE(find_kiosk(*show, "hall")->audience.guests.at(0).id, guest);
+  EXPECT_NE(find_kiosk(show->kiosks, "hall")->audience.guests.at(0).id, guest);
 }
 
 TEST_F(Kiosks, AScreenOfKnownSizeIsSeenThroughFromTheGuestsHead) {
@@ -72,7 +73,7 @@ TEST_F(Kiosks, AScreenOfKnownSizeIsSeenThroughFromTheGuestsHead) {
   const View view = seen(hall);
   EXPECT_NE(view.middle, vec2(0));
   // The storyteller looks at the guest's head: from there the picture is seen.
-  const vec3 guest = find_kiosk(*show, "hall")->audience.guests.at(0).head;
+  const vec3 guest = find_kiosk(show->kiosks, "hall")->audience.guests.at(0).head;
   EXPECT_LT(glm::length(guest - view.position), 1e-3f);
   for (vec2 corner : {vec2(-0.3f, 0.3f), vec2(0.3f, 0.3f), vec2(0.3f, -0.3f)}) {
     const vec3 place =
@@ -155,7 +156,8 @@ TEST_F(Kiosks, AFarewellStopsTheTourAndTheScreenIsAWindowAgain) {
   go(7);
   ASSERT_EQ(stage(hall), "farewell");
   EXPECT_EQ(show->visits.visitors.front().place.tour.state, TourRide::State::none);
-  EXPECT_EQ(show->visits.visitors.front().place.viewpoint, kiosk_viewpoint(*show, "hall"));
+  EXPECT_EQ(show->visits.visitors.front().place.viewpoint,
+            kiosk_viewpoint(show->stage, show->cast, "hall"));
 }
 
 TEST_F(Kiosks, WhoComesBackIsNotGreetedAgain) {
@@ -228,11 +230,11 @@ TEST_F(Kiosks, SheRemembersWhatAGuestHasHeardAndForgetsItWithThem) {
   go(0.3);
   EXPECT_EQ(show->cast.teller.voice.story, "other") << "the one that is new to them";
   EXPECT_EQ(heard(hall)["heard"], json({"tale", "other"}));
-  EXPECT_FALSE(find_kiosk(*show, "hall")->visit == KioskVisit{});
+  EXPECT_FALSE(find_kiosk(show->kiosks, "hall")->visit == KioskVisit{});
   see(in_hall, {});
   go(30);
   EXPECT_EQ(heard(hall)["heard"], json::array());
-  const Kiosk& kiosk = *find_kiosk(*show, "hall");
+  const Kiosk& kiosk = *find_kiosk(show->kiosks, "hall");
   EXPECT_EQ(kiosk.visit, KioskVisit{});
   EXPECT_TRUE(kiosk.gestures.empty());
   EXPECT_TRUE(kiosk.audience.guests.empty());

@@ -95,12 +95,12 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   const LampLevels known[] = {{full, full}, {full, 0}, {full, full}, {full, 0}};
   size_t i = 0;
   for (Visitor& visitor : show->visits.visitors) visitor.picture->lamps = known[i++];
-  for (Visitor& visitor : show->visits.visitors) follow_lamps(*show, visitor);
+  for (Visitor& visitor : show->visits.visitors) follow_lamps(show->stage, visitor);
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_EQ(steps[0].before, known[0]);
   EXPECT_EQ(steps[1].before, known[1]);
   show->visits.visitors.front().picture->lamps = known[1];  // as if it had yet to follow
-  forget_lights(*show);
+  forget_lights(show->stage, show->visits);
   ASSERT_EQ(steps.size(), 1u);
   EXPECT_EQ(steps[0].before, known[1]);
 }

@@ -183,7 +183,7 @@ TEST_F(Maps, FollowTheLampsAtOnce) {
   };
   expect(true);
   for (bool on : {false, true}) {
-    light_world(*show, {LampLevel(on ? lamp_full : 0)});
+    light_world(show->stage, {LampLevel(on ? lamp_full : 0)});
     expect(on);
   }
   // A visitor's order switches a lamp, too.
@@ -212,7 +212,7 @@ TEST_F(Maps, AreTakenOverWhileItRuns) {
   run(0.5);
   ASSERT_FALSE(show->stage.lights.maps);
   ASSERT_GT(visitor().picture->cache.stats().points, 100);
-  use_maps(*show, saved);
+  use_maps(show->stage, show->visits, saved);
   EXPECT_EQ(show->stage.lights.maps, saved);
   EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 1\n"));
   run(0.5);
@@ -231,7 +231,7 @@ TEST_F(Maps, BetterOnesFadeIn) {
   ASSERT_TRUE(step_until([&] { return !visitor().picture->keyframe.empty(); }));
   ASSERT_TRUE(step_until([&] { return visitor().picture->fade.from.rgb.empty(); }));
   World world(show->stage.exhibit.scene);
-  use_better_maps(*show, test::paint_map(world, 0.5f, {lamplight}));
+  use_better_maps(show->stage, show->visits, test::paint_map(world, 0.5f, {lamplight}));
   EXPECT_EQ(show->stage.lights.known, show->stage.lights.maps);
   ASSERT_TRUE(step_until([&] { return !visitor().picture->fade.from.rgb.empty(); }));
 }

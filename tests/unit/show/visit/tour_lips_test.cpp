@@ -77,7 +77,8 @@ TEST_F(TourLips, NothingOfTheFaceRunsBehindTheVisitorsBack) {
   EXPECT_GT(before.blinks, 0u);
   // Half round; the tour goes on.
   order(R"({"type":"input","seq":1,"move":[0,0,0],"look":[3.1416,0]})");
-  ASSERT_FALSE(sees_head(*show, show->cast.teller, view_of(*show, show->visits.visitors.front())));
+  ASSERT_FALSE(
+      sees_head(show->cast, show->cast.teller, view_of(*show, show->visits.visitors.front())));
   ASSERT_TRUE(heard(show->visits.visitors.front().hearing.narration.voice));
   before = show->cast.teller.mind.work;
   run(0.8);
