@@ -8,6 +8,7 @@
 #include "base/host.h"
 #include "base/log.h"
 #include "config/config_file.h"
+#include "light/technique/technique.h"
 
 namespace wellspring::program {
 namespace {
@@ -120,9 +121,6 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
       ->check(CLI::IsMember(technique_names()));
   app.add_option("--still-technique", show.still_technique, "how light is sampled at rest")
       ->check(CLI::IsMember(technique_names()));
-  add_switch(app, "--background,!--no-background", show.background,
-             "pictures are drawn while visitors are shown earlier ones as they look from where "
-             "they are now");
   app.add_option("--display", words.display, "how light is shown: automatic, points or maps")
       ->check(CLI::IsMember(
           std::vector<std::string>(std::begin(display_names), std::end(display_names))));

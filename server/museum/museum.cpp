@@ -21,6 +21,7 @@
 #include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/house/house.h"
+#include "show/state/drawing.h"
 #include "show/state/make_show.h"
 #include "show/status/status.h"
 #include "show/storyteller/voice.h"
@@ -66,7 +67,7 @@ struct Room {
   explicit Room(std::unique_ptr<Show> begun)
       : show(std::move(begun)),
         stills(std::make_unique<StillRoom>(*show)),
-        status(show->exhibit.id) {}
+        status(show->stage.exhibit.id) {}
   std::unique_ptr<Show> show;
   std::unique_ptr<StillRoom> stills;
   ReportBoard board;
@@ -121,7 +122,8 @@ void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
   auto outcome = room.rehearsal->take();
   if (!outcome) return;
   // Only people who work on an exhibit want its pages to show problems.
-  if (room.show->settings.watched) set_problems(*room.show, std::move(outcome->problems));
+  if (room.show->settings.watched)
+    set_problems(room.show->stage, room.show->visits, std::move(outcome->problems));
   room.next = std::move(outcome->show);
   if (room.next) changed = true;
 }
@@ -130,8 +132,8 @@ void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
 // no other is baked; while an exhibit is loaded anew, or somebody waits for a still picture, none
 // is.
 void share_cores(Room& room, const std::list<Room>& rooms, const StillDesk& stills) {
-  room.draws = draws(*room.show);
-  room.show->others_draw =
+  room.draws = draws(room.show->visits, *room.show->drawing, room.show->time);
+  room.show->drawing->others_draw =
       stills.status().waiting > 0 || std::ranges::any_of(rooms, [&](const Room& other) {
         return (&other != &room && other.draws) || (other.rehearsal && other.rehearsal->at_work());
       });
@@ -145,7 +147,7 @@ void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& s
   bool doubted = false;
   while (!stopping) {
     const double began = seconds_now();
-    room.show->local_time = local_time(room.calendar.see(std::time(nullptr), began));
+    room.show->house.local_time = local_time(room.calendar.see(std::time(nullptr), began));
     if (room.calendar.doubts() && !doubted)
       log::warn(
           "the clock has leapt: days go on as they were for {:.0f} minutes, unless it stays so",
@@ -153,9 +155,9 @@ void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& s
     doubted = room.calendar.doubts();
     share_cores(room, rooms, *shared.stills);
     tick(*room.show, room.arrivals, began);
-    const Worker& worker = room.show->renderer.worker;
+    const Worker& worker = room.show->drawing->renderer.worker;
     room.heartbeat.tick(began, worker.busy() ? worker.runs() : 0);
-    for (std::shared_ptr<Link>& link : std::exchange(room.show->resting, {}))
+    for (std::shared_ptr<Link>& link : std::exchange(room.show->visits.resting, {}))
       reception.rest(std::move(link));
     if (began - reported > report_interval) {
       reported = began;
@@ -236,17 +238,17 @@ struct Museum::Impl {
     if (!is_first) own.house = first_house();
     else if (!settings.house.empty()) own.house = load_house(settings.house, exhibit);
     auto show = make_show(std::move(exhibit), own);
-    if (!settings.seal_key.empty()) show->seal = std::make_shared<Seal>(settings.seal_key);
+    if (!settings.seal_key.empty()) show->visits.seal = std::make_shared<Seal>(settings.seal_key);
     std::vector<Problem> notes;
-    check_places(show->exhibit, *show->world, notes);
+    check_places(show->stage.exhibit, *show->stage.world, notes);
     std::vector<Problem> light;
-    check_shipped_light(show->exhibit, light);
-    for (const Problem& problem : light) show->light_problem = to_string(problem);
+    check_shipped_light(show->stage.exhibit, light);
+    for (const Problem& problem : light) show->stage.light_problem = to_string(problem);
     notes.insert(notes.end(), light.begin(), light.end());
     for (const Problem& note : notes) log::warn("{}", to_string(note));
-    show->capacity = capacity;
-    show->speech = make_speech_source(speaker);
-    show->speech.prepare(lines_of(show->exhibit));
+    show->visits.capacity = capacity;
+    show->cast.speech = make_speech_source(speaker);
+    show->cast.speech.prepare(lines_of(show->stage.exhibit));
     return show;
   }
 
@@ -271,10 +273,10 @@ struct Museum::Impl {
     std::vector<ExhibitDoor> doors;
     for (Room& room : rooms) {
       Show& show = *room.show;
-      sources.exhibits.push_back({&show.exhibit, &room.board, room.stills.get(),
-                                  show.roads.map ? &*show.roads.map : nullptr,
+      sources.exhibits.push_back({&show.stage.exhibit, &room.board, room.stills.get(),
+                                  show.stage.roads.map ? &*show.stage.roads.map : nullptr,
                                   show.settings.house.address});
-      doors.push_back({show.exhibit.id, kiosks_of(show.exhibit)});
+      doors.push_back({show.stage.exhibit.id, kiosks_of(show.stage.exhibit)});
     }
     reception = std::make_unique<Reception>(
         std::move(doors), capacity,
@@ -419,8 +421,8 @@ bool Museum::has_gone_on() {
 void Museum::take_over() {
   for (Room& room : impl_->rooms) {
     if (!room.next) continue;
-    log::info("'{}' has changed: its pages come back by themselves", room.show->exhibit.id);
-    room.next->seal = room.show->seal;  // visits go on in the new show
+    log::info("'{}' has changed: its pages come back by themselves", room.show->stage.exhibit.id);
+    room.next->visits.seal = room.show->visits.seal;  // visits go on in the new show
     room.stills.reset();
     room.show = std::move(room.next);
     room.stills = std::make_unique<StillRoom>(*room.show);

@@ -8,7 +8,8 @@
 
 #include "ledger/sums.h"
 #include "show/http/answer.h"
-#include "show/state/show.h"
+#include "show/state/capacity.h"
+#include "show/state/show_settings.h"
 #include "show/storyteller/recordings.h"
 
 namespace wellspring::museum {

@@ -21,8 +21,10 @@
 #include "show/draw/present.h"
 #include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "show/storyteller/held_prop.h"
 #include "wire/json.h"
 
@@ -46,8 +48,8 @@ constexpr double listening_interval = 0.01;
 
 }  // namespace
 
-bool draws(const Show& show) {
-  return !show.visitors.empty() && show.time - show.drew_at <= idle_before_bake;
+bool draws(const ShowVisits& visits, const ShowDrawing& drawing, double time) {
+  return !visits.visitors.empty() && time - drawing.drew_at <= idle_before_bake;
 }
 
 namespace {
@@ -55,34 +57,34 @@ namespace {
 void welcome_links(Show& show, Arrivals& arrivals) {
   for (Arrival& one : arrivals.take()) {
     if (one.link->kind == LinkKind::eye) {
-      welcome_camera(show, std::move(one.link));
+      welcome_camera(show.kiosks, show.time, std::move(one.link));
       continue;
     }
     log::info("visitor {} connected from {}", one.link->id, one.link->peer);
-    Visitor& visitor = show.visitors.emplace_back();
+    Visitor& visitor = show.visits.visitors.emplace_back();
     visitor.link = std::move(one.link);
     visitor.seat = std::move(one.seat);
     visitor.came_at = show.time;
-    visitor.picture.cache = RenderCache({}, show.renderer.work.cache);
-    visitor.picture.compositor = Compositor(show.renderer.work.compositor);
-    visitor.picture.compositor.set_skin(&show.skin, &show.lights);
+    visitor.picture->cache = RenderCache({}, show.drawing->renderer.work.cache);
+    visitor.picture->compositor = Compositor(show.drawing->renderer.work.compositor);
+    visitor.picture->compositor.set_skin(&show.stage.skin, &show.stage.lights);
   }
 }
 
 void read_visitors(Show& show, double dt) {
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     note_deliveries(show, visitor);
     follow_orders(show, visitor);
   }
-  for (auto next = show.visitors.begin(); next != show.visitors.end();) {
+  for (auto next = show.visits.visitors.begin(); next != show.visits.visitors.end();) {
     auto visitor = next++;
     if (!visitor->left && !visitor->link->closed()) continue;
     visitor->left = true;
     visitor->welcomed = false;
     visitor->link->close("bye");
-    bool in_pass = show.pass.visitor == &*visitor;
-    if (in_pass) show.pass.given_up = true;
-    if (visitor->picture.at_work || in_pass) continue;  // its work ends soon
+    bool in_pass = show.drawing->pass.visitor == visitor->link->id;
+    if (in_pass) show.drawing->pass.given_up = true;
+    if (visitor->picture->at_work || in_pass) continue;  // its work ends soon
     log::info("visitor {} left", visitor->link->id);
     keep_visit(show, visitor);
   }
@@ -93,8 +95,9 @@ void read_visitors(Show& show, double dt) {
 
 void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance,
                    bool storyteller) {
-  const Exhibit& exhibit = show.exhibit;
-  const StorytellerPlace* storyteller_place = storyteller_of(show, teller_of(show, visitor));
+  const Exhibit& exhibit = show.stage.exhibit;
+  const StorytellerPlace* storyteller_place =
+      storyteller_of(show.stage, show.cast, teller_of(show.cast, show.visits, visitor));
   std::string text, speaker;
   if (const auto* line =
           utterance ? line_in(utterance->line, visitor.lang, exhibit.languages) : nullptr)
@@ -106,24 +109,25 @@ void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utteranc
 }
 
 // Returns whether the visitor hears the narrator of a tour of their own, or of their leader's.
-bool is_narrated(const Show& show, const Visitor& visitor) {
-  const Visitor* leader = leader_of(show, visitor);
+bool is_narrated(const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
   const Voice& voice = (leader ? *leader : visitor).hearing.narration.voice;
   return !voice.queue.empty() && !voice.paused;
 }
 
 void show_subtitles(Show& show, const Teller& teller, const Utterance* utterance) {
-  for (Visitor& visitor : show.visitors)
-    if (!is_narrated(show, visitor) && listens_to(show, visitor, teller))
+  for (Visitor& visitor : show.visits.visitors)
+    if (!is_narrated(show.visits, visitor) && listens_to(show, visitor, teller))
       show_subtitle(show, visitor, utterance, true);
 }
 
 // Moves the camera of whoever asked for the story to where its marks want it.
-void follow_story(Show& show, const Teller& teller, const VoiceEvents& events) {
+void follow_story(ShowVisits& visits, const ExhibitStage& stage, const Teller& teller,
+                  const VoiceEvents& events) {
   for (const ActionEvent& act : events.acts) {
-    int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
+    int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(stage.exhibit, act.name) : -1;
     if (viewpoint < 0) continue;
-    for (Visitor& visitor : show.visitors)
+    for (Visitor& visitor : visits.visitors)
       if (visitor.link->id == teller.voice.asked_by && visitor.place.tour.tour < 0 &&
           visitor.place.move == vec3(0))
         glide_to(visitor.place.tour, viewpoint, visitor.place.view);
@@ -132,18 +136,19 @@ void follow_story(Show& show, const Teller& teller, const VoiceEvents& events) {
 
 // Lets the narrators of tours speak, each to one visitor and those whom that visitor leads.
 void narrate(Show& show, float dt) {
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     Narration& narration = visitor.hearing.narration;
     if (!visitor.welcomed || narration.voice.queue.empty()) continue;
     if (dt >= 1) narration.sounding.going = false;  // the show stood still while the sound went on
     VoiceEvents said = advance_narration(show, visitor, dt);
-    for (Visitor& listener : show.visitors) {
-      if (&listener != &visitor && leader_of(show, listener) != &visitor) continue;
+    for (Visitor& listener : show.visits.visitors) {
+      if (&listener != &visitor && leader_of(show.visits, listener) != &visitor) continue;
       if (said.begun) show_subtitle(show, listener, said.begun, false);
       else if (said.fell_silent) show_subtitle(show, listener, nullptr, false);
     }
     for (const ActionEvent& act : said.acts) {
-      int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
+      int viewpoint =
+          act.kind == StoryMarkKind::view ? find_viewpoint(show.stage.exhibit, act.name) : -1;
       if (viewpoint >= 0) glide_to(visitor.place.tour, viewpoint, visitor.place.view);
     }
   }
@@ -152,8 +157,8 @@ void narrate(Show& show, float dt) {
 // Gives the storyteller the guests of the kiosk that it is with; while it is with none, motion
 // before any kiosk.
 void see_guests(Show& show, StorytellerInput& input) {
-  const Kiosk* kiosk = her_kiosk(show);
-  input.visit = show.her_visits;
+  const Kiosk* kiosk = her_kiosk(show.kiosks);
+  input.visit = show.kiosks.her_visits;
   if (kiosk) {
     input.kiosk_motion = kiosk->audience.state == Presence::motion;
     input.guests = guests_of(*kiosk, kiosk_window(show, kiosk->settings.name));
@@ -161,26 +166,26 @@ void see_guests(Show& show, StorytellerInput& input) {
     input.met = kiosk->visit.greeted;
     input.parting = kiosk->changed && kiosk->stage.now == Stage::farewell;
   } else {
-    for (const Kiosk& other : show.kiosks)
+    for (const Kiosk& other : show.kiosks.all)
       input.kiosk_motion |= other.audience.state == Presence::motion;
   }
 }
 
 void greet_or_part(Show& show, Teller& teller, const StorytellerEvents& events) {
-  const StorytellerPlace& place = *storyteller_of(show, teller);
+  const StorytellerPlace& place = *storyteller_of(show.stage, show.cast, teller);
   if (events.greeted) {
     show.totals.greetings++;
-    if (Kiosk* kiosk = her_kiosk(show)) {
+    if (Kiosk* kiosk = her_kiosk(show.kiosks)) {
       const std::string& name = kiosk->settings.name;
       if (!kiosk->visit.greeted) count(show, "kiosk_visits", name.empty() ? "-" : name);
       kiosk->visit.greeted = true;
     }
     if (teller.voice.story.empty())
-      say(teller.voice, nth_line(place.greetings, show.greetings++), true);
+      say(teller.voice, nth_line(place.greetings, show.cast.greetings++), true);
   }
   if (events.farewelled) {
     show.totals.farewells++;
-    say(teller.voice, nth_line(place.farewells, show.farewells++), true);
+    say(teller.voice, nth_line(place.farewells, show.cast.farewells++), true);
   }
 }
 
@@ -192,37 +197,37 @@ void behave(Show& show, Teller& teller, float dt) {
   if (said.fell_silent && !story.empty()) count(show, "stories_heard", story);
   if (said.begun) show_subtitles(show, teller, said.begun);
   else if (said.fell_silent) show_subtitles(show, teller, nullptr);
-  follow_story(show, teller, said);
+  follow_story(show.visits, show.stage, teller, said);
 
   StorytellerInput input;
   input.time = show.time;
   input.dt = dt;
-  if (&teller == &show.teller) see_guests(show, input);
+  if (&teller == &show.cast.teller) see_guests(show, input);
   input.humanlike = teller.humanlike;
   // The pose is made for the moment that its picture will carry.
   // Its own words come before those of a tour, which are heard by one visitor alone.
   const Voice* told = &teller.voice;
   if (const Visitor* on_tour = teller.voice.queue.empty() ? heard_on_tour(show, teller) : nullptr)
     told = &on_tour->hearing.narration.voice;
-  input.speaking = speaking(*told, show.picture_lead);
-  if (heard(*told)) input.visemes = mouth_shape(*told, show.picture_lead);
+  input.speaking = speaking(*told, show.drawing->picture_lead);
+  if (heard(*told)) input.visemes = mouth_shape(*told, show.drawing->picture_lead);
   input.telling = !teller.voice.story.empty();
-  input.story = make_cue(show.exhibit, teller.voice, said);
-  for (const Visitor& visitor : show.visitors) {
+  input.story = make_cue(show.stage.exhibit, teller.voice, said);
+  for (const Visitor& visitor : show.visits.visitors) {
     if (visitor.kiosk || !listens_to(show, visitor, teller))
       continue;  // a kiosk page's eyes are its camera
     Guest guest;
     guest.id = visitor.link->id;
-    guest.head = vec3(visitor.place.view.position - show.exhibit.scene.origin);
+    guest.head = vec3(visitor.place.view.position - show.stage.exhibit.scene.origin);
     input.guests.push_back(guest);
   }
   if (const PointOfInterest* point =
           teller.voice.queue.empty() ? looked_at_beside_her(show, teller) : nullptr)
-    input.story.look = vec3(point->place - show.exhibit.scene.origin);
+    input.story.look = vec3(point->place - show.stage.exhibit.scene.origin);
   input.viewer_distance = viewer_distance(show, teller);
   StorytellerEvents events;
   tick_storyteller(teller.mind, teller.storyteller, input, teller.pose, events);
-  advance_held(show.exhibit, teller.storyteller, teller.mind, teller.pose, teller.visible, dt,
+  advance_held(show.stage.exhibit, teller.storyteller, teller.mind, teller.pose, teller.visible, dt,
                teller.held);
   greet_or_part(show, teller, events);
 
@@ -232,26 +237,28 @@ void behave(Show& show, Teller& teller, float dt) {
   teller.agent_sent_at = show.time;
   teller.agent_mood = teller.mind.mood;
   const std::string message = agent_message(show, teller);
-  for (Visitor& visitor : show.visitors)
+  for (Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && &teller_of(show, visitor) == &teller) visitor.link->send_text(message);
 }
 
 // Returns whether the storyteller has anything to do. A visitor's own does nothing while it is
 // silent, holds nothing and is not to be seen; nor does the house's while nobody shares it.
 bool is_noticed(const Show& show, const Teller& teller) {
-  if (&teller == &show.teller && connected_cameras(show) > 0) return true;
+  if (&teller == &show.cast.teller && connected_cameras(show.kiosks) > 0) return true;
   const bool news =
       !teller.voice.queue.empty() || teller.agent_sent_at < 0 || teller.held.prop >= 0;
-  return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
-    if (&teller_of(show, visitor) != &teller) return false;
-    return &teller == &show.teller || news || sees_figure(show, teller, visitor.place.last_view);
-  });
+  return std::any_of(show.visits.visitors.begin(), show.visits.visitors.end(),
+                     [&](const Visitor& visitor) {
+                       if (&teller_of(show.cast, show.visits, visitor) != &teller) return false;
+                       return &teller == &show.cast.teller || news ||
+                              sees_figure(show.cast, teller, visitor.place.last_view);
+                     });
 }
 
 void behave(Show& show, float dt) {
   follow_kiosks(show);
-  if (show.figures.empty()) return;
-  for (Teller* teller : tellers_of(show))
+  if (show.cast.figures.empty()) return;
+  for (Teller* teller : tellers_of(show.cast, show.visits))
     if (is_noticed(show, *teller)) behave(show, *teller, dt);
 }
 
@@ -263,11 +270,11 @@ void use_renderer(Show& show, int waiting) {
 }
 
 // Returns rays over what visitors see.
-std::vector<Ray> looks_of(const Show& show) {
+std::vector<Ray> looks_of(const ShowVisits& visits) {
   constexpr int across = 24, down = 14;
   std::vector<Ray> rays;
-  for (const Visitor& visitor : show.visitors) {
-    const View& view = visitor.picture.keyframe.view;
+  for (const Visitor& visitor : visits.visitors) {
+    const View& view = visitor.picture->keyframe.view;
     for (int i = 0; i < across * down && view.width > 0; i++)
       rays.push_back(view_ray(view, (float(i % across) + 0.5f) * float(view.width) / across,
                               (float(i / across) + 0.5f) * float(view.height) / down));
@@ -278,18 +285,20 @@ std::vector<Ray> looks_of(const Show& show) {
 // Lets the baker work. All cores are free while there are no visitors, or while all have been at
 // rest for long. Better light waits until nobody walks, so that it fades in, but not for ever.
 void watch_baker(Show& show) {
-  if (!show.baker) return;
-  const bool free = !show.others_draw && (show.visitors.empty() || !draws(show));
-  show.baker->allow(free ? BakerCores::all : BakerCores::spare);
-  BakerLooks& looks = show.baker_looks;
+  if (!show.stage.baker) return;
+  const bool free = !show.drawing->others_draw &&
+                    (show.visits.visitors.empty() || !draws(show.visits, *show.drawing, show.time));
+  show.stage.baker->allow(free ? BakerCores::all : BakerCores::spare);
+  BakerLooks& looks = show.stage.baker_looks;
   if (show.time - looks.told_at < looks_every) return;
   looks.told_at = show.time;
-  show.baker->look(looks_of(show));
-  const bool walks = std::ranges::any_of(
-      show.visitors, [](const Visitor& visitor) { return visitor.picture.job.passing; });
+  show.stage.baker->look(looks_of(show.visits));
+  const bool walks = std::ranges::any_of(show.visits.visitors, [](const Visitor& visitor) {
+    return visitor.picture->drawn_at >= 0 && !is_still(visitor.picture->job);
+  });
   if (walks && show.time - looks.took_at < most_light_waits) return;
-  if (auto maps = show.baker->take()) {
-    use_better_maps(show, std::move(maps));
+  if (auto maps = show.stage.baker->take()) {
+    use_better_maps(show.stage, show.visits, std::move(maps));
     looks.took_at = show.time;
   }
 }
@@ -309,15 +318,14 @@ void pace_tour(Visitor& visitor) {
 }
 
 // Sends a page that moves its own camera the view to which it is led, or has to be.
-void send_pose(const Show& show, Visitor& visitor) {
+void send_pose(const ExhibitStage& stage, const ShowVisits& visits, double time, Visitor& visitor) {
   const View& view = visitor.place.last_view;
   // a kiosk's window follows a head at once
   const double interval = visitor.kiosk ? 0 : pose_interval;
-  if (!visitor.wants.local || view == visitor.posed || show.time - visitor.posed_at < interval)
-    return;
+  if (!visitor.wants.local || view == visitor.posed || time - visitor.posed_at < interval) return;
   visitor.posed = view;
-  visitor.posed_at = show.time;
-  visitor.link->send_text(pose_message(show, visitor));
+  visitor.posed_at = time;
+  visitor.link->send_text(pose_message(stage, visits, visitor));
 }
 
 void send_state(Show& show, Visitor& visitor) {
@@ -337,54 +345,57 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   double began = seconds_now();
 
   bool free = take_finished(show);
-  if (!free || show.renderer.drawn) show.drew_at = show.time;
+  if (!free || show.drawing->renderer.drawn) show.drawing->drew_at = show.time;
   welcome_links(show, arrivals);
   follow_house(show, arrivals);
   read_visitors(show, double(dt));
-  read_cameras(show);
-  if (free) forget_lights(show);
-  for (Visitor& visitor : show.visitors)
-    if (visitor.welcomed && !visitor.picture.at_work && show.renderer.drawn != &visitor &&
-        lamps_wait(show, visitor))
+  read_cameras(show.kiosks, show.totals, show.time);
+  if (free) forget_lights(show.stage, show.visits);
+  for (Visitor& visitor : show.visits.visitors)
+    if (visitor.welcomed && !visitor.picture->at_work &&
+        show.drawing->renderer.drawn != visitor.link->id && lamps_wait(show, visitor))
       light_lamps(show, visitor);
-  if (free && !show.renderer.drawn) watch_baker(show);
+  if (free && !show.drawing->renderer.drawn) watch_baker(show);
   narrate(show, dt);
   Demand demand;
   if (free) demand = find_demand(show.time, draw_states(show), renderer_state(show));
   // The storyteller moves for a picture; otherwise often enough to notice people.
   const bool poses = demand.waiting > 0 || demand.moving;
-  if (poses || show.time - show.behaved_at >= behave_interval) {
-    behave(show,
-           show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
-    show.behaved_at = show.time;
+  if (poses || show.time - show.cast.behaved_at >= behave_interval) {
+    behave(show, show.cast.behaved_at < 0
+                     ? 0
+                     : float(std::clamp(show.time - show.cast.behaved_at, 0.0, 1.0)));
+    show.cast.behaved_at = show.time;
     show.totals.animate_ms = float(1000 * (seconds_now() - began));
   }
   send_sounds(show);
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     if (!visitor.welcomed) continue;
     std::optional<dvec3> person;
     const Teller& teller = teller_of(show, visitor);
-    if (const StorytellerPlace* who = teller.visible ? storyteller_of(show, teller) : nullptr)
+    if (const StorytellerPlace* who =
+            teller.visible ? storyteller_of(show.stage, show.cast, teller) : nullptr)
       person = who->position;
     pace_tour(visitor);
-    TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.world,
-                                 show.exhibit, show.roads, person, dt);
+    TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.stage.world,
+                                 show.stage.exhibit, show.stage.roads, person, dt);
     count_place(show, visitor, step.finished, double(dt));
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
-    follow_leader(show, visitor, dt);
+    follow_leader(show.visits, show.time, visitor, dt);
     look_through(show, visitor, dt);
     watch(show, visitor);
   }
   watch_pass(show);
-  Renderer& renderer = show.renderer;
-  if (renderer.drawn && is_outdated(show, renderer.job, *renderer.drawn)) renderer.given_up = true;
-  if (!show.settings.background) draw_now(show, demand.waiting);
-  else if (free) use_renderer(show, demand.waiting);
+  Renderer& renderer = show.drawing->renderer;
+  if (renderer.drawn != 0 &&
+      is_outdated(show, renderer.job, visitor_of(show.visits, renderer.drawn)))
+    renderer.given_up = true;
+  if (free) use_renderer(show, demand.waiting);
   steer(show);
-  if (show.settings.background) present_all(show);
-  for (Visitor& visitor : show.visitors) {
+  present_all(show);
+  for (Visitor& visitor : show.visits.visitors) {
     if (!visitor.welcomed) continue;
-    send_pose(show, visitor);
+    send_pose(show.stage, show.visits, show.time, visitor);
     send_state(show, visitor);
     send_token(show, visitor);
   }
@@ -393,7 +404,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
 
 double seconds_to_next_tick(const Show& show, double now) {
   double wait = 1 / 20.0;  // nobody looks: only clocks and arrivals
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (is_shown(visitor)) {
       wait = std::min(wait, listening_interval);
       if (!has_to_show(show, visitor)) continue;
@@ -405,9 +416,9 @@ double seconds_to_next_tick(const Show& show, double now) {
 
 void wait_for_tick(const Show& show, double now) {
   double seconds = seconds_to_next_tick(show, now);
-  const Renderer& renderer = show.renderer;
-  bool nothing_comes =
-      !renderer.drawn && renderer.brokers.empty() && !show.pass.at_work && !renderer.skin.at_work;
+  const Renderer& renderer = show.drawing->renderer;
+  bool nothing_comes = renderer.drawn == 0 && renderer.asking.empty() &&
+                       !show.drawing->pass.at_work && !renderer.skin.at_work;
   if (nothing_comes) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   else renderer.worker.wait_for(seconds);
 }

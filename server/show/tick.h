@@ -2,6 +2,7 @@
 // Advances the whole of a running show, in one straight function of visible values: notice ->
 // behave -> animate -> (per visitor) picture.
 #pragma once
+#include "show/state/arrivals.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {
@@ -12,7 +13,7 @@ void tick(Show& show, Arrivals& arrivals, double now);
 
 // Returns whether somebody is there, and something was drawn for them lately: the cores are not
 // free then.
-bool draws(const Show& show);
+bool draws(const ShowVisits& visits, const ShowDrawing& drawing, double time);
 
 // Returns how long the caller may sleep after a tick, at time `now` on the same clock.
 double seconds_to_next_tick(const Show& show, double now);

@@ -39,52 +39,54 @@ VisitStage::VisitStage(const std::string& folder, const std::string& technique)
     : show_(open_show(folder, technique)),
       lit_(first_levels(exhibit())),
       dark_(dark_levels(exhibit())),
-      mind_(show_->teller.mind),
-      pose_(show_->teller.pose) {}
+      mind_(show_->cast.teller.mind),
+      pose_(show_->cast.teller.pose) {}
 
 void VisitStage::light(bool on) {
   change_.reset();
-  const LampLevels before = show_->switches.lit, &after = on ? lit_ : dark_;
+  const LampLevels before = show_->stage.switches.lit, &after = on ? lit_ : dark_;
   if (before == after) return;
-  change_.emplace(exhibit().scene, show_->switches.all, show_->switches.cells, before, after);
-  light_world(*show_, after);
+  change_.emplace(exhibit().scene, show_->stage.switches.all, show_->stage.switches.cells, before,
+                  after);
+  light_world(show_->stage, after);
 }
 
 void VisitStage::begin(const VisitTrace& trace) {
   light(lamps_on(trace, 0));
-  show_->teller.mind = mind_;
-  show_->teller.pose = pose_;
-  show_->teller.voice = Voice{};
+  show_->cast.teller.mind = mind_;
+  show_->cast.teller.pose = pose_;
+  show_->cast.teller.voice = Voice{};
   if (trace.telling && !exhibit().stories.empty())
-    tell(show_->teller.voice, exhibit().stories.front());
+    tell(show_->cast.teller.voice, exhibit().stories.front());
 }
 
 void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
   light(lamps_on(trace, time));
-  const World& world = *show_->world;
+  const World& world = *show_->stage.world;
   int first = int(exhibit().scene.instances.size()), count = world.instance_count();
   before_.resize(size_t(count - first));
   for (int i = first; i < count; i++)
     before_[size_t(i - first)] = world.mesh_of(uint32_t(i)).positions;
   Show& show = *show_;
-  if (show.figures.empty()) return;
+  if (show.cast.figures.empty()) return;
   // The figure behaves and moves as show/tick.cpp does it for one visitor.
   StorytellerInput input;
   input.time = time;
   input.dt = dt;
-  input.speaking = speaking(show.teller.voice);
-  input.telling = !show.teller.voice.story.empty();
+  input.speaking = speaking(show.cast.teller.voice);
+  input.telling = !show.cast.teller.voice.story.empty();
   Guest guest;
   guest.id = 1;
   guest.head = vec3(eval_trace(trace, time).position - exhibit().scene.origin);
   input.guests.push_back(guest);
   StorytellerEvents events;
-  tick_storyteller(show.teller.mind, show.teller.storyteller, input, show.teller.pose, events);
-  advance_voice(show.teller.voice, dt);
-  pose_figure(*show.world, show.figures[show.teller.index],
-              storyteller_of(show, show.teller)->character, show.teller.pose,
-              show.teller.storyteller.placement, show.scratch);
-  show.world->commit();
+  tick_storyteller(show.cast.teller.mind, show.cast.teller.storyteller, input,
+                   show.cast.teller.pose, events);
+  advance_voice(show.cast.teller.voice, dt);
+  pose_figure(*show.stage.world, show.cast.figures[show.cast.teller.index],
+              storyteller_of(show.stage, show.cast, show.cast.teller)->character,
+              show.cast.teller.pose, show.cast.teller.storyteller.placement, show.cast.scratch);
+  show.stage.world->commit();
 }
 
 View VisitStage::view(const VisitTrace& trace, double time, int width, int height) const {

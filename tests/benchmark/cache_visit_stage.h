@@ -18,18 +18,18 @@ class VisitStage {
   // Loads the exhibit (throws ExhibitError); technique `gather`'s preparation takes seconds.
   VisitStage(const std::string& folder, const std::string& technique);
 
-  const Exhibit& exhibit() const { return show_->exhibit; }
+  const Exhibit& exhibit() const { return show_->stage.exhibit; }
   const ShowSettings& settings() const { return show_->settings; }
-  const Technique& moving_technique() const { return *show_->technique; }
-  const Technique& still_technique() const { return *show_->still_technique; }
+  const Technique& moving_technique() const { return *show_->stage.technique; }
+  const Technique& still_technique() const { return *show_->stage.still_technique; }
 
   // Back to the beginning of a visit: the storyteller as it first stands.
   void begin(const VisitTrace& trace);
   // The next frame, `dt` after the last. Times must be visited in order.
   void advance(const VisitTrace& trace, double time, float dt);
 
-  const World& world() const { return *show_->world; }
-  const Lights& lights() const { return show_->lights; }
+  const World& world() const { return *show_->stage.world; }
+  const Lights& lights() const { return show_->stage.lights; }
   // The change of light where lamps were switched in the last advance; null: they were not.
   const LightChange* change() const { return change_ ? &*change_ : nullptr; }
   View view(const VisitTrace& trace, double time, int width, int height) const;

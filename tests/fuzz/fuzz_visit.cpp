@@ -27,7 +27,7 @@ void fuzz_visit(Bytes bytes) {
   }
   for (Browser& browser : stage.browsers) browser.link->mark_closed();
   stage.steps(2);
-  require(stage.show->visitors.empty(), "whoever leaves is gone");
+  require(stage.show->visits.visitors.empty(), "whoever leaves is gone");
 }
 
 }  // namespace wellspring::fuzz

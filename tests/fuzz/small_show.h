@@ -13,7 +13,7 @@ inline void begin_small_show(ShowStage& stage) {
   add_storyteller(exhibit, "otto", {-2, 0, 2});
   add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
   exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
-  ShowSettings settings = settings_for("direct", false, 10);
+  ShowSettings settings = settings_for("direct", 10);
   settings.max_pixels = 16 * 16;
   stage.tick_seconds = 0.1;
   stage.begin(std::move(exhibit), settings);

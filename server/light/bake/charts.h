@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "light/material/material_use.h"
 #include "light/sample/illumination_map.h"
-#include "light/transport_plan.h"
 
 namespace wellspring::light {
 

@@ -7,7 +7,7 @@
 
 #include "light/dynamic/direct_light.h"
 #include "light/splat/splatter.h"
-#include "light/transport_plan.h"
+#include "light/transport_settings.h"
 #include "light/visible/surface_buffer.h"
 
 namespace wellspring::light {

@@ -10,7 +10,7 @@
 #include "light/instant/discontinuity_buffer.h"
 #include "light/sample.h"
 #include "light/sample/lights.h"
-#include "light/transport_plan.h"
+#include "light/transport_settings.h"
 #include "world/view.h"
 
 namespace wellspring::light {

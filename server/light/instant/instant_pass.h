@@ -9,7 +9,7 @@
 
 #include "base/simd.h"
 #include "base/vec.h"
-#include "light/transport_plan.h"
+#include "light/transport_settings.h"
 #include "light/walk/light_walk.h"
 
 namespace wellspring::light {

@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "light/sample/lights.h"
-#include "light/transport_plan.h"
+#include "light/transport_settings.h"
 #include "world/view.h"
 
 namespace wellspring::light {

@@ -10,7 +10,7 @@
 #include "light/sample/light_tables.h"
 #include "light/sample/lights.h"
 #include "light/sample/transport.h"
-#include "light/transport_plan.h"
+#include "light/transport_settings.h"
 
 namespace wellspring::light {
 

@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "base/simd.h"
-#include "light/transport_plan.h"
+#include "light/transport_settings.h"
 #include "light/visible/surface_buffer.h"
 #include "world/view.h"
 

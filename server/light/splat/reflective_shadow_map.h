@@ -10,7 +10,7 @@
 
 #include "light/random/sampler.h"
 #include "light/sample/transport.h"
-#include "light/transport_plan.h"
+#include "light/transport_settings.h"
 #include "world/scene.h"
 #include "world/world.h"
 

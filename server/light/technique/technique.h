@@ -10,7 +10,7 @@
 #include "frame/frame.h"
 #include "light/sample.h"
 #include "light/sample/lights.h"
-#include "light/transport_plan.h"
+#include "light/transport_settings.h"
 #include "world/view.h"
 
 namespace wellspring::light {

@@ -43,12 +43,12 @@ bool is_silent(const Eye& eye, double now) { return now - eye.received > observa
 namespace {
 
 // The lost or silent camera of the same name makes way for the one that has come back.
-void come_back(Show& show, Eye& eye) {
-  auto same = std::ranges::find_if(show.eyes, [&](const Eye& other) {
+void come_back(ShowKiosks& kiosks, double time, Eye& eye) {
+  auto same = std::ranges::find_if(kiosks.eyes, [&](const Eye& other) {
     return &other != &eye && other.seen.name == eye.seen.name &&
-           (is_lost(other) || is_silent(other, show.time));
+           (is_lost(other) || is_silent(other, time));
   });
-  if (same == show.eyes.end()) return;
+  if (same == kiosks.eyes.end()) return;
   log::info("kiosk camera {} is back", eye.seen.name);
   same->link->close("the same camera has connected again");
   eye.number = same->number;
@@ -56,77 +56,79 @@ void come_back(Show& show, Eye& eye) {
 }
 
 // As many cameras of its kiosk as there may be are at work.
-bool is_kiosk_full(const Show& show, const Eye& eye, const std::string& kiosk) {
-  return size_t(std::ranges::count_if(show.eyes, [&](const Eye& other) {
+bool is_kiosk_full(const ShowKiosks& kiosks, double time, const Eye& eye,
+                   const std::string& kiosk) {
+  return size_t(std::ranges::count_if(kiosks.eyes, [&](const Eye& other) {
            return &other != &eye && other.observations > 0 && other.seen.kiosk == kiosk &&
-                  !is_lost(other) && !is_silent(other, show.time);
+                  !is_lost(other) && !is_silent(other, time);
          })) >= most_kiosk_cameras;
 }
 
-// What is wrong with it.
-std::optional<WireError> take_in(Show& show, Eye& eye, Heard& heard) {
+// Takes in what a camera said; returns the error that it is told.
+std::optional<WireError> take_in(ShowKiosks& kiosks, ShowTotals& totals, double time, Eye& eye,
+                                 Heard& heard) {
   if (const WireError* bad = std::get_if<WireError>(&heard.said)) return *bad;
   Observation& seen = std::get<Observation>(heard.said);
   if (auto wrong = check_camera(*eye.link, seen)) return wrong;
   const bool moves = eye.observations == 0 || seen.kiosk != eye.seen.kiosk;
-  if (moves && is_kiosk_full(show, eye, seen.kiosk)) {
+  if (moves && is_kiosk_full(kiosks, time, eye, seen.kiosk)) {
     eye.link->close("too many cameras");
     return WireError{"too_many_cameras", "this kiosk has as many cameras as it may have"};
   }
-  if (is_silent(eye, show.time) || seen.camera != eye.seen.camera) eye.camera_since = show.time;
+  if (is_silent(eye, time) || seen.camera != eye.seen.camera) eye.camera_since = time;
   const bool named = !seen.name.empty() && seen.name != eye.seen.name;
   eye.seen = std::move(seen);
-  eye.received = show.time;
+  eye.received = time;
   eye.observations++;
-  show.totals.observations++;
-  if (named) come_back(show, eye);
+  totals.observations++;
+  if (named) come_back(kiosks, time, eye);
   return {};
 }
 
-void read_texts(Show& show, Eye& eye) {
+void read_texts(ShowKiosks& kiosks, ShowTotals& totals, double time, Eye& eye) {
   for (Heard& heard : eye.link->take_heard()) {
-    const auto wrong = take_in(show, eye, heard);
+    const auto wrong = take_in(kiosks, totals, time, eye, heard);
     if (!wrong) continue;
     eye.refused++;
-    show.totals.refused_messages++;
+    totals.refused_messages++;
     eye.link->send_text(write_error(*wrong));
   }
 }
 
 }  // namespace
 
-void welcome_camera(Show& show, std::shared_ptr<Link> link) {
-  if (connected_cameras(show) >= most_cameras) {
+void welcome_camera(ShowKiosks& kiosks, double time, std::shared_ptr<Link> link) {
+  if (connected_cameras(kiosks) >= most_cameras) {
     link->send_text(
         write_error({"too_many_cameras", "this exhibit has as many cameras as it may have"}));
     link->close("too many cameras");
     return;
   }
   log::info("kiosk camera {} connected from {}", link->id, link->peer);
-  Eye eye{std::move(link), {}, -1e9, show.time};
+  Eye eye{std::move(link), {}, -1e9, time};
   auto is_taken = [&](const Eye& other) { return other.number == eye.number; };
-  while (std::ranges::any_of(show.eyes, is_taken)) eye.number++;
-  show.eyes.push_back(std::move(eye));
+  while (std::ranges::any_of(kiosks.eyes, is_taken)) eye.number++;
+  kiosks.eyes.push_back(std::move(eye));
 }
 
-void read_cameras(Show& show) {
-  for (Eye& eye : show.eyes) {
-    read_texts(show, eye);
+void read_cameras(ShowKiosks& kiosks, ShowTotals& totals, double time) {
+  for (Eye& eye : kiosks.eyes) {
+    read_texts(kiosks, totals, time, eye);
     if (is_lost(eye) || !eye.link->closed()) continue;
     log::info("kiosk camera {} disconnected", eye.link->id);
-    eye.gone = show.time;
+    eye.gone = time;
   }
-  std::erase_if(show.eyes, [&](const Eye& eye) {
+  std::erase_if(kiosks.eyes, [&](const Eye& eye) {
     return eye.number == 0 ||
-           (is_lost(eye) && (eye.seen.name.empty() || show.time - eye.gone > lost_camera_listed));
+           (is_lost(eye) && (eye.seen.name.empty() || time - eye.gone > lost_camera_listed));
   });
-  while (show.eyes.size() - connected_cameras(show) > most_lost_cameras)
-    show.eyes.erase(std::ranges::min_element(
-        show.eyes, {}, [&](const Eye& eye) { return is_lost(eye) ? eye.gone : show.time + 1; }));
+  while (kiosks.eyes.size() - connected_cameras(kiosks) > most_lost_cameras)
+    kiosks.eyes.erase(std::ranges::min_element(
+        kiosks.eyes, {}, [&](const Eye& eye) { return is_lost(eye) ? eye.gone : time + 1; }));
 }
 
-size_t connected_cameras(const Show& show) {
-  return size_t(std::ranges::count_if(show.eyes, [](const Eye& eye) { return !is_lost(eye); }));
+size_t connected_cameras(const ShowKiosks& kiosks) {
+  return size_t(std::ranges::count_if(kiosks.eyes, [](const Eye& eye) { return !is_lost(eye); }));
 }
 
 }  // namespace wellspring::show

@@ -19,11 +19,12 @@ namespace wellspring::show {
 // Who is believed to be a kiosk of the house: whoever comes from the machine that serves, and
 // whoever shows a kiosk's token. A token that is for one kiosk by name is good for no other.
 
-// Of a `hello` with the role kiosk; any other needs no trust. `kiosk`: becomes the name of the
-// kiosk that it speaks for. Else `not_trusted`, and what to do.
+// Checks a `hello` with the role kiosk; any other needs no trust. `kiosk` becomes the name of the
+// kiosk that it speaks for. Returns `not_trusted`, and what to do, otherwise.
 std::optional<WireError> check_page(const std::vector<Token>& kiosk_tokens, const Link& link,
                                     const Hello& hello, std::string& kiosk);
-// Of a camera, which was let in. One whose token names its kiosk need not name it.
+// Checks an observation of a camera that was let in. If its token names a kiosk, the observation
+// need not.
 std::optional<WireError> check_camera(const Link& link, Observation& seen);
 
 inline constexpr double lost_camera_listed = 7 * 24 * 3600;  // seconds
@@ -31,10 +32,10 @@ inline constexpr size_t most_lost_cameras = 32;  // more: the one longest lost i
 // More are told so and sent away: of an exhibit, and of one kiosk.
 inline constexpr size_t most_cameras = 64, most_kiosk_cameras = 8;
 
-void welcome_camera(Show& show, std::shared_ptr<Link> link);
-// What they have said since the last call.
-void read_cameras(Show& show);
-size_t connected_cameras(const Show& show);
+void welcome_camera(ShowKiosks& kiosks, double time, std::shared_ptr<Link> link);
+// Takes in what cameras have said since the last call.
+void read_cameras(ShowKiosks& kiosks, ShowTotals& totals, double time);
+size_t connected_cameras(const ShowKiosks& kiosks);
 bool is_lost(const Eye& eye);
 bool is_silent(const Eye& eye, double now);  // it says nothing, connected or not
 

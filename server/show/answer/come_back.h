@@ -18,7 +18,7 @@ inline constexpr int64_t token_days = 7;    // a sealed text is good for
 void send_token(Show& show, Visitor& visitor);
 // The text as it is now.
 std::string visit_token(const Show& show, Visitor& visitor);
-// Of a visitor who is gone and whose pictures nobody works on; the entry is taken out.
+// Keeps the visit of a visitor who is gone and whose pictures nobody works on; takes the entry out.
 void keep_visit(Show& show, std::list<Visitor>::iterator gone);
 // Those whose time is over.
 void forget_visits(Show& show);

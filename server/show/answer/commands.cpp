@@ -16,6 +16,7 @@
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
+#include "show/state/visitor_picture.h"
 #include "wire/json.h"
 
 namespace wellspring::show {
@@ -54,16 +55,15 @@ Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int h
   return {};
 }
 
-// Whoever had keyframes gets a finished picture next, and the other way round. Where nothing is
-// drawn in the background there are no keyframes.
+// A page that had keyframes gets a finished picture next, and the other way round.
 void set_display(const Show& show, Visitor& visitor, const std::string& display) {
-  const bool local = display == "local" && show.settings.background;
+  const bool local = display == "local";
   PictureWishes& wants = visitor.wants;
   if (wants.local == local) return;
   wants.local = local;
   if (visitor.seat) visitor.seat->resize({double(wants.width) * wants.height, local});
-  visitor.picture.around = {};
-  visitor.picture.layer_unsent = visitor.shown.has_layer = false;
+  visitor.picture->around = {};
+  visitor.picture->layer_unsent = visitor.shown.has_layer = false;
   visitor.shown.lost = true;
 }
 
@@ -74,13 +74,13 @@ int find_tour(const Exhibit& exhibit, const std::string& id) {
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
-  if (!hello.exhibit.empty() && hello.exhibit != show.exhibit.id)
+  if (!hello.exhibit.empty() && hello.exhibit != show.stage.exhibit.id)
     return WireError{"unknown_exhibit", "there is no exhibit '" + hello.exhibit +
-                                            "' here; this is '" + show.exhibit.id + "'"};
+                                            "' here; this is '" + show.stage.exhibit.id + "'"};
   std::string kiosk;
   if (Answer wrong = check_page(show.settings.kiosk_tokens, *visitor.link, hello, kiosk))
     return wrong;
-  visitor.lang = hello.lang.empty() ? show.exhibit.languages.front() : hello.lang;
+  visitor.lang = hello.lang.empty() ? show.stage.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = kiosk;
   set_display(show, visitor, hello.display);
@@ -90,19 +90,20 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);
-  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
-                  visitor.kiosk ? kiosk_viewpoint(show, kiosk) : show.exhibit.start);
-  // Of a visitor who is here already a picture may be drawn at the moment, on another thread.
+  go_to_viewpoint(
+      visitor.place, visitor.hearing.narration.voice, show.stage.exhibit,
+      visitor.kiosk ? kiosk_viewpoint(show.stage, show.cast, kiosk) : show.stage.exhibit.start);
+  // Another thread may be drawing a picture of a visitor who is here already.
   const bool goes_on = is_first && !hello.resume.empty() && come_back(show, visitor, hello.resume);
   if (!goes_on) show.totals.visits++;
   if (is_first) count_visit(show, visitor, goes_on);
   visitor.link->send_text(welcome_message(show, visitor, goes_on));
   visitor.link->send_text(agent_message(show, teller_of(show, visitor)));
   const Kiosk* own = kiosk_of(show, visitor);
-  const std::string& state = own ? own->message : show.kiosk_message;
+  const std::string& state = own ? own->message : show.kiosks.message;
   if (!state.empty() && (own || !visitor.kiosk)) visitor.link->send_text(state);
-  tell_house(show, visitor);
-  if (!show.problems_message.empty()) visitor.link->send_text(show.problems_message);
+  tell_house(show.house, show.time, visitor);
+  if (!show.stage.problems_message.empty()) visitor.link->send_text(show.stage.problems_message);
   return {};
 }
 
@@ -111,7 +112,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Input& input) {
   if (input.pointer) visitor.looks.pointer = input.pointer, visitor.looks.pointed_at = show.time;
   place.seq = input.seq;
   if (input.move != vec3(0)) go_away(visitor);
-  if (leader_of(show, visitor)) {  // looks round from the leader's place
+  if (leader_of(show.visits, visitor)) {  // looks round from the leader's place
     VisitorGroup& group = visitor.group;
     group.look = glm::clamp(group.look + input.look, vec2(-pi), vec2(pi));
     if (input.look != vec2(0)) group.looked_at = show.time;
@@ -133,7 +134,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Input& input) {
 
 Answer handle_one(Show& show, Visitor& visitor, const CameraTo& camera) {
   VisitorPlace& place = visitor.place;
-  if (glm::length(camera.position - show.exhibit.scene.origin) > farthest)
+  if (glm::length(camera.position - show.stage.exhibit.scene.origin) > farthest)
     return WireError{"bad_field", "camera.position: is farther than 1e7 m from the exhibit"};
   go_away(visitor);
   place.seq = camera.seq;
@@ -149,11 +150,11 @@ Answer handle_one(Show& show, Visitor& visitor, const CameraTo& camera) {
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
-  int index = find_viewpoint(show.exhibit, to.name);
+  int index = find_viewpoint(show.stage.exhibit, to.name);
   if (index < 0) return WireError{"unknown_viewpoint", "there is no viewpoint '" + to.name + "'"};
   go_away(visitor);
   visitor.place.seq = to.seq;
-  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit, index);
+  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.stage.exhibit, index);
   return {};
 }
 
@@ -164,19 +165,19 @@ Answer handle_one(Show& show, Visitor& visitor, const GoTo& order) {
 Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
   VisitorPlace& place = visitor.place;
   Voice& narrator = visitor.hearing.narration.voice;
-  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
   switch (order.action) {
     case TourAction::play: {
       bool resume =
           order.name.empty() && place.tour.state == TourRide::State::paused && place.tour.tour >= 0;
-      int tour = resume ? place.tour.tour : find_tour(show.exhibit, order.name);
+      int tour = resume ? place.tour.tour : find_tour(show.stage.exhibit, order.name);
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       place.move = place.velocity = vec3(0);
       stand(place);
       Teller& teller = teller_of(show, visitor);
       if (teller.voice.asked_by == visitor.link->id)
         fall_silent(show, teller);  // one voice at a time
-      start_tour(place.tour, narrator, tour, show.exhibit, show.roads, place.view);
+      start_tour(place.tour, narrator, tour, show.stage.exhibit, show.stage.roads, place.view);
       break;
     }
     case TourAction::pause: pause_tour(place.tour, narrator); break;
@@ -190,19 +191,19 @@ Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const LampOrder& order) {
-  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
   if (switch_lamp(show, visitor, order.name, order.on)) return {};
   return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const HourOrder& order) {
-  if (Answer wrong = check_not_following(show, visitor)) return wrong;
-  if (set_hour(show, visitor, order.value)) return {};
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
+  if (set_hour(show.stage, visitor, order.value)) return {};
   return WireError{"no_day", "the hour of the day cannot be chosen here"};
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const PlayOrder& order) {
-  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
   if (play_animation(show, visitor, order.name, order.on)) return {};
   return WireError{"unknown_animation",
                    "there is no animation '" + order.name + "' that is started by touch"};
@@ -217,7 +218,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Ask& question) {
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const GroupOrder& order) {
-  return handle_group(show, visitor, order);
+  return handle_group(show.visits, visitor, order);
 }
 
 Answer handle_one(Show&, Visitor& visitor, const KioskTouch&) {

@@ -7,8 +7,10 @@
 
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 
@@ -32,7 +34,7 @@ const char* tour_word(TourRide::State state) {
 }  // namespace
 
 std::string welcome_message(const Show& show, const Visitor& visitor, bool resumed) {
-  const Exhibit& exhibit = show.exhibit;
+  const Exhibit& exhibit = show.stage.exhibit;
   auto text = [&](const LocalText& local) {
     return text_in(local, visitor.lang, exhibit.languages);
   };
@@ -68,7 +70,7 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
                           ? json(nullptr)
                           : json(exhibit.storytellers[size_t(story.storyteller_index)].id);
   }
-  const std::vector<char> lamps = switches_of(show, visitor);
+  const std::vector<char> lamps = switches_of(show.stage, show.visits, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"].push_back({{"name", exhibit.lamps[i].id},
                                 {"title", text(exhibit.lamps[i].title)},
@@ -91,7 +93,7 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
   }
   message["sounds"] = describe_sounds(exhibit);
   message["objects"] = describe_objects(exhibit, visitor.lang);
-  message["map"] = show.roads.map.has_value();
+  message["map"] = show.stage.roads.map.has_value();
   if (show.settings.watched) message["watched"] = true;
   message["questions"] = json::array();
   for (const AnsweredQuestion& one : exhibit.questions)
@@ -105,8 +107,8 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
         {"viewpoint", exhibit.viewpoints[size_t(storyteller_place.kiosk_viewpoint)].view.name}};
   };
   message["storyteller"] = nullptr;
-  const Teller& teller = teller_of(show, visitor);
-  if (const StorytellerPlace* storyteller_place = storyteller_of(show, teller)) {
+  const Teller& teller = teller_of(show.cast, show.visits, visitor);
+  if (const StorytellerPlace* storyteller_place = storyteller_of(show.stage, show.cast, teller)) {
     message["storyteller"] = about(*storyteller_place);
     message["storyteller"]["visible"] = teller.visible;
   }
@@ -118,7 +120,7 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
 
 std::string state_message(const Show& show, const Visitor& visitor) {
   const VisitorPlace& place = visitor.place;
-  const Exhibit& exhibit = show.exhibit;
+  const Exhibit& exhibit = show.stage.exhibit;
   json message = {{"type", "state"},
                   {"seq", place.seq},
                   {"position", triple(place.view.position)},
@@ -127,7 +129,7 @@ std::string state_message(const Show& show, const Visitor& visitor) {
                   {"roll", place.view.roll},
                   {"fov", place.view.fov},
                   {"fps", std::round(visitor.shown.measured_fps * 10) / 10},
-                  {"converged", std::round(visitor.picture.stats.converged * 1000) / 1000},
+                  {"converged", std::round(visitor.picture->stats.converged * 1000) / 1000},
                   {"limit", limit_names[size_t(limit(visitor.shown.way))]},
                   {"viewpoint", nullptr},
                   {"around", nullptr},
@@ -135,7 +137,7 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   if (place.around.point >= 0 && !place.around.leaves)
     message["around"] = exhibit.points[size_t(place.around.point)].id;
   if (!exhibit.lamps.empty()) message["lamps"] = json::object();
-  const std::vector<char> lamps = switches_of(show, visitor);
+  const std::vector<char> lamps = switches_of(show.stage, show.visits, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"][exhibit.lamps[i].id] = bool(lamps[i]);
   if (exhibit.day) message["hour"] = hour_of(show, visitor).value_or(exhibit.day->settings.at);
@@ -152,18 +154,19 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string pose_message(const Show& show, const Visitor& visitor) {
+std::string pose_message(const ExhibitStage& stage, const ShowVisits& visits,
+                         const Visitor& visitor) {
   const VisitorPlace& place = visitor.place;
   const View& view = place.last_view;
   const vec3 forward = view.forward;
   const float yaw = std::atan2(-forward.x, -forward.z);
   const vec3 level(std::cos(yaw), 0, -std::sin(yaw));
-  const bool led = place.around.point >= 0 || place.glide.path || leader_of(show, visitor) ||
+  const bool led = place.around.point >= 0 || place.glide.path || leader_of(visits, visitor) ||
                    place.tour.state == TourRide::State::playing || place.tour.pace > 0 ||
                    visitor.window.place != visitor.window.aim;
   return json{{"type", "pose"},
               {"seq", place.seq},
-              {"position", triple(show.exhibit.scene.origin + dvec3(view.position))},
+              {"position", triple(stage.exhibit.scene.origin + dvec3(view.position))},
               {"yaw", yaw},
               {"pitch", std::asin(std::clamp(forward.y, -1.0f, 1.0f))},
               {"roll", std::atan2(dot(view.right, cross(level, forward)), dot(view.right, level))},
@@ -217,11 +220,11 @@ std::string speech_stop_message(uint32_t utterance) {
 }
 
 // The mouth as the next picture shows it, in the utterance's own time.
-json mouth_message(const Show& show, const Teller& teller) {
+json mouth_message(const ShowDrawing& drawing, const Teller& teller) {
   const Speech* speech = teller.sounding.going ? heard(teller.voice) : nullptr;
   if (!speech) return nullptr;
-  double at = double(teller.voice.elapsed + show.picture_lead);
-  VisemeWeights weights = mouth_shape(teller.voice, show.picture_lead);
+  double at = double(teller.voice.elapsed + drawing.picture_lead);
+  VisemeWeights weights = mouth_shape(teller.voice, drawing.picture_lead);
   size_t strongest = size_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
   return {{"utterance", teller.sounding.number},
           {"seconds", std::round(at * 1e3) / 1e3},
@@ -239,7 +242,7 @@ json face_message(const FaceState& face) {
 }
 
 std::string agent_message(const Show& show, const Teller& teller) {
-  const StorytellerPlace* place = storyteller_of(show, teller);
+  const StorytellerPlace* place = storyteller_of(show.stage, show.cast, teller);
   json message = {
       {"type", "agent"},
       {"mood", to_string(teller.mind.mood)},
@@ -252,11 +255,11 @@ std::string agent_message(const Show& show, const Teller& teller) {
        teller.voice.story.empty() ? 0 : teller.voice.sentence + int(teller.voice.queue.size())},
       {"paused", teller.voice.paused}};
   StorytellerGaze gaze = eval_gaze(teller.mind, teller.storyteller, teller.pose);
-  message["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);
+  message["looking_at"] = triple(dvec3(gaze.target) + show.stage.exhibit.scene.origin);
   message["gaze"] = {std::round(gaze.yaw * 1e4) / 1e4, std::round(gaze.pitch * 1e4) / 1e4};
   message["guest"] = gaze.guest;
   message["face"] = face_message(teller.mind.face);
-  message["mouth"] = mouth_message(show, teller);
+  message["mouth"] = mouth_message(*show.drawing, teller);
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -271,11 +274,11 @@ double hundredths(float value) { return std::round(100 * double(value)) / 100; }
 
 }  // namespace
 
-std::string kiosk_message(const Show& show) {
+std::string kiosk_message(const ShowKiosks& kiosks) {
   Presence state = Presence::absent;
   size_t people = 0;
   float nearest = 0;
-  for (const Kiosk& kiosk : show.kiosks) {
+  for (const Kiosk& kiosk : kiosks.all) {
     const Audience& audience = kiosk.audience;
     state = std::max(state, audience.state);
     people += audience.guests.size();
@@ -285,7 +288,7 @@ std::string kiosk_message(const Show& show) {
   json message = {{"type", "kiosk"},
                   {"state", to_string(state)},
                   {"people", people},
-                  {"cameras", connected_cameras(show)}};
+                  {"cameras", connected_cameras(kiosks)}};
   put_distance(message, nearest);
   return message.dump();
 }
@@ -300,12 +303,13 @@ std::string kiosk_message(const Show& show, const Kiosk& kiosk) {
       {"stage", to_string(kiosk.stage.now)},
       {"people", audience.guests.size()},
       {"cameras",
-       std::ranges::count_if(show.eyes,
+       std::ranges::count_if(show.kiosks.eyes,
                              [&](const Eye& eye) { return eye.kiosk == name && !is_lost(eye); })},
-      {"storyteller", !show.her_kiosk           ? "none"
-                      : *show.her_kiosk == name ? "here"
-                                                : "elsewhere"},
-      {"volume", hundredths(kiosk_volume(show.settings.house, show.house, kiosk.settings.volume))},
+      {"storyteller", !show.kiosks.her_kiosk           ? "none"
+                      : *show.kiosks.her_kiosk == name ? "here"
+                                                       : "elsewhere"},
+      {"volume",
+       hundredths(kiosk_volume(show.settings.house, show.house.state, kiosk.settings.volume))},
       {"heard", kiosk.visit.heard}};
   put_distance(message, audience.guests.empty() ? 0 : audience.nearest);
   if (!audience.guests.empty()) message["aside"] = std::round(10 * double(audience.aside)) / 10;
@@ -321,10 +325,10 @@ std::string kiosk_message(const Show& show, const Kiosk& kiosk) {
 std::string house_message(const Show& show, bool reload) {
   const HouseSettings& settings = show.settings.house;
   return json{{"type", "house"},
-              {"open", show.house.open},
-              {"quiet", show.house.quiet},
-              {"headphones", show.house.quiet && settings.headphones},
-              {"volume", hundredths(kiosk_volume(settings, show.house, 1))},
+              {"open", show.house.state.open},
+              {"quiet", show.house.state.quiet},
+              {"headphones", show.house.state.quiet && settings.headphones},
+              {"volume", hundredths(kiosk_volume(settings, show.house.state, 1))},
               {"reload", reload},
               {"take_along", !settings.address.empty()}}
       .dump();
@@ -345,10 +349,11 @@ std::string announce_message(const Announcement& announcement, double seconds) {
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string reply_message(const Show& show, const Visitor& visitor, const std::string& question,
-                          const FoundAnswer& found, const LocalScript& said) {
+std::string reply_message(const ExhibitStage& stage, const Visitor& visitor,
+                          const std::string& question, const FoundAnswer& found,
+                          const LocalScript& said) {
   constexpr const char* kinds[] = {"none", "partly", "sure"};
-  const Exhibit& exhibit = show.exhibit;
+  const Exhibit& exhibit = stage.exhibit;
   std::string text;
   for (size_t i = 0; i < line_count(said); i++) {
     const LocalLine line = line_at(said, i);
@@ -363,7 +368,7 @@ std::string reply_message(const Show& show, const Visitor& visitor, const std::s
                   {"score", std::round(found.score * 100) / 100},
                   {"share", std::round(found.share * 100) / 100}};
   if (found.passage >= 0) {
-    const Passage& passage = show.questions.passages[size_t(found.passage)];
+    const Passage& passage = stage.questions.passages[size_t(found.passage)];
     message["from"] = {{"kind", passage_kinds[int(passage.kind)]},
                        {"id", passage.id},
                        {"title", text_in(passage.title, visitor.lang, exhibit.languages)}};

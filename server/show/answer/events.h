@@ -14,7 +14,8 @@ namespace wellspring::show {
 std::string welcome_message(const Show& show, const Visitor& visitor, bool resumed = false);
 std::string state_message(const Show& show, const Visitor& visitor);
 // Tells a page that moves its own camera where the visitor is now.
-std::string pose_message(const Show& show, const Visitor& visitor);
+std::string pose_message(const ExhibitStage& stage, const ShowVisits& visits,
+                         const Visitor& visitor);
 // The visitor is on its way to an eye's `place`, or has leapt there (0 seconds); to look closer at
 // `object`, if that is not empty.
 std::string went_message(uint32_t seq, const std::string& object, dvec3 place, double seconds);
@@ -26,8 +27,8 @@ std::string subtitle_message(const std::string& text, const std::string& lang,
 std::string speech_message(uint32_t utterance, const Speech& speech, dvec3 mouth);
 std::string speech_stop_message(uint32_t utterance);
 std::string agent_message(const Show& show, const Teller& teller);
-// Of all kiosks together, for visitors; of one, for its page.
-std::string kiosk_message(const Show& show);
+// Describes all kiosks together, for visitors, or one, for its page.
+std::string kiosk_message(const ShowKiosks& kiosks);
 std::string kiosk_message(const Show& show, const Kiosk& kiosk);
 // To a page that nobody may be at: asked, with the seconds to answer within, here or paused.
 std::string idle_message(const char* state, double seconds);
@@ -36,8 +37,9 @@ std::string house_message(const Show& show, bool reload);
 // To all pages. `seconds`: that are left of it.
 std::string announce_message(const Announcement& announcement, double seconds);
 
-// What is said to a question, and why.
-std::string reply_message(const Show& show, const Visitor& visitor, const std::string& question,
-                          const FoundAnswer& found, const LocalScript& said);
+// Says what the storyteller answers to a question, and why.
+std::string reply_message(const ExhibitStage& stage, const Visitor& visitor,
+                          const std::string& question, const FoundAnswer& found,
+                          const LocalScript& said);
 
 }  // namespace wellspring::show

@@ -33,46 +33,47 @@ void halt(Visitor& visitor, const GoTo& order) {
 }
 
 // Sets out for a view, or leaps there; `point`: what is looked at closer, -1: nothing.
-void set_out(Show& show, Visitor& visitor, const GoTo& order, const Viewpoint& to, int point) {
+void set_out(const ExhibitStage& stage, Visitor& visitor, const GoTo& order, const Viewpoint& to,
+             int point) {
   VisitorPlace& place = visitor.place;
   std::string problem;
   halt(visitor, order);
-  auto path = make_leg(show.exhibit, show.roads, place.view, to, 0, problem, glide_limits);
+  auto path = make_leg(stage.exhibit, stage.roads, place.view, to, 0, problem, glide_limits);
   place.viewpoint = -1;
   place.closer = point;
   const bool leaps = place.comfort || !path;  // who stands where nobody can walks from nowhere
   if (leaps) place.view = to;
   else place.glide.path = path;
   if (leaps) place.camera_cuts++;
-  const std::string object = point < 0 ? "" : show.exhibit.points[size_t(point)].id;
+  const std::string object = point < 0 ? "" : stage.exhibit.points[size_t(point)].id;
   visitor.link->send_text(went_message(order.seq, object, to.position, leaps ? 0 : path->seconds));
   visitor.state_sent_at = -1e9;
 }
 
 // The view of one who has walked to `ground`: on in the same direction.
-Viewpoint view_at(const Show& show, const Viewpoint& from, dvec3 eye) {
+Viewpoint view_at(const ExhibitStage& stage, const Viewpoint& from, dvec3 eye) {
   Viewpoint to = from;
   to.position = eye;
   to.yaw = float(std::atan2(from.position.x - eye.x, from.position.z - eye.z));
   to.pitch = std::clamp(from.pitch, -steepest_gaze, steepest_gaze);
   to.roll = 0;
-  to.fov = show.exhibit.viewpoints[size_t(show.exhibit.start)].view.fov;
+  to.fov = stage.exhibit.viewpoints[size_t(stage.exhibit.start)].view.fov;
   return to;
 }
 
 // `ground`: relative to the scene's origin.
-Answer go_to_ground(Show& show, Visitor& visitor, const GoTo& order, vec3 ground) {
+Answer go_to_ground(const ExhibitStage& stage, Visitor& visitor, const GoTo& order, vec3 ground) {
   const Viewpoint& from = visitor.place.view;
-  const dvec3 origin = show.exhibit.scene.origin;
+  const dvec3 origin = stage.exhibit.scene.origin;
   dvec3 eye;
-  if (!show.roads.map) {  // visitors fly: towards it, at their height
+  if (!stage.roads.map) {  // visitors fly: towards it, at their height
     eye = origin + dvec3(ground);
     eye.y = from.position.y;
     const dvec3 way = eye - from.position;
     if (glm::length(way) < flown_short + least_way) return no_way;
     eye -= way * (flown_short / glm::length(way));
   } else {
-    const WalkMap& map = *show.roads.map;
+    const WalkMap& map = *stage.roads.map;
     const int place = nearest_of(map, reachable_places(map, vec3(from.position - origin)), ground);
     if (place < 0) return no_way;
     vec3 foot = map.places[size_t(place)].ground;
@@ -81,43 +82,44 @@ Answer go_to_ground(Show& show, Visitor& visitor, const GoTo& order, vec3 ground
   }
   const dvec3 way = eye - from.position;
   if (std::hypot(way.x, way.z) < least_way) return no_way;
-  set_out(show, visitor, order, view_at(show, from, eye), -1);
+  set_out(stage, visitor, order, view_at(stage, from, eye), -1);
   return {};
 }
 
-Answer look_closer(Show& show, Visitor& visitor, const GoTo& order, int point,
+Answer look_closer(const ExhibitStage& stage, Visitor& visitor, const GoTo& order, int point,
                    std::optional<vec3> near) {
   const Viewpoint& from = visitor.place.view;
   const PictureWishes& wants = visitor.wants;
   Viewpoint to = from;
-  if (show.roads.map) {
-    const WalkMap& map = *show.roads.map;
-    const vec3 eye = vec3(from.position - show.exhibit.scene.origin);
-    const float fov = show.exhibit.viewpoints[size_t(show.exhibit.start)].view.fov;
-    auto view = good_view(show.exhibit, *show.world, map, reachable_places(map, eye), point, near,
+  if (stage.roads.map) {
+    const WalkMap& map = *stage.roads.map;
+    const vec3 eye = vec3(from.position - stage.exhibit.scene.origin);
+    const float fov = stage.exhibit.viewpoints[size_t(stage.exhibit.start)].view.fov;
+    auto view = good_view(stage.exhibit, *stage.world, map, reachable_places(map, eye), point, near,
                           from, float(wants.width) / float(wants.height), fov);
     if (view) to = *view;
     else return WireError{"no_way", "there is no place from which it can be seen"};
   } else {  // visitors fly: they turn to it
-    const dvec3 way = show.exhibit.points[size_t(point)].place - from.position;
+    const dvec3 way = stage.exhibit.points[size_t(point)].place - from.position;
     to.yaw = float(std::atan2(-way.x, -way.z));
     to.pitch = float(std::atan2(way.y, std::hypot(way.x, way.z)));
   }
-  set_out(show, visitor, order, to, point);
+  set_out(stage, visitor, order, to, point);
   return {};
 }
 
 // Lifts it out of its place; the visitor stays.
-Answer look_around(Show& show, Visitor& visitor, const GoTo& order, const PointOfInterest& point) {
+Answer look_around(const ExhibitStage& stage, Visitor& visitor, const GoTo& order,
+                   const PointOfInterest& point) {
   if (!point.around)
     return WireError{"no_way", "the exhibit does not show '" + point.id + "' from all sides"};
-  const Bounds bounds = object_bounds(*show.world, point);
+  const Bounds bounds = object_bounds(*stage.world, point);
   if (bounds.low.x > bounds.high.x)
     return WireError{"no_way", "nothing is to be seen of '" + point.id + "'"};
   VisitorPlace& place = visitor.place;
   halt(visitor, order);
-  place.closer = int(&point - show.exhibit.points.data());
-  begin_around(show.exhibit, place.closer, bounds, place.view,
+  place.closer = int(&point - stage.exhibit.points.data());
+  begin_around(stage.exhibit, place.closer, bounds, place.view,
                float(visitor.wants.width) / float(visitor.wants.height), place.around);
   visitor.state_sent_at = -1e9;
   return {};
@@ -139,23 +141,26 @@ std::optional<WireError> go(Show& show, Visitor& visitor, const GoTo& order) {
   if (order.around && order.object.empty())
     return WireError{"bad_field", "go.around: is about an object"};
   if (!order.object.empty()) {
-    const PointOfInterest* point = find_point(show.exhibit, order.object);
+    const PointOfInterest* point = find_point(show.stage.exhibit, order.object);
     if (!point) return WireError{"unknown_object", "there is no object '" + order.object + "'"};
     Around& around = visitor.place.around;
-    const bool same = around.point == int(point - show.exhibit.points.data());
-    if (order.around) return look_around(show, visitor, order, *point);
+    const bool same = around.point == int(point - show.stage.exhibit.points.data());
+    if (order.around) return look_around(show.stage, visitor, order, *point);
     if (same) return put_back(visitor, order);
-    return look_closer(show, visitor, order, int(point - show.exhibit.points.data()), {});
+    return look_closer(show.stage, visitor, order, int(point - show.stage.exhibit.points.data()),
+                       {});
   }
   if (order.to)
-    return go_to_ground(show, visitor, order, vec3(*order.to - show.exhibit.scene.origin));
+    return go_to_ground(show.stage, visitor, order,
+                        vec3(*order.to - show.stage.exhibit.scene.origin));
   // In the picture that the visitor was sent last.
   const View view = visitor.shown.frame_number > 0 ? visitor.shown.view : view_of(show, visitor);
-  const auto pointed = point_at(show.exhibit, *show.world, view, *order.at);
+  const auto pointed = point_at(show.stage.exhibit, *show.stage.world, view, *order.at);
   if (!pointed) return WireError{"nothing_there", "there is nothing at that place"};
   if (pointed->point >= 0) touch_object(show, visitor, pointed->point);
-  if (pointed->point >= 0) return look_closer(show, visitor, order, pointed->point, pointed->place);
-  return go_to_ground(show, visitor, order, pointed->ground);
+  if (pointed->point >= 0)
+    return look_closer(show.stage, visitor, order, pointed->point, pointed->place);
+  return go_to_ground(show.stage, visitor, order, pointed->ground);
 }
 
 }  // namespace wellspring::show

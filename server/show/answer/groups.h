@@ -14,20 +14,21 @@ namespace wellspring::show {
 inline constexpr double look_round_seconds = 4;  // after the last turn the view comes back
 
 // One order. Answers "unknown_group" for a code that nobody leads by.
-std::optional<WireError> handle_group(Show& show, Visitor& visitor, const GroupOrder& order);
+std::optional<WireError> handle_group(ShowVisits& visits, Visitor& visitor,
+                                      const GroupOrder& order);
 // Whether the visitor sees what a leader sees; their own words on it are refused.
-std::optional<WireError> check_not_following(const Show& show, const Visitor& visitor);
+std::optional<WireError> check_not_following(const ShowVisits& visits, const Visitor& visitor);
 // The visitor goes by themselves for now.
 void go_away(Visitor& visitor);
-// Where followers stand and look, from where their leader does; once a tick, after the leader has
+// Puts followers where their leader stands and looks; called once a tick, after the leader has
 // moved. Tells those whose leader has left.
-void follow_leader(Show& show, Visitor& visitor, float dt);
+void follow_leader(ShowVisits& visits, double time, Visitor& visitor, float dt);
 
-// Where the screens of kiosks are in the exhibit.
+// The functions below say where the screens of kiosks are in the exhibit.
 
-// Where a kiosk's screen is a window: its own viewpoint, that of its storyteller, or of whoever is
-// there; the exhibit's start where there is nobody. Index into Exhibit::viewpoints.
-int kiosk_viewpoint(const Show& show, const std::string& kiosk);
+// Returns where a kiosk's screen is a window: its own viewpoint, that of its storyteller, or of
+// whoever is there; the exhibit's start if nobody is. Index into Exhibit::viewpoints.
+int kiosk_viewpoint(const ExhibitStage& stage, const ShowCast& cast, const std::string& kiosk);
 View kiosk_window(const Show& show, const std::string& kiosk);
 
 // A step of a kiosk's page: while it stands at the kiosk's viewpoint, its picture is seen from
@@ -35,7 +36,7 @@ View kiosk_window(const Show& show, const std::string& kiosk);
 // way.
 void look_through(const Show& show, Visitor& page, float dt);
 
-// What visitors ask of the storyteller: to come, to go, to tell, to answer, to fall silent.
+// Visitors ask the storyteller to come, to go, to tell, to answer, to fall silent.
 
 // Carries it out, and gives who orders something a storyteller of their own where the exhibit does
 // not share it; the error to send back, if any.

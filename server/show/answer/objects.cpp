@@ -82,7 +82,7 @@ std::string describe_map(const Exhibit& exhibit, const WalkMap& map) {
       for (; p >= 0; p = map.place_after[size_t(p)])
         if (cell != 'o') cell = map.places[size_t(p)].clear >= map.radius ? 'o' : 'x';
     }
-  const float middle = 0.5f * float(scale - 1);  // of a cell's places
+  const float middle = 0.5f * float(scale - 1);  // middle of a cell's places
   const dvec3 corner =
       exhibit.scene.origin +
       dvec3(map.corner + map.cell * vec3(float(low.x) + middle, 0, float(low.y) + middle));

@@ -25,8 +25,8 @@ std::string describe_map(const Exhibit& exhibit, const WalkMap& map);
 
 nlohmann::json describe_book(const Exhibit& exhibit);  // null: there is none
 nlohmann::json describe_sounds(const Exhibit& exhibit);
-// Where the exhibit's picture on the front page is: its poster, or, without one, a still of few
-// samples.
+// Returns the address of the exhibit's picture on the front page: its poster, or, without one, a
+// still of few samples.
 std::string poster_address(const Exhibit& exhibit);
 
 // `tail`: what comes after the exhibit's id in an address, "/files/NAME". Null unless exhibit.json

@@ -26,7 +26,7 @@ constexpr OrderBound bounds[] = {
     {StorytellerOrder::type, 5, 8},  // another figure, and words that are spoken for them
     {LampOrder::type, 10, 10},       // other light
     {HourOrder::type, 10, 10},       // other light
-    {PlayOrder::type, 10, 10},       // what moves
+    {PlayOrder::type, 10, 10},       // moves things
     {GroupOrder::type, 2, 5},        // codes are not to be guessed
     {Ask::type, 2, 4},               // an answer is looked for and spoken
     {Settings::type, 5, 8},          // another size: nothing is known of it
@@ -105,16 +105,16 @@ const OrderBound* bound_of(const BrowserMessage& order) {
   return found == order_bounds().end() ? nullptr : &*found;
 }
 
-bool is_due(const Show& show, VisitorOrders& orders, const BrowserMessage& order) {
+bool is_due(double time, VisitorOrders& orders, const BrowserMessage& order) {
   const OrderBound* bound = bound_of(order);
   if (!bound) return true;
   RateBound& spent = orders.spent[order.index()];
   spent.rate = bound->rate, spent.burst = bound->burst;
-  return spent.take(1, show.time);
+  return spent.take(1, time);
 }
 
-void refuse(Show& show, Visitor& visitor, const WireError& error) {
-  show.totals.refused_messages++;
+void refuse(ShowTotals& totals, Visitor& visitor, const WireError& error) {
+  totals.refused_messages++;
   visitor.link->send_text(write_error(error));
 }
 
@@ -125,7 +125,7 @@ void carry_out(Show& show, Visitor& visitor, const WaitingOrder& order) {
   const std::optional<WireError> error = handle(show, visitor, order.message);
   // Inputs that came after a late one have been carried out.
   if (order.late && is_later(seq, visitor.place.seq)) visitor.place.seq = seq;
-  if (error) refuse(show, visitor, *error);
+  if (error) refuse(show.totals, visitor, *error);
   else note_touch(visitor, order.message);
 }
 
@@ -141,10 +141,10 @@ void follow_orders(Show& show, Visitor& visitor) {
     if (auto* message = std::get_if<BrowserMessage>(&heard.said))
       show.totals.orders_left_out += put(std::move(*message), orders.waiting);
     else if (const WireError* wrong = std::get_if<WireError>(&heard.said))
-      refuse(show, visitor, *wrong);
+      refuse(show.totals, visitor, *wrong);
   }
   for (WaitingOrder& order : std::exchange(orders.waiting, {})) {
-    if (is_due(show, orders, order.message)) {
+    if (is_due(show.time, orders, order.message)) {
       carry_out(show, visitor, order);
     } else {
       order.late = true;
@@ -166,42 +166,42 @@ bool is_page_of(const Show& show, const Visitor& visitor, const Kiosk& kiosk) {
 // Those that are named or connected, no others.
 void keep_kiosks(Show& show) {
   std::vector<std::string> names;
-  for (Eye& eye : show.eyes) {
+  for (Eye& eye : show.kiosks.eyes) {
     eye.kiosk = kiosk_name(show, eye.seen.kiosk);
     if (!is_lost(eye)) names.push_back(eye.kiosk);
   }
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && visitor.kiosk) names.push_back(kiosk_name(show, visitor.name));
-  std::vector<KioskSettings> wanted = show.exhibit.kiosks;
+  std::vector<KioskSettings> wanted = show.stage.exhibit.kiosks;
   for (const std::string& name : names) {
     auto is_it = [&](const KioskSettings& one) { return one.name == name; };
     if (std::any_of(wanted.begin(), wanted.end(), is_it)) continue;
     wanted.emplace_back().name = name;
   }
-  std::erase_if(show.kiosks, [&](const Kiosk& kiosk) {
+  std::erase_if(show.kiosks.all, [&](const Kiosk& kiosk) {
     return std::none_of(wanted.begin(), wanted.end(),
                         [&](const KioskSettings& one) { return one.name == kiosk.settings.name; });
   });
   for (const KioskSettings& one : wanted)
-    if (!find_kiosk(show, one.name)) show.kiosks.emplace_back().settings = one;
+    if (!find_kiosk(show.kiosks, one.name)) show.kiosks.all.emplace_back().settings = one;
 }
 
 // Whether the storyteller tells something that this page asked for.
-bool is_told(const Show& show, const Visitor& page) {
-  return show.teller.voice.asked_by == page.link->id && !show.teller.voice.queue.empty();
+bool is_told(const ShowCast& cast, const Visitor& page) {
+  return cast.teller.voice.asked_by == page.link->id && !cast.teller.voice.queue.empty();
 }
 
 KioskInput read_pages(Show& show, const Kiosk& kiosk) {
   KioskInput input;
-  input.closed = !show.house.open;
-  for (Visitor& page : show.visitors) {
+  input.closed = !show.house.state.open;
+  for (Visitor& page : show.visits.visitors) {
     if (!is_page_of(show, page, kiosk)) continue;
-    const bool told = is_told(show, page);
+    const bool told = is_told(show.cast, page);
     const TourRide::State tour = page.place.tour.state;
     input.touched |= std::exchange(page.screen.touched, false);
     input.showing = std::max(input.showing, page.screen.showing);
     input.busy |= page.screen.showing != Showing::well || told || tour != TourRide::State::none;
-    input.playing |= page.screen.playing || (told && !show.teller.voice.paused) ||
+    input.playing |= page.screen.playing || (told && !show.cast.teller.voice.paused) ||
                      tour == TourRide::State::playing;
   }
   return input;
@@ -210,26 +210,26 @@ KioskInput read_pages(Show& show, const Kiosk& kiosk) {
 // Nobody is told a story who has left; lamps and hour are the house's, the screen is a window
 // again.
 void see_off(Show& show, const Kiosk& kiosk) {
-  for (Visitor& page : show.visitors) {
+  for (Visitor& page : show.visits.visitors) {
     if (!is_page_of(show, page, kiosk)) continue;
     page.lamps.own.clear();
     page.lamps.wish.clear();
     page.lamps.hour.reset();
-    if (is_told(show, page)) fall_silent(show, show.teller);
+    if (is_told(show.cast, page)) fall_silent(show, show.cast.teller);
     if (page.place.tour.state != TourRide::State::none)
       handle(show, page, Tour{TourAction::stop, ""});
-    go_to_viewpoint(page.place, page.hearing.narration.voice, show.exhibit,
-                    kiosk_viewpoint(show, kiosk.settings.name));
+    go_to_viewpoint(page.place, page.hearing.narration.voice, show.stage.exhibit,
+                    kiosk_viewpoint(show.stage, show.cast, kiosk.settings.name));
   }
 }
 
 void note_story(Show& show, Kiosk& kiosk) {
-  const std::string& story = show.teller.voice.story;
+  const std::string& story = show.cast.teller.voice.story;
   std::vector<std::string>& heard = kiosk.visit.heard;
   if (story.empty() || !is_visit(kiosk.stage.now)) return;
   if (std::find(heard.begin(), heard.end(), story) != heard.end()) return;
-  for (const Visitor& page : show.visitors)
-    if (is_page_of(show, page, kiosk) && is_told(show, page)) return heard.push_back(story);
+  for (const Visitor& page : show.visits.visitors)
+    if (is_page_of(show, page, kiosk) && is_told(show.cast, page)) return heard.push_back(story);
 }
 
 // A kiosk's own storyteller comes there with its guest.
@@ -237,7 +237,7 @@ void call_teller(Show& show, const Kiosk& kiosk) {
   if (kiosk.settings.teller.empty()) return;
   StorytellerOrder order;
   order.teller = kiosk.settings.teller;
-  for (Visitor& page : show.visitors)
+  for (Visitor& page : show.visits.visitors)
     if (is_page_of(show, page, kiosk)) {
       handle(show, page, order);
       return;
@@ -245,44 +245,44 @@ void call_teller(Show& show, const Kiosk& kiosk) {
 }
 
 void find_her_kiosk(Show& show) {
-  if (!storyteller_of(show, show.teller)) return;
-  const Kiosk* with = her_kiosk(show);
+  if (!storyteller_of(show.stage, show.cast, show.cast.teller)) return;
+  const Kiosk* with = her_kiosk(show.kiosks);
   if (with && is_visit(with->stage.now)) return;
-  show.her_kiosk.reset();
+  show.kiosks.her_kiosk.reset();
   const Kiosk* first = nullptr;
-  for (const Kiosk& kiosk : show.kiosks)
+  for (const Kiosk& kiosk : show.kiosks.all)
     if (has_guest(kiosk.stage.now) && (!first || kiosk.visit.began < first->visit.began))
       first = &kiosk;
   if (!first) return;
-  show.her_kiosk = first->settings.name;
-  show.her_visits++;
+  show.kiosks.her_kiosk = first->settings.name;
+  show.kiosks.her_visits++;
   call_teller(show, *first);
 }
 
 void tell_pages(Show& show) {
-  std::string all = kiosk_message(show);
-  const bool news = all != show.kiosk_message;
-  if (news) show.kiosk_message = std::move(all);
-  for (Visitor& visitor : show.visitors)
-    if (news && visitor.welcomed && !visitor.kiosk) visitor.link->send_text(show.kiosk_message);
-  for (Kiosk& kiosk : show.kiosks) {
+  std::string all = kiosk_message(show.kiosks);
+  const bool news = all != show.kiosks.message;
+  if (news) show.kiosks.message = std::move(all);
+  for (Visitor& visitor : show.visits.visitors)
+    if (news && visitor.welcomed && !visitor.kiosk) visitor.link->send_text(show.kiosks.message);
+  for (Kiosk& kiosk : show.kiosks.all) {
     std::string message = kiosk_message(show, kiosk);
     if (message == kiosk.message) continue;
     kiosk.message = std::move(message);
-    for (Visitor& visitor : show.visitors)
+    for (Visitor& visitor : show.visits.visitors)
       if (is_page_of(show, visitor, kiosk)) visitor.link->send_text(kiosk.message);
   }
 }
 
 void tell_eyes(Show& show) {
-  for (Eye& eye : show.eyes) {
-    const Kiosk* kiosk = eye.observations > 0 ? find_kiosk(show, eye.kiosk) : nullptr;
+  for (Eye& eye : show.kiosks.eyes) {
+    const Kiosk* kiosk = eye.observations > 0 ? find_kiosk(show.kiosks, eye.kiosk) : nullptr;
     if (!kiosk || is_lost(eye)) continue;
-    const bool page = std::any_of(show.visitors.begin(), show.visitors.end(),
+    const bool page = std::any_of(show.visits.visitors.begin(), show.visits.visitors.end(),
                                   [&](auto& visitor) { return is_page_of(show, visitor, *kiosk); });
-    const bool here = show.her_kiosk == eye.kiosk;
+    const bool here = show.kiosks.her_kiosk == eye.kiosk;
     const Stage stage = kiosk->stage.now;
-    const bool idle = !show.house.open && stage == Stage::sleep;
+    const bool idle = !show.house.state.open && stage == Stage::sleep;
     std::string order = write_eye_order({to_string(stage), needs_of(*kiosk, here, page), idle});
     if (order == eye.ordered) continue;
     eye.link->send_text(order);
@@ -294,21 +294,21 @@ void tell_eyes(Show& show) {
 
 void follow_kiosks(Show& show) {
   keep_kiosks(show);
-  for (Kiosk& kiosk : show.kiosks) {
+  for (Kiosk& kiosk : show.kiosks.all) {
     const Stage before = kiosk.stage.now;
-    step_kiosk(kiosk, read_pages(show, kiosk), show.eyes, kiosk_window(show, kiosk.settings.name),
-               show.time);
+    step_kiosk(kiosk, read_pages(show, kiosk), show.kiosks.eyes,
+               kiosk_window(show, kiosk.settings.name), show.time);
     const Stage now = kiosk.stage.now;
     if (kiosk.changed)
       log::info("kiosk '{}': {} -> {}", kiosk.settings.name, to_string(before), to_string(now));
     if (kiosk.changed && now == Stage::farewell) see_off(show, kiosk);
     // Who comes back is not talked to as somebody who goes.
     const bool back = kiosk.changed && before == Stage::farewell && has_guest(now);
-    if (back && her_kiosk(show) == &kiosk && show.teller.voice.story.empty())
-      fall_silent(show, show.teller);
+    if (back && her_kiosk(show.kiosks) == &kiosk && show.cast.teller.voice.story.empty())
+      fall_silent(show, show.cast.teller);
   }
   find_her_kiosk(show);
-  for (Kiosk& kiosk : show.kiosks) {
+  for (Kiosk& kiosk : show.kiosks.all) {
     follow_gestures(show, kiosk);
     note_story(show, kiosk);
   }
@@ -329,9 +329,9 @@ void note_touch(Visitor& visitor, const BrowserMessage& message) {
   }
 }
 
-Kiosk* her_kiosk(Show& show) {
-  for (Kiosk& kiosk : show.kiosks)
-    if (show.her_kiosk == kiosk.settings.name) return &kiosk;
+Kiosk* her_kiosk(ShowKiosks& kiosks) {
+  for (Kiosk& kiosk : kiosks.all)
+    if (kiosks.her_kiosk == kiosk.settings.name) return &kiosk;
   return nullptr;
 }
 
@@ -339,14 +339,14 @@ namespace {
 
 // The page that its guests stand before.
 Visitor* find_page(Show& show, const Kiosk& kiosk) {
-  for (Visitor& visitor : show.visitors)
+  for (Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && kiosk_of(show, visitor) == &kiosk) return &visitor;
   return nullptr;
 }
 
 // A story's number after that of the one told last, or that one again.
-size_t next_story(const Show& show, const KioskVisit& visit, bool again) {
-  const std::vector<StoryText>& stories = show.exhibit.stories;
+size_t next_story(const ExhibitStage& stage, const KioskVisit& visit, bool again) {
+  const std::vector<StoryText>& stories = stage.exhibit.stories;
   auto told = std::find_if(stories.begin(), stories.end(), [&](const StoryText& story) {
     return story.id == visit.gestured_story;
   });
@@ -360,17 +360,18 @@ size_t next_story(const Show& show, const KioskVisit& visit, bool again) {
   return (index + 1) % stories.size();
 }
 
-StorytellerOrder order_of(const Show& show, const KioskVisit& visit, const std::string& gesture) {
+StorytellerOrder order_of(const ExhibitStage& stage, const ShowCast& cast, const KioskVisit& visit,
+                          const std::string& gesture) {
   StorytellerOrder order;
-  const std::vector<StoryText>& stories = show.exhibit.stories;
-  const bool telling = !show.teller.voice.story.empty();
+  const std::vector<StoryText>& stories = stage.exhibit.stories;
+  const bool telling = !cast.teller.voice.story.empty();
   if (gesture.size() == 1 && gesture[0] >= '1' && gesture[0] <= '9') {
     const size_t number = size_t(gesture[0] - '1');
     if (number < stories.size()) order.story = stories[number].id;
   } else if (gesture == "swipe_left" || gesture == "swipe_right") {
     const bool back = gesture == "swipe_right";
     if (telling) order.action = back ? "restart" : "skip";
-    else if (!stories.empty()) order.story = stories[next_story(show, visit, back)].id;
+    else if (!stories.empty()) order.story = stories[next_story(stage, visit, back)].id;
   } else if (gesture == "swipe_down" && telling) {
     order.action = "stop";
   }
@@ -394,7 +395,7 @@ void follow_gestures(Show& show, Kiosk& kiosk) {
       show.totals.gestures++;
       continue;
     }
-    const StorytellerOrder order = order_of(show, kiosk.visit, one.second);
+    const StorytellerOrder order = order_of(show.stage, show.cast, kiosk.visit, one.second);
     if (order == StorytellerOrder{}) continue;
     if (handle(show, *page, order)) continue;
     if (!order.story.empty()) kiosk.visit.gestured_story = order.story;

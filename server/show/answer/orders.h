@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What browsers order, read and carried out once a tick. What one visitor may make others wait for
-// is bounded here and by what is drawn at once (show/draw/decide.h):
+// Reads what browsers order and carries it out once a tick. Bounds, with what is drawn at once
+// (show/draw/decide.h), how long one visitor may make others wait:
 //
 // - of the orders of one kind that are not carried out yet, the newest wins: an older one is left
 //   out, or what the newer one says anew of it. Two lamps are two kinds, and so are two animations;
@@ -19,7 +19,7 @@ namespace wellspring::show {
 
 // How many orders of a kind are carried out: a second, and at once after a pause.
 struct OrderBound {
-  const char* type;  // of the message
+  const char* type;  // type of the message
   double rate, burst;
 };
 // Kinds that are not listed cost no more than reading them.
@@ -40,18 +40,18 @@ void follow_orders(Show& show, Visitor& visitor);
 // new to them. Kiosks that no exhibit names live as long as a page or a camera of theirs.
 void follow_kiosks(Show& show);
 
-// What a page says at a kiosk's screen, or asks for there, is a touch.
+// Notes that a guest touched the screen, if the page of a kiosk says or asks for that.
 void note_touch(Visitor& visitor, const BrowserMessage& message);
 
 // The kiosk that the storyteller is with; null: none.
-Kiosk* her_kiosk(Show& show);
+Kiosk* her_kiosk(ShowKiosks& kiosks);
 
-// What guests before a kiosk ask for with a hand, as its page could with a touch. While the page
-// shows what it turns the pages of itself (book, topics, partners, slides), gestures are handed to
-// it in the kiosk message. Else digits: the story of that number. Swipes to the left, as a page is
-// turned: the next sentence, or where nobody is telling the next story that they have not heard. To
-// the right: the story again. Down: enough. (The storyteller herself answers a wave,
-// avatar/mind/body_language.h.)
+// Guests before a kiosk ask with a hand for what they could ask its page with a touch. While the
+// page shows something whose pages it turns itself (book, topics, partners, slides), gestures are
+// handed to it in the kiosk message. Else a digit asks for the story of that number, and a swipe to
+// the left, as a page is turned, for the next sentence, or, while nobody tells, for the next story
+// that they have not heard. A swipe to the right asks for the story again, one down for an end.
+// (The storyteller herself answers a wave, avatar/mind/body_language.h.)
 
 // Once a tick, after the kiosk's step. A gesture counts once, however long it is told.
 void follow_gestures(Show& show, Kiosk& kiosk);

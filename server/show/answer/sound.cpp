@@ -13,8 +13,8 @@ namespace wellspring::show {
 
 namespace {
 
-VoiceManner manner_of(const Show& show, const Teller& teller) {
-  const StorytellerPlace* storyteller_place = storyteller_of(show, teller);
+VoiceManner manner_of(const ExhibitStage& stage, const ShowCast& cast, const Teller& teller) {
+  const StorytellerPlace* storyteller_place = storyteller_of(stage, cast, teller);
   return storyteller_place ? storyteller_place->voice : VoiceManner{};
 }
 
@@ -23,9 +23,10 @@ constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
 bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.hearing.wanted; }
 
 bool has_listener(const Show& show, const Teller& teller) {
-  return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
-    return visitor.hearing.wanted && listens_to(show, visitor, teller);
-  });
+  return std::any_of(show.visits.visitors.begin(), show.visits.visitors.end(),
+                     [&](const Visitor& visitor) {
+                       return visitor.hearing.wanted && listens_to(show, visitor, teller);
+                     });
 }
 
 // A voice, whose it is, what is heard of it, and the language it speaks.
@@ -37,17 +38,19 @@ struct Channel {
   bool anybody = false;  // listens
 };
 
-SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance) {
+SpeechState ask_speech(const ExhibitStage& stage, const ShowCast& cast, Channel& channel,
+                       const Utterance& utterance) {
   Sounding& sounding = channel.sounding;
-  const auto* line = line_in(utterance.line, channel.lang, show.exhibit.languages);
+  const auto* line = line_in(utterance.line, channel.lang, stage.exhibit.languages);
   if (line->second.recording) return {line->second.recording, false, line->first};
-  SpeechRequest request = request_of(line->second, line->first, manner_of(show, channel.teller));
+  SpeechRequest request =
+      request_of(line->second, line->first, manner_of(stage, cast, channel.teller));
   std::string lang = request.lang;
-  if (!show.speech.find || !show.speech.speak) return {nullptr, false, channel.lang};
-  if (auto speech = show.speech.find(request)) return {speech, false, lang};
+  if (!cast.speech.find || !cast.speech.speak) return {nullptr, false, channel.lang};
+  if (auto speech = cast.speech.find(request)) return {speech, false, lang};
   if (!channel.anybody) return {nullptr, false, lang};
   if (sounding.asked != request || !sounding.answer.valid()) {
-    sounding.answer = show.speech.speak(request);
+    sounding.answer = cast.speech.speak(request);
     sounding.asked = std::move(request);
   }
   if (!is_ready(sounding.answer)) return {nullptr, true, lang};
@@ -59,36 +62,40 @@ SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance)
 }
 
 VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
-  auto ask = [&](const Utterance& utterance) { return ask_speech(show, channel, utterance); };
+  auto ask = [&](const Utterance& utterance) {
+    return ask_speech(show.stage, show.cast, channel, utterance);
+  };
   VoiceEvents events = advance_voice(channel.voice, dt, ask);
   if (events.ended) {  // heard to its end: nothing to stop
-    for (Visitor& visitor : show.visitors)
+    for (Visitor& visitor : show.visits.visitors)
       if (visitor.hearing.utterance == channel.sounding.number) visitor.hearing.utterance = 0;
     channel.sounding.going = false;
   }
   if (events.begun) {
     show.totals.utterances += events.begun->speech != nullptr;
     // The next line, should it have been forgotten meanwhile.
-    if (show.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1) {
-      const auto* next = line_in(channel.voice.queue[1].line, channel.lang, show.exhibit.languages);
+    if (show.cast.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1) {
+      const auto* next =
+          line_in(channel.voice.queue[1].line, channel.lang, show.stage.exhibit.languages);
       if (!next->second.recording)
-        show.speech.prepare(
-            {request_of(next->second, next->first, manner_of(show, channel.teller))});
+        show.cast.speech.prepare({request_of(next->second, next->first,
+                                             manner_of(show.stage, show.cast, channel.teller))});
     }
   }
   return events;
 }
 
 // Whether something of the voice is heard now, under which number and since when.
-const Speech* update_sounding(Show& show, const Voice& voice, Sounding& sounding) {
+const Speech* update_sounding(ShowCast& cast, uint64_t time_us, const Voice& voice,
+                              Sounding& sounding) {
   const Speech* now = heard(voice);
   if (!now || now != sounding.speech.get() || voice.cuts != sounding.cuts) sounding.going = false;
   if (now && !sounding.going) {
-    sounding.number = ++show.utterances;
+    sounding.number = ++cast.utterances;
     sounding.going = true;
     sounding.cuts = voice.cuts;
     sounding.speech = voice.queue.front().speech;
-    sounding.zero_us = show.time_us - uint64_t(std::llround(1e6 * double(voice.elapsed)));
+    sounding.zero_us = time_us - uint64_t(std::llround(1e6 * double(voice.elapsed)));
   }
   if (!now) sounding.speech = nullptr;
   return now;
@@ -101,7 +108,7 @@ void stop_sound(Visitor& visitor) {
   visitor.hearing.utterance = 0;
 }
 
-// What a visitor is to hear.
+// Holds one sound that a visitor is to hear.
 struct Source {
   const Voice* voice = nullptr;
   const Sounding* sounding = nullptr;
@@ -109,7 +116,7 @@ struct Source {
   bool everywhere = false;
 };
 
-void send_pieces(Show& show, Visitor& visitor, const Source& source) {
+void send_pieces(ShowTotals& totals, Visitor& visitor, const Source& source) {
   VisitorSound& hearing = visitor.hearing;
   const Sounding& sounding = *source.sounding;
   const Speech& speech = *sounding.speech;
@@ -129,11 +136,11 @@ void send_pieces(Show& show, Visitor& visitor, const Source& source) {
         make_sound_packet(header, std::span(speech.pcm).subspan(header.start, count)));
     if (!visitor.link->send_sound(std::move(packet))) {
       hearing.given_up = sounding.number;
-      show.totals.sounds_given_up++;
+      totals.sounds_given_up++;
       stop_sound(visitor);
       return;
     }
-    show.totals.sounds++;
+    totals.sounds++;
     hearing.samples_sent += count;
   }
 }
@@ -153,7 +160,7 @@ void start_sound(Visitor& visitor, const Source& source) {
 
 std::string spoken_language(const Show& show, const Teller& teller) {
   const Visitor *kiosk = nullptr, *first = nullptr;
-  for (const Visitor& visitor : show.visitors) {
+  for (const Visitor& visitor : show.visits.visitors) {
     if (!listens_to(show, visitor, teller)) continue;
     if (teller.voice.asked_by != 0 && visitor.link->id == teller.voice.asked_by)
       return visitor.lang;
@@ -161,7 +168,7 @@ std::string spoken_language(const Show& show, const Teller& teller) {
     if (!first && visitor.hearing.wanted) first = &visitor;
   }
   if (kiosk) return kiosk->lang;
-  return first ? first->lang : show.exhibit.languages.front();
+  return first ? first->lang : show.stage.exhibit.languages.front();
 }
 
 VoiceEvents advance_speech(Show& show, Teller& teller, float dt) {
@@ -180,18 +187,20 @@ VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
 
 void send_sounds(Show& show) {
   std::map<const Teller*, Source> told;
-  for (Teller* teller : tellers_of(show)) {
-    if (!update_sounding(show, teller->voice, teller->sounding)) continue;
+  for (Teller* teller : tellers_of(show.cast, show.visits)) {
+    if (!update_sounding(show.cast, show.time_us, teller->voice, teller->sounding)) continue;
     if (!has_listener(show, *teller)) continue;
     const vec3 mouth = eval_mouth(teller->mind, teller->storyteller, teller->pose);
-    told[teller] = {&teller->voice, &teller->sounding, dvec3(mouth) + show.exhibit.scene.origin};
+    told[teller] = {&teller->voice, &teller->sounding,
+                    dvec3(mouth) + show.stage.exhibit.scene.origin};
   }
-  for (Visitor& visitor : show.visitors)
-    update_sounding(show, visitor.hearing.narration.voice, visitor.hearing.narration.sounding);
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors)
+    update_sounding(show.cast, show.time_us, visitor.hearing.narration.voice,
+                    visitor.hearing.narration.sounding);
+  for (Visitor& visitor : show.visits.visitors) {
     const auto own = told.find(&teller_of(show, visitor));
     Source source = own != told.end() && hears_storyteller(show, visitor) ? own->second : Source{};
-    const Visitor* leader = leader_of(show, visitor);
+    const Visitor* leader = leader_of(show.visits, visitor);
     const Narration& narration = (leader ? *leader : visitor).hearing.narration;
     const bool narrated = narration.sounding.going;
     if (!narration.voice.queue.empty())
@@ -202,7 +211,7 @@ void send_sounds(Show& show) {
     if (!hears || visitor.hearing.utterance != source.sounding->number) stop_sound(visitor);
     if (!hears) continue;
     if (visitor.hearing.utterance == 0) start_sound(visitor, source);
-    send_pieces(show, visitor, source);
+    send_pieces(show.totals, visitor, source);
   }
 }
 

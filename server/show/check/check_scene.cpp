@@ -16,7 +16,7 @@ namespace wellspring::show {
 namespace {
 
 constexpr int directions = 64;
-constexpr float solid_share = 0.85f;  // of the directions that meet backs first
+constexpr float solid_share = 0.85f;  // share of the directions that meet backs first
 // These are shares of all directions from all viewpoints, and of those that meet the object.
 constexpr float much_in_view = 0.01f, much_of_it = 0.25f;
 constexpr float too_bright = 200;  // light on a surface, of which 3.14 makes white paper white
@@ -52,8 +52,8 @@ bool is_back(const World& world, const Hit& hit, vec3 way) {
   return dot(normal, way) > 0;
 }
 
-// Finds what shows its back first from there. Where faces of two things lie in one plane, as a
-// table's underside on a floor, which of them a ray meets is chance, so both count.
+// Finds what shows its back first from there. If faces of two things lie in one plane, as a table's
+// underside on a floor, chance decides which of them a ray meets, so both count.
 Hit first_back(const World& world, vec3 from, vec3 way) {
   const Hit hit = first_solid(world, from, way);
   if (!hit.valid() || is_back(world, hit, way)) return hit;

@@ -23,9 +23,9 @@ inline double propose_scale(double largest, double eye_height) {
   return scale;
 }
 
-// Whether `place` (relative to Scene::origin) lies in something solid: nearly all around there are
-// first the backs of surfaces that are no glass. What moves does not count. The name of what the
-// nearest of them belongs to goes to `inside`.
+// Returns whether `place` (relative to Scene::origin) lies in something solid: rays to nearly all
+// sides first meet the backs of surfaces that are no glass. Moving things do not count. `inside`
+// becomes the name of the nearest thing that these belong to.
 bool is_in_solid(const World& world, vec3 place, std::string& inside);
 
 // Whether what stands still is in view. Eyes look through the backs of single-sided faces, so from

@@ -6,8 +6,8 @@
 namespace wellspring::show {
 
 void count(Show& show, const char* what, const std::string& thing, double by) {
-  const std::string& id = show.exhibit.id;
-  show.sums[{show.local_time.day, what, thing.empty() ? id : id + "/" + thing}] += by;
+  const std::string& id = show.stage.exhibit.id;
+  show.sums[{show.house.local_time.day, what, thing.empty() ? id : id + "/" + thing}] += by;
 }
 
 namespace {
@@ -31,7 +31,7 @@ void count_visit(Show& show, Visitor& visitor, bool goes_on) {
   if (goes_on) visitor.counted_tour = riding(visitor);
   if (goes_on || visitor.kiosk) return;  // at a kiosk its guests are counted, not its screen
   count(show, "visits");
-  count(show, "languages", known_language(show.exhibit, visitor.lang));
+  count(show, "languages", known_language(show.stage.exhibit, visitor.lang));
 }
 
 namespace {
@@ -50,7 +50,7 @@ const char* nearest_viewpoint(const Exhibit& exhibit, dvec3 place) {
 
 void end_tour(Show& show, Visitor& visitor, const char* how) {
   if (visitor.counted_tour >= 0)
-    count(show, how, show.exhibit.tours[size_t(visitor.counted_tour)].id);
+    count(show, how, show.stage.exhibit.tours[size_t(visitor.counted_tour)].id);
   visitor.counted_tour = -1;
 }
 
@@ -60,12 +60,12 @@ void count_place(Show& show, Visitor& visitor, bool finished, double seconds) {
   const int tour = riding(visitor);
   if (tour != visitor.counted_tour) {
     end_tour(show, visitor, finished ? "tours_finished" : "tours_abandoned");
-    if (tour >= 0) count(show, "tours_begun", show.exhibit.tours[size_t(tour)].id);
+    if (tour >= 0) count(show, "tours_begun", show.stage.exhibit.tours[size_t(tour)].id);
     visitor.counted_tour = tour;
   }
   if (visitor.kiosk || seconds <= 0) return;
   if (show.time - visitor.place.moved_at > dwell_at_most) return;
-  count(show, "dwell_seconds", nearest_viewpoint(show.exhibit, visitor.place.view.position),
+  count(show, "dwell_seconds", nearest_viewpoint(show.stage.exhibit, visitor.place.view.position),
         seconds);
 }
 

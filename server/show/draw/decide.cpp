@@ -82,10 +82,6 @@ constexpr double least_a_pixel = 0.25;  // samples a pixel: from fewer it makes 
 constexpr double growth = 1.4;          // times as many samples as in the pass before
 constexpr double most_share = 0.35;     // share of the time that goes to passes
 
-bool moves(const VisitorDrawState& state, const RendererState& renderer) {
-  return renderer.background && !state.stands;
-}
-
 bool is_busy(int index, const VisitorDrawState& state, const RendererState& renderer) {
   return state.at_work && index != renderer.drawn;
 }
@@ -122,7 +118,7 @@ NextPicture next_to_draw(double now, std::span<const VisitorDrawState> states,
                          const RendererState& renderer) {
   auto wants = [&](int i) {
     const VisitorDrawState& state = states[size_t(i)];
-    return wants_picture(now, state, renderer) && (renderer.waiting == 0 || !keeps_picture(state));
+    return wants_picture(now, state) && (renderer.waiting == 0 || !keeps_picture(state));
   };
   auto served = [&](const VisitorDrawState& one) { return std::max(one.served, renderer.served); };
   // Newcomers wait since they came: they do not all come before those who are there.
@@ -134,7 +130,7 @@ NextPicture next_to_draw(double now, std::span<const VisitorDrawState> states,
   auto without = [](const VisitorDrawState& one) { return std::max(one.shown_at, one.came_at); };
   auto too_long = [&](int i) {
     const VisitorDrawState& state = states[size_t(i)];
-    return wants(i) && moves(state, renderer) && now - without(state) > longest_gap;
+    return wants(i) && !state.stands && now - without(state) > longest_gap;
   };
   const int least = longest_waiting(states, wants, since);
   if (least < 0) return {};
@@ -144,10 +140,10 @@ NextPicture next_to_draw(double now, std::span<const VisitorDrawState> states,
   return {first < 0 ? least : first, served(states[size_t(least)])};
 }
 
-Purpose purpose_of(double now, const VisitorDrawState& state, const RendererState& renderer) {
-  if (wants_pass(now, state, renderer)) return Purpose::reconstruction;
-  bool learns = renderer.background && renderer.can_reconstruct;
-  return learns && keeps_picture(state) ? Purpose::samples : Purpose::shown;
+PictureKind kind_of(double now, const VisitorDrawState& state, const RendererState& renderer) {
+  if (wants_pass(now, state, renderer)) return PictureKind::reconstruction;
+  if (renderer.can_reconstruct && keeps_picture(state)) return PictureKind::samples;
+  return state.stands ? PictureKind::still : PictureKind::moving;
 }
 
 }  // namespace
@@ -172,10 +168,10 @@ int next_to_light(double now, std::span<const VisitorDrawState> states,
     if (sees(states[i]) && left-- == 0) return int(i);
 }
 
-bool wants_picture(double now, const VisitorDrawState& state, const RendererState& renderer) {
+bool wants_picture(double now, const VisitorDrawState& state) {
   if (!state.welcomed || state.at_work || !state.can_take) return false;
   if (state.new_place) return true;
-  const bool walks = moves(state, renderer);
+  const bool walks = !state.stands;
   if ((state.unshown || state.in_pass) && !walks) return false;
   // The light changed, or the storyteller came or went: a visitor at rest sees it at once.
   bool changed = state.other_light || state.drew_moving != state.sees_moving;
@@ -191,7 +187,7 @@ bool keeps_picture(const VisitorDrawState& state) {
 
 bool wants_pass(double now, const VisitorDrawState& state, const RendererState& renderer) {
   const RestState& rest = state.rest;
-  if (!renderer.background || !renderer.can_reconstruct || renderer.in_pass) return false;
+  if (!renderer.can_reconstruct || renderer.in_pass) return false;
   if (!state.stands || now - state.moved_at < first_after || rest.samples < least_a_pixel)
     return false;
   // A reconstruction does not show moving things.
@@ -207,7 +203,7 @@ Demand find_demand(double now, std::span<const VisitorDrawState> states,
                    const RendererState& renderer) {
   if (!renderer.idle) return {};
   auto waits = [&](const VisitorDrawState& state) {
-    return wants_picture(now, state, renderer) && !keeps_picture(state);
+    return wants_picture(now, state) && !keeps_picture(state);
   };
   return {int(std::count_if(states.begin(), states.end(), waits)),
           next_to_pose(now, states, renderer) >= 0};
@@ -215,7 +211,7 @@ Demand find_demand(double now, std::span<const VisitorDrawState> states,
 
 Decision decide(double now, std::span<const VisitorDrawState> states,
                 const RendererState& renderer) {
-  if (!renderer.idle || !renderer.background) return {};
+  if (!renderer.idle) return {};
   if (int next = next_to_pose(now, states, renderer); next >= 0) return {Drawing::moving, next};
   if (int next = next_to_light(now, states, renderer); next >= 0) return {Drawing::skin, next};
   if (renderer.drawn >= 0)
@@ -225,8 +221,8 @@ Decision decide(double now, std::span<const VisitorDrawState> states,
   if (renderer.in_pass && renderer.waiting == 0) return {Drawing::pass};
   const NextPicture next = next_to_draw(now, states, renderer);
   if (next.visitor < 0) return {};
-  const Purpose purpose = purpose_of(now, states[size_t(next.visitor)], renderer);
-  return {Drawing::picture, next.visitor, false, purpose, next.served};
+  const PictureKind kind = kind_of(now, states[size_t(next.visitor)], renderer);
+  return {Drawing::picture, next.visitor, false, kind, next.served};
 }
 
 }  // namespace wellspring::show

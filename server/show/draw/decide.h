@@ -103,7 +103,6 @@ struct VisitorDrawState {
 // Holds the state of the renderer, and of what all visitors share.
 struct RendererState {
   bool idle = true;              // it has nothing in hand
-  bool background = true;        // pictures are drawn while ticks go on; else the tick draws all
   int drawn = -1;                // whose picture is begun, index of the states; -1: nobody's
   bool traces = false;           // the next step of that picture is to trace samples
   bool can_reconstruct = false;  // there is a network
@@ -126,19 +125,12 @@ enum class Drawing : uint8_t {
   picture,  // the visitor's next picture
 };
 
-// Says what a picture is drawn for.
-enum class Purpose : uint8_t {
-  shown,
-  reconstruction,  // begins one, and is not shown
-  samples,         // only samples, as the reconstruction that is shown stays
-};
-
 struct Decision {
   Drawing what = Drawing::nothing;
   int visitor = -1;    // index of the states: whose, for moving, skin, go_on and picture
   bool hurry = false;  // for go_on: others wait, so samples that are not traced yet are left out
-  Purpose purpose = Purpose::shown;  // for picture
-  double served = 0;                 // for picture: Renderer::served from then on
+  PictureKind kind = PictureKind::moving;  // for picture: what is wanted of it
+  double served = 0;                       // for picture: Renderer::served from then on
   bool operator==(const Decision&) const = default;
 };
 
@@ -165,7 +157,7 @@ bool wants_moving(double now, const VisitorDrawState& state);
 int next_to_light(double now, std::span<const VisitorDrawState> states,
                   const RendererState& renderer);
 // Returns whether a picture is due, and the browser could take it.
-bool wants_picture(double now, const VisitorDrawState& state, const RendererState& renderer);
+bool wants_picture(double now, const VisitorDrawState& state);
 // Returns whether the visitor's picture is a reconstruction and stays: only samples are wanted.
 bool keeps_picture(const VisitorDrawState& state);
 // Returns whether the next picture is to become a reconstruction.

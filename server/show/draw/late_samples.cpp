@@ -12,51 +12,52 @@
 #include "picture/still/reconstruct_still.h"
 #include "show/draw/decide.h"
 #include "show/draw/pace.h"
+#include "show/state/drawing.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
 
 namespace wellspring::show {
 
-bool request_samples(Show& show) {
-  Renderer& renderer = show.renderer;
-  renderer.brokers.clear();
+std::vector<Broker*> request_samples(Show& show) {
+  Renderer& renderer = show.drawing->renderer;
+  std::vector<Broker*> brokers;
   renderer.seconds = 0;
   Visitor* first = nullptr;  // visitors who see another world wait for the next turn
-  for (Visitor& visitor : show.visitors) {
-    if (visitor.picture.broker_seconds <= 0) continue;
+  for (Visitor& visitor : show.visits.visitors) {
+    if (visitor.picture->broker_seconds <= 0) continue;
     if (!first) go_on_in_world_of(show, *(first = &visitor));
-    else if (!see_the_same(show, *first, visitor)) continue;
-    renderer.brokers.push_back(&visitor.picture.broker);
-    renderer.seconds += std::exchange(visitor.picture.broker_seconds, 0.0);
-    visitor.picture.at_work = true;
+    else if (!see_the_same(show.cast, show.visits, *first, visitor)) continue;
+    brokers.push_back(&visitor.picture->broker);
+    renderer.asking.push_back(visitor.link->id);
+    renderer.seconds += std::exchange(visitor.picture->broker_seconds, 0.0);
+    visitor.picture->at_work = true;
   }
-  return !renderer.brokers.empty();
+  return brokers;
 }
 
-void trace_samples(const Show& show, Renderer& renderer) {
+void trace_samples(const ExhibitStage& stage, const ShowCast& cast,
+                   std::span<Broker* const> brokers, Renderer& renderer) {
   std::mutex guard;
   double began = seconds_now();
-  renderer.traced = trace_waiting(renderer.brokers, *show.world, show.lights, show.pose_number,
+  renderer.traced = trace_waiting(brokers, *stage.world, stage.lights, cast.pose_number,
                                   began + renderer.seconds, guard);
   renderer.traced_seconds = seconds_now() - began;
 }
 
 void finish_samples(Show& show) {
-  Renderer& renderer = show.renderer;
+  Renderer& renderer = show.drawing->renderer;
   show.totals.samples += renderer.traced;
   if (renderer.traced > 0 && renderer.traced_seconds > 0)
-    smooth(show.samples_per_second, float(double(renderer.traced) / renderer.traced_seconds));
-  for (Visitor& visitor : show.visitors) {
-    auto found =
-        std::find(renderer.brokers.begin(), renderer.brokers.end(), &visitor.picture.broker);
-    if (found == renderer.brokers.end()) continue;
-    smooth(visitor.times.trace,
-           float(1000 * renderer.traced_seconds / double(renderer.brokers.size())));
-    visitor.picture.at_work = false;
-    visitor.picture.served +=
-        renderer.traced_seconds / double(renderer.brokers.size()) * charge_weight(show, visitor);
+    smooth(show.drawing->samples_per_second,
+           float(double(renderer.traced) / renderer.traced_seconds));
+  const double each = renderer.traced_seconds / double(renderer.asking.size());
+  for (uint64_t id : std::exchange(renderer.asking, {})) {
+    Visitor& visitor = visitor_of(show.visits, id);
+    smooth(visitor.times.trace, float(1000 * each));
+    visitor.picture->at_work = false;
+    visitor.picture->served += each * charge_weight(show.visits, show.time, visitor);
   }
-  renderer.brokers.clear();
 }
 
 namespace {
@@ -73,16 +74,15 @@ constexpr float more_asked = 1.2f;   // times what is measured to fit into the t
 // Returns whether answers may come after the picture: a walking visitor is shown those of the
 // picture before, and is shown it the sooner. A place never seen yet, or a still camera's picture,
 // waits for its own.
-bool may_be_late(const Show& show, const RenderCache& cache, const Technique& technique,
+bool may_be_late(const ShowSettings& settings, const RenderCache& cache, const Technique& technique,
                  int samples) {
-  return show.settings.late_samples && show.settings.display != Display::points &&
-         !technique.begin_pass && samples <= BrokerSettings{}.most_waiting &&
-         cache.covered() > barely_covered;
+  return settings.late_samples && settings.display != Display::points && !technique.begin_pass &&
+         samples <= BrokerSettings{}.most_waiting && cache.covered() > barely_covered;
 }
 
-TransportSettings transport_of(const Show& show, const PictureJob& job) {
-  TransportSettings transport = show.settings.transport;
-  if (!job.settled) transport.clamp = show.settings.moving_clamp;
+TransportSettings transport_of(const ShowSettings& settings, const PictureJob& job) {
+  TransportSettings transport = settings.transport;
+  if (!job.settled) transport.clamp = settings.moving_clamp;
   return transport;
 }
 
@@ -95,9 +95,9 @@ bool spreads_samples(const PictureJob& job, const Technique& technique) {
 }
 
 // Returns how many samples are traced at a time.
-size_t slice_of_samples(const Show& show) {
-  double seconds = std::clamp(show.renderer.until_moving, least_slice_seconds, longest_slice);
-  return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
+size_t slice_of_samples(const ShowDrawing& drawing) {
+  double seconds = std::clamp(drawing.renderer.until_moving, least_slice_seconds, longest_slice);
+  return size_t(std::max(seconds * double(drawing.samples_per_second), double(least_slice)));
 }
 
 // Returns the same view in as many pixels as there are samples.
@@ -130,7 +130,7 @@ void name_pixels(const View& view, std::vector<Request>& requests) {
 }
 
 void spread_samples(const View& view, int count, Visitor& visitor, std::vector<Request>& requests) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   uint64_t& asked = picture.costs.asked;
   const PointImage& image = picture.cache.image();
   if (image.weight.empty()) {
@@ -144,22 +144,22 @@ void spread_samples(const View& view, int count, Visitor& visitor, std::vector<R
 
 }  // namespace
 
-void take_answers(const Show& show, VisitorPicture& picture) {
-  land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
+void take_answers(const ExhibitStage& stage, const ShowCast& cast, VisitorPicture& picture) {
+  land(picture.broker.collect(), *stage.world, cast.pose_number, picture.cache);
 }
 
 void plan_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
                   Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   RenderCache& cache = picture.cache;
-  follow_lamps(show, visitor);
+  follow_lamps(show.stage, visitor);
   cache.set_attention(job.attention);
   cache.set_weights(job.weights ? std::span(*job.weights) : std::span<const float>());
   cache.set_reference(job.settled);
   picture.compositor.set_reconstructed(job.learns);
   cache.resize(job.expected.width, job.expected.height);
-  cache.move_points(*show.world);
-  take_answers(show, picture);
+  cache.move_points(*show.stage.world);
+  take_answers(show.stage, show.cast, picture);
   cache.project(job.view);
   if (technique.finish_pass) {
     work.pass = pass_view(job.view, job.samples);
@@ -167,7 +167,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   }
   cache.attend();
   int most_asked = int(more_asked * float(job.samples));
-  bool late = !job.still && may_be_late(show, cache, technique, most_asked);
+  bool late = !is_still(job) && may_be_late(show.settings, cache, technique, most_asked);
   int asked = late ? most_asked : job.samples;
   work.ahead.clear();
   if (job.ahead != job.view && !technique.begin_pass)
@@ -183,51 +183,50 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
 
 bool begin_samples(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work,
                    Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   work.samples.clear();
   work.traced = 0;
   if (picture.costs.late) {
-    picture.broker.ask(job.view, {&technique, transport_of(show, job)}, work.requests);
+    picture.broker.ask(job.view, {&technique, transport_of(show.settings, job)}, work.requests);
     return false;
   }
   picture.broker.forget();  // answers that were still on their way
-  work.pose = show.pose_number;
+  work.pose = show.cast.pose_number;
   if (technique.begin_pass)
-    technique.begin_pass(*show.world, transport_of(show, job),
+    technique.begin_pass(*show.stage.world, transport_of(show.settings, job),
                          technique.finish_pass ? work.pass : job.view, pass_seed(visitor.link->id),
-                         uint32_t(job.tick), show.lights);
+                         uint32_t(job.tick), show.stage.lights);
   return true;
 }
 
 bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work) {
   size_t all = work.requests.size(), count = all - work.traced;
-  if (!technique.begin_pass) count = std::min(count, slice_of_samples(show));
+  if (!technique.begin_pass) count = std::min(count, slice_of_samples(*show.drawing));
   work.samples.resize(all);
-  trace(technique, *show.world, show.lights, transport_of(show, job),
+  trace(technique, *show.stage.world, show.stage.lights, transport_of(show.settings, job),
         std::span(work.requests).subspan(work.traced, count),
         std::span(work.samples).subspan(work.traced, count));
   work.traced += count;
   if (technique.finish_pass)
-    technique.finish_pass(*show.world, show.lights, work.pass, work.samples);
+    technique.finish_pass(*show.stage.world, show.stage.lights, work.pass, work.samples);
   return work.traced < all;
 }
 
 void remember_traced(const Show& show, const PictureJob& job, const Technique& technique,
                      DrawingWork& work, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   if (picture.costs.late) return;
   work.requests.resize(work.traced);
   work.samples.resize(work.traced);
   if (technique.finish_pass) name_pixels(job.view, work.requests);
-  if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
+  if (show.cast.pose_number != work.pose) follow_meshes(*show.stage.world, work.samples);
   if (show.settings.display == Display::points)
     for (Sample& sample : work.samples) sample.glow = vec3(0);  // points show all light
   picture.cache.remember(job.view, work.requests, work.samples);
   picture.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for the samples only when it is kept for
   // long.
-  bool kept_long = !job.passing && picture.cache.is_still();
-  if (!job.still || !(job.learns || kept_long)) return;
+  if (!is_still(job) || !(job.learns || picture.cache.is_still())) return;
   picture.compositor.follow_changes(picture.cache);
   picture.compositor.add_samples(job.view, work.requests, work.samples);
   picture.costs.kept_samples = mean_count(picture.compositor.samples());

@@ -6,11 +6,12 @@
 
 namespace wellspring::show {
 
-// Begins a turn, by the tick, while the renderer is idle. Returns whether there is anything to
-// trace.
-bool request_samples(Show& show);
-// Traces, on the renderer.
-void trace_samples(const Show& show, Renderer& renderer);
+// Begins a turn, by the tick, while the renderer is idle. Returns the brokers whose requests are to
+// be traced.
+std::vector<Broker*> request_samples(Show& show);
+// Traces them, on the renderer.
+void trace_samples(const ExhibitStage& stage, const ShowCast& cast,
+                   std::span<Broker* const> brokers, Renderer& renderer);
 // Ends the turn, by the tick, when tracing is done.
 void finish_samples(Show& show);
 
@@ -31,6 +32,6 @@ bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, 
 void remember_traced(const Show& show, const PictureJob& job, const Technique& technique,
                      DrawingWork& work, Visitor& visitor);
 // Puts answers into the cache that came after the picture they were asked for.
-void take_answers(const Show& show, VisitorPicture& picture);
+void take_answers(const ExhibitStage& stage, const ShowCast& cast, VisitorPicture& picture);
 
 }  // namespace wellspring::show

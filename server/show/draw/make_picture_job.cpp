@@ -8,8 +8,10 @@
 #include "show/draw/decide.h"
 #include "show/draw/pace.h"
 #include "show/draw/steer.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 
@@ -26,8 +28,8 @@ constexpr double settled_samples = 8;       // samples a pixel, after which the 
 
 // Returns the seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
-  const int walkers = count_moving(show);
-  if (!stands(show, visitor)) busy = std::max(busy, walkers);
+  const int walkers = count_moving(show.visits, show.time);
+  if (!stands(show.time, visitor)) busy = std::max(busy, walkers);
   double period =
       (1 - moving_share(show)) / std::max(drawing_rate(show, visitor), least_sampling_rate);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
@@ -35,14 +37,17 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
   // If many walk, keyframes come late enough without samples: the time that one keyframe takes is
   // what counts.
   if (walkers > 1)
-    least = std::max(least / walkers, least_share * drawing_costs(show, visitor).drawing_seconds);
+    least =
+        std::max(least / walkers,
+                 least_share * drawing_costs(show.visits, *show.drawing, visitor).drawing_seconds);
   return std::max((period - slack) / std::max(busy, 1) - display, least);
 }
 
 }  // namespace
 
-PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, Purpose purpose) {
-  const VisitorPicture& picture = visitor.picture;
+PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
+                            PictureKind wanted) {
+  const VisitorPicture& picture = *visitor.picture;
   const VisitorPlace& place = visitor.place;
   PictureJob job;
   job.time = show.time;
@@ -51,46 +56,43 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   const View& now = place.last_view;
   job.expected = job.view = job.ahead = now;
   job.seq = place.seq;
-  job.moving = sees_moving(show, visitor, now);
+  job.sees_moving = sees_moving(show.cast, show.visits, visitor, now);
   job.camera_cuts = place.camera_cuts;
   job.rest = picture.rest;
-  job.keep = show.settings.background;
   // The first picture of a place, while others walk, is to be there soon.
-  const bool hurried = job.keep && place.camera_cuts != picture.job.camera_cuts &&
-                       count_moving(show) > int(!stands(show, visitor));
+  const bool hurried = place.camera_cuts != picture.job.camera_cuts &&
+                       count_moving(show.visits, show.time) > int(!stands(show.time, visitor));
   job.dynamic = visitor.dynamic;
   // Over pictures at rest, the light of dynamic lights is put with moving things
   // (show/draw/still_pass.h).
-  const bool put_over = job.keep && show.visibility->rasterises(now);
-  job.still =
+  const bool put_over = show.stage.visibility->rasterises(now);
+  const bool still =
       !hurried && (job.dynamic.empty() || put_over) && show.time - place.moved_at > still_after;
   const PictureJob& before = picture.job;
   // Nothing is found yet of a place that was never seen.
   bool seen = picture.drawn_at >= 0 && place.camera_cuts == before.camera_cuts;
   float guessed = seen ? picture.stats.filled + picture.stats.empty : 1;
   const bool points = show.settings.display == Display::points;
-  job.learns = show.pass.denoiser && in_steps(job) && !points;
+  job.learns = show.drawing->pass.denoiser && still && !points;
   job.settled = job.learns ? picture.rest.samples >= settled_samples
                            : wants_reference(show.time - place.moved_at, seen && before.settled,
                                              guessed, picture.stats.converged);
-  job.reconstruct = job.learns && purpose == Purpose::reconstruction;
-  job.samples_only = job.learns && purpose == Purpose::samples;
-  job.passing = !job.learns && !job.still;
+  const bool stays = job.learns && wanted != PictureKind::moving;
+  job.kind = !still ? PictureKind::moving : stays ? wanted : PictureKind::still;
   job.attention = visitor.wants.attention;
   job.weights = visitor.looks.weights;
   job.note_seen = wants_seen(show, visitor);
   job.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  const bool moves = job.keep && !job.still && (hurried || visitor.shown.frame_number > 0);
-  if (moves) job.scale = plan_next_keyframe(show, visitor).scale;
+  const bool moves = !still && (hurried || visitor.shown.frame_number > 0);
+  if (moves) job.scale = plan_next_keyframe(show.visits, *show.drawing, show.time, visitor).scale;
   const View shown = scaled_view(now, job.scale);
   const double pixels = double(shown.width) * double(shown.height);
-  DrawingCosts costs = drawing_costs(show, visitor);
+  DrawingCosts costs = drawing_costs(show.visits, *show.drawing, visitor);
   double factor = keyframe_cost(job.scale) / keyframe_cost(before.scale);
   costs.drawing_seconds *= factor, costs.light_seconds *= factor;
-  job.samples =
-      sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, !job.passing);
+  job.samples = sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, still);
   // When there are all samples, changes of the light are looked for.
-  if (job.samples_only && has_all_samples(picture.rest))
+  if (job.kind == PictureKind::samples && has_all_samples(picture.rest))
     job.samples = samples_to_watch(job.samples);
   double interval = 1 / drawing_rate(show, visitor);
   if (moves) {
@@ -103,14 +105,14 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
     job.ahead = expected_view(place.heading, now, seen_in + interval);
     float turn = expected_turn(place.heading, now, 0.5 * interval);
     job.view = scaled_view(keyframe_view(job.expected, turn), job.scale);
-    if (job.passing) job.ahead = scaled_view(keyframe_view(job.ahead), job.scale);
+    job.ahead = scaled_view(keyframe_view(job.ahead), job.scale);
   } else {
     job.ahead = expected_view(place.heading, now, predicted_pictures * interval);
   }
   // A page that draws by itself turns before the server hears of it.
   const EyeMotion motion = motion_of(place.heading, now);
   const bool may_turn = visitor.wants.local || motion.speed + motion.turn > 0;
-  if (job.passing && seen && !points && may_turn) {
+  if (!still && seen && !points && may_turn) {
     const Surroundings& around = picture.around;
     const bool here = around.camera_cuts == place.camera_cuts && !around.keyframe.empty();
     // A turn goes on until they are there.
@@ -123,10 +125,10 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
 bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor) {
   if (visitor.left || visitor.place.camera_cuts != job.camera_cuts) return true;
   bool has_one =
-      visitor.picture.drawn_at >= 0 && visitor.picture.job.camera_cuts == job.camera_cuts;
-  return has_one && job.still &&
+      visitor.picture->drawn_at >= 0 && visitor.picture->job.camera_cuts == job.camera_cuts;
+  return has_one && is_still(job) &&
          (visitor.place.last_view != job.expected || lamps_wait(show, visitor) ||
-          job.moving != sees_moving(show, visitor, visitor.place.last_view));
+          job.sees_moving != sees_moving(show.cast, show.visits, visitor, visitor.place.last_view));
 }
 
 }  // namespace wellspring::show

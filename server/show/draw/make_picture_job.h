@@ -9,7 +9,7 @@ namespace wellspring::show {
 
 // Makes the job of the visitor's next picture; `busy` visitors share the time.
 PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
-                            Purpose purpose = Purpose::shown);
+                            PictureKind wanted = PictureKind::still);
 // Returns whether the picture of this job would not be shown, since the visitor is somewhere else
 // by now or has left; or whether one at rest would wait for samples of what is no longer so: its
 // visitor moves on, lamps were switched, the storyteller came or went.

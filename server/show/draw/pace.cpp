@@ -6,8 +6,10 @@
 #include <oneapi/tbb/info.h>
 
 #include "show/state/delivery.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 namespace {
@@ -52,10 +54,10 @@ constexpr double most_unlike = 3;      // largest ratio by which charge_weight()
 
 // Returns the seconds that a picture for each moving visitor takes: a warp takes all cores, its
 // JPEG one.
-double showing_seconds(const Show& show) {
+double showing_seconds(const ShowVisits& visits, double time) {
   double milliseconds = 0;
-  for (const Visitor& visitor : show.visitors)
-    if (is_shown(visitor) && !stands(show, visitor))
+  for (const Visitor& visitor : visits.visitors)
+    if (is_shown(visitor) && !stands(time, visitor))
       milliseconds += double(visitor.times.warp) +
                       double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
   return 0.001 * milliseconds;
@@ -63,23 +65,25 @@ double showing_seconds(const Show& show) {
 
 // Returns the part of draw_state() that does not depend on rates.
 VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   const VisitorPlace& place = visitor.place;
   VisitorDrawState state;
   state.welcomed = is_shown(visitor);
   state.at_work = picture.at_work;
-  state.can_take = may_take(show, visitor);
-  state.stands = stands(show, visitor);
+  state.can_take = may_take(show.time, visitor);
+  state.stands = stands(show.time, visitor);
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
   // The renderer brings the picture that it draws to the present light.
-  state.other_light = show.renderer.drawn != &visitor && (picture.lamps != visitor.lamps.lit ||
-                                                          picture.hour != visitor.lamps.lit_hour);
-  state.sees_moving = state.welcomed && sees_moving(show, visitor, place.last_view);
-  state.drew_moving = picture.job.moving;
+  state.other_light =
+      show.drawing->renderer.drawn != visitor.link->id &&
+      (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour);
+  state.sees_moving =
+      state.welcomed && sees_moving(show.cast, show.visits, visitor, place.last_view);
+  state.drew_moving = picture.job.sees_moving;
   state.unshown = picture.unshown;
   state.backdrop = picture.backdrop;
-  state.in_pass = show.pass.visitor == &visitor;
+  state.in_pass = show.drawing->pass.visitor == visitor.link->id;
   state.came_at = visitor.came_at;
   state.drawn_at = picture.drawn_at;
   state.posed_at = picture.posed_at;
@@ -93,14 +97,15 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
 
 int count_backdrops(const Show& show) {
   auto has = [&](const Visitor& one) { return has_backdrop(facts_of(show, one)); };
-  return int(std::count_if(show.visitors.begin(), show.visitors.end(), has));
+  return int(std::count_if(show.visits.visitors.begin(), show.visits.visitors.end(), has));
 }
 
 // Returns pictures a second of moving things, for each of the `backdrops` visitors who have one.
 double moving_rate(const Show& show, const Visitor& visitor, int backdrops) {
   double seconds = 0.001 * double(visitor.times.moving) * double(std::max(backdrops, 1));
   double rate = picture_rate(show, visitor);
-  const double share = count_moving(show) > 0 ? least_moving_share : most_moving_share;
+  const double share =
+      count_moving(show.visits, show.time) > 0 ? least_moving_share : most_moving_share;
   return seconds > 0 ? std::min(rate, share / seconds) : rate;
 }
 
@@ -119,15 +124,15 @@ void watch(const Show& show, Visitor& visitor) {
   View view = view_of(show, visitor);
   if (view != place.last_view) {
     place.moved_at = show.time;
-    visitor.picture.rest = {};
+    visitor.picture->rest = {};
   }
   if (note_view(place.heading, show.time, view)) place.camera_cuts++;
   place.last_view = view;
   visitor.dynamic = dynamic_lights_in(view, dynamic_lights_of(show, visitor, show.time));
 }
 
-bool stands(const Show& show, const Visitor& visitor) {
-  return visitor.shown.frame_number > 0 && show.time - visitor.place.moved_at > still_after &&
+bool stands(double time, const Visitor& visitor) {
+  return visitor.shown.frame_number > 0 && time - visitor.place.moved_at > still_after &&
          visitor.place.velocity == vec3(0) && visitor.place.move == vec3(0);
 }
 
@@ -136,44 +141,44 @@ bool rests(const Show& show, const Visitor& visitor) {
 }
 
 bool asks_for_samples(const Show& show, const Visitor& visitor) {
-  if (!stands(show, visitor)) return true;
-  return keeps_picture(facts_of(show, visitor)) ? !has_all_samples(visitor.picture.rest)
-                                                : visitor.picture.stats.converged < nearly_all;
+  if (!stands(show.time, visitor)) return true;
+  return keeps_picture(facts_of(show, visitor)) ? !has_all_samples(visitor.picture->rest)
+                                                : visitor.picture->stats.converged < nearly_all;
 }
 
-int count_moving(const Show& show) {
-  auto moves = [&](const Visitor& one) { return is_shown(one) && !stands(show, one); };
-  return int(std::count_if(show.visitors.begin(), show.visitors.end(), moves));
+int count_moving(const ShowVisits& visits, double time) {
+  auto moves = [&](const Visitor& one) { return is_shown(one) && !stands(time, one); };
+  return int(std::count_if(visits.visitors.begin(), visits.visitors.end(), moves));
 }
 
-double charge_weight(const Show& show, const Visitor& visitor) {
-  if (stands(show, visitor)) return standing_weight;
+double charge_weight(const ShowVisits& visits, double time, const Visitor& visitor) {
+  if (stands(time, visitor)) return standing_weight;
   double sum = 0;
   int count = 0;
-  for (const Visitor& one : show.visitors)
-    if (is_shown(one) && !stands(show, one) && one.times.whole > 0)
+  for (const Visitor& one : visits.visitors)
+    if (is_shown(one) && !stands(time, one) && one.times.whole > 0)
       sum += double(one.times.whole), count++;
   if (count == 0 || !(visitor.times.whole > 0)) return 1;
   return std::clamp(sum / count / double(visitor.times.whole), 1 / most_unlike, most_unlike);
 }
 
-bool may_take(const Show& show, const Visitor& visitor) {
+bool may_take(double time, const Visitor& visitor) {
   return is_shown(visitor) && !visitor.link->picture_pending() &&
-         may_send(visitor.shown.flow, show.time);
+         may_send(visitor.shown.flow, time);
 }
 
 double picture_rate(const Show& show, const Visitor& visitor) {
-  double rate = picture_plan(show, visitor).rate;
-  if (stands(show, visitor)) {
+  double rate = picture_plan(show.settings, visitor).rate;
+  if (stands(show.time, visitor)) {
     rate = std::min(rate, sees_motion(show, visitor, visitor.place.last_view) ? still_rate
                           : rests(show, visitor)                              ? resting_rate
                                                                               : settling_rate);
-  } else if (show.settings.background) {
+  } else {
     // All get the same rate, whosever warps cost most.
-    if (double seconds = showing_seconds(show); seconds > 0)
+    if (double seconds = showing_seconds(show.visits, show.time); seconds > 0)
       rate = std::min(rate, warping_share / seconds);
   }
-  if (visitor.kiosk && !show.house.open) rate = closed_rate;
+  if (visitor.kiosk && !show.house.state.open) rate = closed_rate;
   return std::clamp(rate, 1.0, 120.0);
 }
 
@@ -181,8 +186,8 @@ namespace {
 
 // Returns the pictures a second whose samples are to find changes of the light: fewer the longer
 // none was found, as many in a minute as in the first few seconds.
-double watching_rate(const Show& show, const Visitor& visitor) {
-  const double since = show.time - std::max(visitor.place.moved_at, visitor.picture.rest.passed_at);
+double watching_rate(double time, const Visitor& visitor) {
+  const double since = time - std::max(visitor.place.moved_at, visitor.picture->rest.passed_at);
   return std::clamp(resting_rate * settled_seconds / std::max(since, settled_seconds), rested_rate,
                     resting_rate);
 }
@@ -190,23 +195,23 @@ double watching_rate(const Show& show, const Visitor& visitor) {
 }  // namespace
 
 double drawing_rate(const Show& show, const Visitor& visitor) {
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   double rate = picture_rate(show, visitor);
-  if (!stands(show, visitor))
-    return show.settings.background ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
-                                    : rate;
-  if (rests(show, visitor)) rate = std::min(rate, watching_rate(show, visitor));
+  if (!stands(show.time, visitor))
+    return std::min(rate,
+                    1 / plan_next_keyframe(show.visits, *show.drawing, show.time, visitor).period);
+  if (rests(show, visitor)) rate = std::min(rate, watching_rate(show.time, visitor));
   if (picture.backdrop) rate = std::min(rate, backdrop_rate);
   // Until the first reconstruction, samples do more for it than pictures.
-  bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
-  first &= picture.backdrop || !picture.job.moving;
+  bool first = show.drawing->pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
+  first &= picture.backdrop || !picture.job.sees_moving;
   return first ? std::min(rate, picture.backdrop ? learning_backdrop_rate : learning_rate) : rate;
 }
 
 double moving_share(const Show& show) {
   const int backdrops = count_backdrops(show);
   double share = 0;
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (has_backdrop(facts_of(show, visitor)))
       share += 0.001 * double(visitor.times.moving) * moving_rate(show, visitor, backdrops);
   return std::min(share, most_moving_share);
@@ -215,22 +220,23 @@ double moving_share(const Show& show) {
 double seconds_to_moving(const Show& show) {
   const int backdrops = count_backdrops(show);
   double seconds = 1;
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (has_backdrop(facts_of(show, visitor))) {
-      double due = visitor.picture.posed_at + 1 / moving_rate(show, visitor, backdrops);
+      double due = visitor.picture->posed_at + 1 / moving_rate(show, visitor, backdrops);
       seconds = std::min(seconds, due - show.time);
     }
   return std::max(seconds, 0.0);
 }
 
-DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
+DrawingCosts drawing_costs(const ShowVisits& visits, const ShowDrawing& drawing,
+                           const Visitor& visitor) {
   const StageTimes& times = visitor.times;
   auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
-  DrawingCosts costs{show.samples_per_second, seconds(times.drawing),
+  DrawingCosts costs{drawing.samples_per_second, seconds(times.drawing),
                      seconds(times.display + times.tonemap), seconds(times.light)};
   // A newcomer's first picture is expected to cost what others' have cost.
-  if (visitor.picture.drawn_at < 0 && costs.drawing_seconds == 0)
-    costs.drawing_seconds = show.capacity->standing().cost.drawn *
+  if (visitor.picture->drawn_at < 0 && costs.drawing_seconds == 0)
+    costs.drawing_seconds = visits.capacity->standing().cost.drawn *
                             weighed_pixels(double(visitor.wants.width) * visitor.wants.height) /
                             oneapi::tbb::info::default_concurrency();
   return costs;
@@ -241,14 +247,15 @@ static Ageing ageing_of(const Visitor& visitor) {
   const View& now = visitor.place.last_view;
   const EyeMotion motion = motion_of(visitor.place.heading, now);
   const float across = 2 * std::atan(now.tan_half_fov * float(now.width) / float(now.height));
-  return {motion.speed * visitor.picture.relief, motion.turn / across};
+  return {motion.speed * visitor.picture->relief, motion.turn / across};
 }
 
-KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {
-  const DrawingCosts costs = drawing_costs(show, visitor);
+KeyframePlan plan_next_keyframe(const ShowVisits& visits, const ShowDrawing& drawing, double time,
+                                const Visitor& visitor) {
+  const DrawingCosts costs = drawing_costs(visits, drawing, visitor);
   double light = costs.light_seconds > 0 ? costs.light_seconds : costs.display_seconds;
-  return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(show), 1),
-                       visitor.picture.job.scale,
+  return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(visits, time), 1),
+                       visitor.picture->job.scale,
                        visitor.wants.local ? longest_period(ageing_of(visitor)) : finished_period);
 }
 
@@ -259,24 +266,24 @@ VisitorDrawState draw_state(const Show& show, const Visitor& visitor) {
 std::vector<VisitorDrawState> draw_states(const Show& show) {
   const int backdrops = count_backdrops(show);
   std::vector<VisitorDrawState> states;
-  for (const Visitor& visitor : show.visitors) states.push_back(state_of(show, visitor, backdrops));
+  for (const Visitor& visitor : show.visits.visitors)
+    states.push_back(state_of(show, visitor, backdrops));
   return states;
 }
 
 RendererState renderer_state(const Show& show) {
-  const Renderer& renderer = show.renderer;
+  const Renderer& renderer = show.drawing->renderer;
   RendererState state;
   state.idle = renderer.idle();
-  state.background = show.settings.background;
   int index = 0;
-  for (const Visitor& visitor : show.visitors) {
-    if (&visitor == renderer.drawn) state.drawn = index;
+  for (const Visitor& visitor : show.visits.visitors) {
+    if (visitor.link->id == renderer.drawn) state.drawn = index;
     index++;
   }
   state.traces = renderer.step == DrawingStep::trace;
-  state.can_reconstruct = show.pass.denoiser != nullptr;
-  state.in_pass = show.pass.visitor != nullptr;
-  state.has_skin = !show.skin.places.empty();
+  state.can_reconstruct = show.drawing->pass.denoiser != nullptr;
+  state.in_pass = show.drawing->pass.visitor != 0;
+  state.has_skin = !show.stage.skin.places.empty();
   state.skin_at = renderer.skin.time;
   state.skin_interval = renderer.skin.interval;
   state.skin_turn = renderer.skin.turn;

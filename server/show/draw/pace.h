@@ -32,18 +32,18 @@ inline constexpr double still_after = 0.25;  // seconds without motion until a p
 void watch(const Show& show, Visitor& visitor);
 // Returns whether nothing has moved for a moment, so that pictures become better instead of
 // following.
-bool stands(const Show& show, const Visitor& visitor);
+bool stands(double time, const Visitor& visitor);
 // Returns whether nothing in the picture changes any more.
 bool rests(const Show& show, const Visitor& visitor);
 // Returns whether more samples would make the still part of the picture better.
 bool asks_for_samples(const Show& show, const Visitor& visitor);
 // Returns the number of visitors who do not stand: the time is divided among them.
-int count_moving(const Show& show);
+int count_moving(const ShowVisits& visits, double time);
 // Returns how much a second of the renderer's time counts in VisitorPicture::served: more for
 // visitors who stand; for walkers, so much that all get as many keyframes, whatever theirs cost.
-double charge_weight(const Show& show, const Visitor& visitor);
+double charge_weight(const ShowVisits& visits, double time, const Visitor& visitor);
 // Returns whether the visitor's browser and socket can take a picture.
-bool may_take(const Show& show, const Visitor& visitor);
+bool may_take(double time, const Visitor& visitor);
 
 // Returns the pictures a second that this visitor should get.
 double picture_rate(const Show& show, const Visitor& visitor);
@@ -55,8 +55,10 @@ double moving_share(const Show& show);
 double seconds_to_moving(const Show& show);
 
 // Return what drawing for this visitor has cost of late, and the keyframe that this allows.
-DrawingCosts drawing_costs(const Show& show, const Visitor& visitor);
-KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor);
+DrawingCosts drawing_costs(const ShowVisits& visits, const ShowDrawing& drawing,
+                           const Visitor& visitor);
+KeyframePlan plan_next_keyframe(const ShowVisits& visits, const ShowDrawing& drawing, double time,
+                                const Visitor& visitor);
 
 // Return the values for the decision: of one visitor, of all in their order, and of the renderer.
 // The caller fills `waiting`.

@@ -14,7 +14,9 @@
 #include "show/draw/parts.h"
 #include "show/draw/still_pass.h"
 #include "show/state/delivery.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
+#include "show/state/visitor_picture.h"
 #include "wire/packet.h"
 
 namespace wellspring::show {
@@ -69,13 +71,13 @@ void add_depth(const PacketHeader& header, KeyframeHeader keyframe,
 // its image is not kept, but for a browser that takes parts while these are made of it. eighths: of
 // the image's size, which is that of the header's. keyframe: its header if it is one; the encoder
 // has its disparities.
-void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, bool full_chroma,
+void encode_complete(double time, Visitor& visitor, const PacketHeader& header, bool full_chroma,
                      int eighths, const std::optional<KeyframeHeader>& keyframe) {
   Encoder& encoder = *visitor.shown.encoder;
   encoder.full_chroma = full_chroma;
-  const bool keeps = visitor.wants.parts && stands(show, visitor);
+  const bool keeps = visitor.wants.parts && stands(time, visitor);
   const double pixels = counted_pixels(double(encoder.image.width) * encoder.image.height, eighths);
-  auto make = [header, full_chroma, eighths, keeps, keyframe, now = show.time](Encoder& encoder) {
+  auto make = [header, full_chroma, eighths, keeps, keyframe, now = time](Encoder& encoder) {
     const size_t header_bytes = keyframe ? keyframe_header_bytes : packet_header_bytes;
     auto packet = std::make_shared<Packet>(header_bytes);
     write_packet_header(header, *packet);
@@ -120,16 +122,16 @@ uint16_t side_of(int side, int eighths) {
 
 // Notes how much later pictures are dated than the time that their pose was made for: the mouth is
 // posed for that moment.
-void note_lead(Show& show, uint64_t posed_us, uint64_t picture_us) {
+void note_lead(ShowDrawing& drawing, uint64_t posed_us, uint64_t picture_us) {
   if (picture_us >= posed_us)
-    show.picture_lead +=
-        (std::min(1e-6f * float(picture_us - posed_us), 0.25f) - show.picture_lead) * 0.1f;
+    drawing.picture_lead +=
+        (std::min(1e-6f * float(picture_us - posed_us), 0.25f) - drawing.picture_lead) * 0.1f;
 }
 
 // Returns whether the browser has a picture of this view, and takes what is new in it.
-bool takes_parts(const Show& show, const Visitor& visitor, const View& view) {
+bool takes_parts(double time, const Visitor& visitor, const View& view) {
   const Image8& has = visitor.shown.encoder->has.image;
-  return visitor.wants.parts && stands(show, visitor) && view == visitor.shown.view &&
+  return visitor.wants.parts && stands(time, visitor) && view == visitor.shown.view &&
          (visitor.shown.has_still || !visitor.wants.local) && !visitor.shown.lost &&
          has.width == view.width && has.height == view.height && !has.rgb.empty();
 }
@@ -144,23 +146,23 @@ int quality_at_rest(const Show& show, const Visitor& visitor, const PicturePlan&
   return quality_within(flow, usable_bytes(flow), pixels, best, fine);
 }
 
-PacketHeader next_header(Show& show, Visitor& visitor, uint32_t seq, bool still) {
+PacketHeader next_header(double time, Visitor& visitor, uint32_t seq, bool still) {
   PacketHeader header;
   header.frame = ++visitor.shown.frame_number;
   header.seq = seq;
   header.time_us = microseconds_now();
   header.flags = uint8_t(packet_complete | (still ? packet_still : 0));
   visitor.shown.encoder->frame = header.frame;
-  note_sent(visitor.shown.flow, header.frame, show.time);
+  note_sent(visitor.shown.flow, header.frame, time);
   return header;
 }
 
 // Returns what a display that reprojects needs to know of a keyframe.
-KeyframeHeader keyframe_header(const Show& show, const View& view, uint32_t cuts) {
+KeyframeHeader keyframe_header(const ExhibitStage& stage, const View& view, uint32_t cuts) {
   return {.cuts = cuts,
           .width = uint16_t(view.width),
           .height = uint16_t(view.height),
-          .eye = show.exhibit.scene.origin + dvec3(view.position),
+          .eye = stage.exhibit.scene.origin + dvec3(view.position),
           .right = view.right,
           .up = view.up,
           .forward = view.forward,
@@ -170,7 +172,7 @@ KeyframeHeader keyframe_header(const Show& show, const View& view, uint32_t cuts
 }
 
 void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader header) {
-  PicturePlan plan = picture_plan(show, visitor);
+  PicturePlan plan = picture_plan(show.settings, visitor);
   const bool still = header.flags & packet_still;
   const bool fine = still && !sees_motion(show, visitor, view);
   const double pixels = counted_pixels(double(view.width) * view.height, plan.eighths);
@@ -180,11 +182,11 @@ void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader 
   header.quality = uint8_t(plan.quality);
   std::optional<KeyframeHeader> keyframe;
   if (visitor.wants.local) {
-    keyframe = keyframe_header(show, view, visitor.picture.job.camera_cuts);
+    keyframe = keyframe_header(show.stage, view, visitor.picture->job.camera_cuts);
     header.flags |= packet_depth;
-    visitor.shown.encoder->disparity = visitor.picture.keyframe.disparity;
+    visitor.shown.encoder->disparity = visitor.picture->keyframe.disparity;
   }
-  encode_complete(show, visitor, header, fine, plan.eighths, keyframe);
+  encode_complete(show.time, visitor, header, fine, plan.eighths, keyframe);
   visitor.shown.lost = false;
   show.totals.pictures++;
 }
@@ -192,13 +194,13 @@ void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader 
 // Sends parts; must: even if nothing has changed.
 void send_parts(Show& show, Visitor& visitor, const View& view, PacketHeader header, bool must) {
   VisitorDelivery& shown = visitor.shown;
-  const FlowWishes wishes = flow_wishes(show, visitor);
+  const FlowWishes wishes = flow_wishes(show.settings, visitor);
   PartsOrder order;
   const bool moves = sees_motion(show, visitor, view);
   order.fine_quality =
       visitor.wants.saver ? 0 : std::min(near_lossless, visitor.wants.still_quality);
-  order.quality =
-      std::min(picture_plan(show, visitor).quality + animated_gain, visitor.wants.still_quality);
+  order.quality = std::min(picture_plan(show.settings, visitor).quality + animated_gain,
+                           visitor.wants.still_quality);
   order.quiet = asks_for_samples(show, visitor) ? quiet_in_samples : quiet;
   order.now = show.time;
   order.bytes = std::min(usable_bytes(shown.flow), most_part_bytes);
@@ -215,9 +217,10 @@ void send_parts(Show& show, Visitor& visitor, const View& view, PacketHeader hea
 
 void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool still) {
   VisitorDelivery& shown = visitor.shown;
-  const PacketHeader header = next_header(show, visitor, seq, still);
-  note_lead(show, visitor.picture.job.time_us, header.time_us);
-  if (takes_parts(show, visitor, view)) send_parts(show, visitor, view, header, seq != shown.seq);
+  const PacketHeader header = next_header(show.time, visitor, seq, still);
+  note_lead(*show.drawing, visitor.picture->job.time_us, header.time_us);
+  if (takes_parts(show.time, visitor, view))
+    send_parts(show, visitor, view, header, seq != shown.seq);
   else send_complete(show, visitor, view, header), shown.has_still = still;
   if (shown.sent_at > 0 && show.time > shown.sent_at)
     smooth(shown.measured_fps, float(1 / (show.time - shown.sent_at)));
@@ -227,7 +230,7 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   shown.pictured_at = std::clamp(shown.pictured_at + period, show.time - 0.5 * period, show.time);
   shown.seq = seq;
   shown.view = view;
-  visitor.picture.unshown = false;
+  visitor.picture->unshown = false;
 }
 
 // Sends the tiles of the last picture that the browser lacks or has less fine, or the news that
@@ -238,55 +241,55 @@ void refine(Show& show, Visitor& visitor) {
   const bool must = visitor.place.seq != shown.seq;
   if (show.time < shown.refine_at || encoder.task.busy() || encoder.image.rgb.empty()) return;
   if (!must && !encoder.has.pending) return;
-  if (!takes_parts(show, visitor, visitor.place.last_view)) return;
-  const PacketHeader header = next_header(show, visitor, visitor.place.seq, true);
+  if (!takes_parts(show.time, visitor, visitor.place.last_view)) return;
+  const PacketHeader header = next_header(show.time, visitor, visitor.place.seq, true);
   send_parts(show, visitor, shown.view, header, must);
   shown.seq = visitor.place.seq;
 }
 
 // Notes the cost of a warped picture or a keyframe that has been encoded: the search for a seat
 // needs it.
-void note_cost(Show& show, Visitor& visitor) {
+void note_cost(const ShowVisits& visits, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
   const double warping = std::exchange(visitor.shown.warp_core_seconds, 0.0);
   if (visitor.wants.local && encoder.pixels > 0)
-    show.capacity->note_sent(encoder.pixels, encoder.processor_seconds);
+    visits.capacity->note_sent(encoder.pixels, encoder.processor_seconds);
   if (warping <= 0) return;
-  show.capacity->note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
-                            warping + encoder.processor_seconds);
+  visits.capacity->note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
+                              warping + encoder.processor_seconds);
 }
 
 bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 
 // Warps the newest keyframe to `view`, into the encoder's image.
-bool warp(Show& show, Visitor& visitor, const View& view) {
+bool warp(ShowDrawing& drawing, ShowTotals& totals, Visitor& visitor, const View& view) {
   const double began = seconds_now(), cores_began = process_seconds_now();
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   float unknown = warp_picture(picture.keyframe, picture.around.keyframe, view, most_unknown,
-                               show.warp, visitor.shown.encoder->image);
+                               drawing.warp, visitor.shown.encoder->image);
   visitor.shown.warp_core_seconds = process_seconds_now() - cores_began;
   smooth(visitor.times.warp, float(1000 * (seconds_now() - began)));
   if (unknown > most_unknown) {
-    show.totals.unwarpable++;
+    totals.unwarpable++;
     return false;
   }
-  show.totals.warped++;
+  totals.warped++;
   return true;
 }
 
 // Notes the last picture, once its encoder has finished.
-void note_encoded(Show& show, Visitor& visitor) {
+void note_encoded(ShowTotals& totals, const ShowVisits& visits, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
   if (std::exchange(encoder.unsent, false)) note_unsent(visitor.shown.flow, encoder.frame);
   if (encoder.bytes == 0) return;
-  note_cost(show, visitor);
+  note_cost(visits, visitor);
   const size_t bytes = std::exchange(encoder.bytes, 0);
-  show.totals.picture_bytes += bytes;
+  totals.picture_bytes += bytes;
   if (encoder.pixels > 0) {
     smooth(visitor.times.encode, encoder.milliseconds);
     note_encoded(visitor.shown.flow, bytes, encoder.pixels, encoder.quality, encoder.full_chroma);
   } else {
-    show.totals.pictures++;
+    totals.pictures++;
   }
 }
 
@@ -294,24 +297,26 @@ void note_encoded(Show& show, Visitor& visitor) {
 
 void note_deliveries(Show& show, Visitor& visitor) {
   VisitorDelivery& shown = visitor.shown;
-  if (!shown.encoder->task.busy()) note_encoded(show, visitor);
+  if (!shown.encoder->task.busy()) note_encoded(show.totals, show.visits, visitor);
   for (const Delivery& delivery : visitor.link->take_deliveries())
     note_delivery(shown.flow, delivery);
-  update(shown.way, shown.flow, flow_wishes(show, visitor), visitor.times.encode, show.time);
+  update(shown.way, shown.flow, flow_wishes(show.settings, visitor), visitor.times.encode,
+         show.time);
 }
 
 // Sends the surroundings between keyframes; they say nothing new of the visitor's input.
-static void send_surroundings(Show& show, Visitor& visitor) {
-  const Surroundings& around = visitor.picture.around;
+static void send_surroundings(const ExhibitStage& stage, const ShowSettings& settings, double time,
+                              Visitor& visitor) {
+  const Surroundings& around = visitor.picture->around;
   const View& view = around.keyframe.view;
   if (around.keyframe.empty()) return;
   Image8 image;
   copy_colors(around.keyframe, {0, 0, view.width, view.height}, image);
-  PacketHeader header = next_header(show, visitor, visitor.shown.seq, false);
+  PacketHeader header = next_header(time, visitor, visitor.shown.seq, false);
   header.width = uint16_t(view.width), header.height = uint16_t(view.height);
-  header.quality = uint8_t(picture_plan(show, visitor).quality);
+  header.quality = uint8_t(picture_plan(settings, visitor).quality);
   header.flags |= packet_depth | packet_around;
-  encode_beside(visitor, header, keyframe_header(show, view, around.camera_cuts),
+  encode_beside(visitor, header, keyframe_header(stage, view, around.camera_cuts),
                 std::move(image.rgb), around.keyframe.disparity);
 }
 
@@ -323,7 +328,7 @@ static bool takes_layer(const VisitorPicture& picture, const VisitorDelivery& sh
 }
 
 static void send_layer(Show& show, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   MovingLayer layer;
   if (std::exchange(picture.layer_unsent, false)) layer = std::move(picture.moving.layer);
   visitor.shown.has_layer = !layer.window.empty();
@@ -333,55 +338,53 @@ static void send_layer(Show& show, Visitor& visitor) {
         {0, 0, side, side}, std::vector<uint8_t>(3 * side * side), std::vector<float>(side * side)};
   }
   const View view = window_view(picture.keyframe.view, layer.window);
-  PacketHeader header = next_header(show, visitor, visitor.shown.seq, true);
+  PacketHeader header = next_header(show.time, visitor, visitor.shown.seq, true);
   header.width = uint16_t(view.width), header.height = uint16_t(view.height);
-  header.quality = uint8_t(quality_at_rest(show, visitor, picture_plan(show, visitor),
+  header.quality = uint8_t(quality_at_rest(show, visitor, picture_plan(show.settings, visitor),
                                            double(view.width) * view.height, false));
   header.flags |= packet_depth | packet_layer;
-  note_lead(show, picture.job.time_us, header.time_us);
-  encode_beside(visitor, header, keyframe_header(show, view, picture.job.camera_cuts),
+  note_lead(*show.drawing, picture.job.time_us, header.time_us);
+  encode_beside(visitor, header, keyframe_header(show.stage, view, picture.job.camera_cuts),
                 std::move(layer.rgb), std::move(layer.disparity));
 }
 
 // Sends the newest keyframe as it is, or its news if the page has it: the page shows it from where
 // its visitor is by then.
 static void present_keyframe(Show& show, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   picture.fade = {};  // the page passes from one picture to the next
-  const bool stays = picture.job.still && picture.job.keep && !picture.keyframe.empty();
+  const bool stays = is_still(picture.job) && !picture.keyframe.empty();
   visitor.shown.sent_layer = stays && takes_layer(picture, visitor.shown);
   if (visitor.shown.sent_layer) return send_layer(show, visitor);
   if (!picture.unshown && std::exchange(picture.around.unsent, false))
-    return send_surroundings(show, visitor);
+    return send_surroundings(show.stage, show.settings, show.time, visitor);
   if (!picture.unshown) return refine(show, visitor);
-  if (show.renderer.posed == &visitor) return;
+  if (show.drawing->renderer.posed == visitor.link->id) return;
   const PictureJob& job = picture.job;
   const View& view = job.view;
   copy_colors(picture.keyframe, {0, 0, view.width, view.height}, visitor.shown.encoder->image);
   if (!picture.moving.empty()) lay_over(picture.moving, visitor.shown.encoder->image);
-  const bool stood = job.still && view == visitor.place.last_view;
-  visitor.shown.has_layer &= job.still;
-  send(show, visitor, view, stood ? visitor.place.seq : job.seq, job.still);
+  const bool stood = is_still(job) && view == visitor.place.last_view;
+  visitor.shown.has_layer &= is_still(job);
+  send(show, visitor, view, stood ? visitor.place.seq : job.seq, is_still(job));
 }
 
 void present(Show& show, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   VisitorDelivery& shown = visitor.shown;
   const PictureJob& job = picture.job;
   if (job.camera_cuts != visitor.place.camera_cuts || picture.drawn_at < 0) return;
-  // The tick does not wait for a picture that is still being encoded: others would wait, too. If
-  // the tick draws itself, they do anyway.
-  if (!show.settings.background) shown.encoder->task.wait();
-  if (!may_take(show, visitor) || shown.encoder->task.busy()) return;
+  // The tick does not wait for a picture that is still being encoded: others would wait, too.
+  if (!may_take(show.time, visitor) || shown.encoder->task.busy()) return;
   const View view = visitor.place.last_view;
-  bool stood = job.still && job.view == view;
-  if (shown.lost && job.keep && (stood || visitor.wants.local)) picture.unshown = true;
+  bool stood = is_still(job) && job.view == view;
+  if (shown.lost && (stood || visitor.wants.local)) picture.unshown = true;
   if (visitor.wants.local) {
-    note_encoded(show, visitor);
+    note_encoded(show.totals, show.visits, visitor);
     return present_keyframe(show, visitor);
   }
   bool fades = !picture.fade.from.rgb.empty() && show.time - shown.sent_at >= 1 / fade_rate;
-  if (!picture.unshown && !fades && (!job.keep || view == shown.view)) {
+  if (!picture.unshown && !fades && view == shown.view) {
     refine(show, visitor);
     return;
   }
@@ -392,24 +395,24 @@ void present(Show& show, Visitor& visitor) {
     return;
 
   Encoder& encoder = *shown.encoder;
-  note_encoded(show, visitor);
+  note_encoded(show.totals, show.visits, visitor);
   const float newer = fade_share(picture.fade, view, show.time);
   if ((picture.unshown || fades) && job.view == view) {  // drawn for this very view
-    if (job.keep) copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);
-    else std::swap(encoder.image, picture.image);
+    copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);
     if (newer < 1) mix_fade(picture.fade, newer, encoder.image);
     else picture.fade = {};
     if (!picture.moving.empty()) lay_over(picture.moving, encoder.image);
-    send(show, visitor, view, visitor.place.seq, job.still && newer == 1);
+    send(show, visitor, view, visitor.place.seq, is_still(job) && newer == 1);
     return;
   }
   picture.fade = {};
   // the renderer reads the keyframe, and has soon done so
-  if (show.renderer.posed == &visitor) return;
+  if (show.drawing->renderer.posed == visitor.link->id) return;
   merge_moving(picture);
-  if (warp(show, visitor, view)) {
+  if (warp(*show.drawing, show.totals, visitor, view)) {
     send(show, visitor, view, visitor.place.seq, false);
-  } else if (picture.unshown && is_later(job.seq, shown.seq) && warp(show, visitor, job.expected)) {
+  } else if (picture.unshown && is_later(job.seq, shown.seq) &&
+             warp(*show.drawing, show.totals, visitor, job.expected)) {
     send(show, visitor, job.expected, job.seq,
          false);  // shows what can be shown of so quick a turn
   } else {
@@ -420,7 +423,7 @@ void present(Show& show, Visitor& visitor) {
 
 void present_all(Show& show) {
   std::vector<Visitor*> all;
-  for (Visitor& visitor : show.visitors)
+  for (Visitor& visitor : show.visits.visitors)
     if (is_shown(visitor)) all.push_back(&visitor);
   std::ranges::stable_sort(all, {}, [](const Visitor* one) { return one->shown.pictured_at; });
   const double began = seconds_now();
@@ -431,7 +434,7 @@ void present_all(Show& show) {
 }
 
 bool has_to_show(const Show& show, const Visitor& visitor) {
-  const VisitorPicture& picture = visitor.picture;
+  const VisitorPicture& picture = *visitor.picture;
   return is_shown(visitor) &&
          (picture.unshown || picture.layer_unsent || !picture.fade.from.rgb.empty() ||
           (visitor.place.last_view != visitor.shown.view && !visitor.wants.local));

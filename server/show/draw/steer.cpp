@@ -10,6 +10,7 @@
 #include "cache/point_image.h"
 #include "show/draw/pace.h"
 #include "show/kiosk/kiosk.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 
 namespace wellspring::show {
@@ -67,7 +68,7 @@ vec3 place_in_picture(const View& view, vec2 place) {
 const Person* nearest_person(const Show& show, const Visitor& visitor) {
   const Person* nearest = nullptr;
   const std::string kiosk = kiosk_name(show, visitor.name);
-  for (const Eye& eye : show.eyes) {
+  for (const Eye& eye : show.kiosks.eyes) {
     if (eye.kiosk != kiosk || show.time - eye.received > observation_lifetime) continue;
     for (const Person& person : eye.seen.people)
       if (!nearest || glm::length(person.position) < glm::length(nearest->position))
@@ -85,22 +86,22 @@ vec2 faced_place(const Person& person, const ScreenSize& screen, const View& res
   return {0.5f + 0.5f * at.x / half_width, 0.5f - 0.5f * at.y / half_height};
 }
 
-const PointOfInterest* find_shown(const Show& show, const Voice& voice) {
+const PointOfInterest* find_shown(const ExhibitStage& stage, const Voice& voice) {
   if (voice.queue.empty() || voice.paused) return nullptr;
   const std::string& object = voice.held.point.empty() ? voice.held.look : voice.held.point;
-  return object.empty() ? nullptr : find_point(show.exhibit, object);
+  return object.empty() ? nullptr : find_point(stage.exhibit, object);
 }
 
 AttentionCause find_cause(const Show& show, const Visitor& visitor) {
   const VisitorAttention& looks = visitor.looks;
   return {looks.seen, find_hints(show, visitor, *looks.seen), visitor.wants.task_weight,
-          show.known};
+          show.stage.known};
 }
 
 // Returns the visitor whose turn it is, longest ago first; null: nobody's.
 Visitor* next_to_analyse(Show& show, AttentionCause& cause) {
   Visitor* next = nullptr;
-  for (Visitor& visitor : show.visitors) {
+  for (Visitor& visitor : show.visits.visitors) {
     const VisitorAttention& looks = visitor.looks;
     if (!visitor.welcomed || !visitor.wants.attention || !looks.seen) continue;
     if (show.time - looks.analysed_at < 1 / analysis_rate) continue;
@@ -115,8 +116,8 @@ Visitor* next_to_analyse(Show& show, AttentionCause& cause) {
 }
 
 void take_analysis(Show& show) {
-  AttentionAnalysis& analysis = show.analysis;
-  for (Visitor& visitor : show.visitors) {
+  AttentionAnalysis& analysis = show.drawing->analysis;
+  for (Visitor& visitor : show.visits.visitors) {
     if (visitor.link->id != analysis.visitor) continue;
     visitor.looks.weights = std::move(analysis.weights);
     visitor.looks.cause = std::move(analysis.cause);
@@ -175,7 +176,7 @@ std::shared_ptr<const SeenPicture> note_seen(const PictureJob& job, const Image8
 }
 
 void steer(Show& show) {
-  AttentionAnalysis& analysis = show.analysis;
+  AttentionAnalysis& analysis = show.drawing->analysis;
   if (analysis.visitor != 0) {
     if (analysis.worker.busy()) return;
     take_analysis(show);
@@ -184,12 +185,7 @@ void steer(Show& show) {
   if (!next) return;
   analysis.visitor = next->link->id;
   next->looks.analysed_at = show.time;
-  if (show.settings.background) {
-    analysis.worker.run([&analysis] { analysis.cores.execute([&] { analyse(analysis); }); });
-  } else {
-    analyse(analysis);
-    take_analysis(show);
-  }
+  analysis.worker.run([&analysis] { analysis.cores.execute([&] { analyse(analysis); }); });
 }
 
 std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,
@@ -204,14 +200,15 @@ std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,
     kind.weight *= std::clamp(person->confidence, 0.0f, 1.0f);
     const Kiosk* kiosk = kiosk_of(show, visitor);
     vec2 place = faced_place(*person, kiosk ? kiosk->settings.screen : ScreenSize(),
-                             rest_view(show, visitor));
+                             rest_view(show.stage, visitor));
     bool faces =
         std::abs(person->rotation.x) < 0.4f * pi && std::abs(person->rotation.y) < 0.4f * pi;
     if (faces) add_hint(seen, place_in_picture(now, place), kind, hints);
   }
-  const PointOfInterest* shown = find_shown(show, visitor.hearing.narration.voice);
-  if (!shown) shown = find_shown(show, teller_of(show, visitor).voice);
-  if (shown) add_hint(seen, vec3(shown->place - show.exhibit.scene.origin), shown_hint, hints);
+  const PointOfInterest* shown = find_shown(show.stage, visitor.hearing.narration.voice);
+  if (!shown) shown = find_shown(show.stage, teller_of(show.cast, show.visits, visitor).voice);
+  if (shown)
+    add_hint(seen, vec3(shown->place - show.stage.exhibit.scene.origin), shown_hint, hints);
   return hints;
 }
 

@@ -5,9 +5,8 @@
 //
 //   draw_step --note_seen()--> finish_picture --steer()--> analysis --steer()--> the next job
 //
-// The analysis goes on beside drawing, on a thread of its own; without a background, within the
-// tick. It runs at most analysis_rate times a second, when its cause is another, and not while
-// nothing asks for samples.
+// The analysis goes on beside drawing, on a thread of its own. It runs at most analysis_rate times
+// a second, when its cause is another, and not while nothing asks for samples.
 #pragma once
 #include "show/state/show.h"
 
@@ -24,8 +23,7 @@ bool wants_seen(const Show& show, const Visitor& visitor);
 // visitor's cache, projected for it. By the renderer.
 std::shared_ptr<const SeenPicture> note_seen(const PictureJob& job, const Image8& image,
                                              const RenderCache& cache);
-// Takes what is finished and begins what is due, for one visitor a call. By the tick; never waits
-// but without a background.
+// Takes what is finished and begins what is due, for one visitor a call. By the tick; never waits.
 void steer(Show& show);
 
 // Finds an analysis's weights and seconds: from its cause alone, the same for any number of

@@ -11,7 +11,9 @@
 #include "picture/compositor.h"
 #include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
+#include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
 
 namespace wellspring::show {
@@ -21,10 +23,10 @@ constexpr double slice = 0.02, least_step = 0.004;  // seconds
 
 }  // namespace
 
-void begin_pass(Show& show, const PictureJob& job, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
-  StillPass& pass = show.pass;
-  pass.visitor = &visitor;
+void begin_pass(ShowDrawing& drawing, const PictureJob& job, Visitor& visitor) {
+  VisitorPicture& picture = *visitor.picture;
+  StillPass& pass = drawing.pass;
+  pass.visitor = visitor.link->id;
   pass.job = job;
   pass.backdrop = picture.costs.backdrop;
   pass.step = StillPass::Step::compute;
@@ -37,16 +39,16 @@ void begin_pass(Show& show, const PictureJob& job, Visitor& visitor) {
   picture.rest.passed_samples = picture.rest.samples;
 }
 
-void go_on_with_pass(Show& show) {
-  StillPass& pass = show.pass;
+void go_on_with_pass(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& visitor) {
+  StillPass& pass = drawing.pass;
   double began = seconds_now();
   if (pass.step == StillPass::Step::compute) {
-    double seconds = std::clamp(show.renderer.until_moving, least_step, slice);
+    double seconds = std::clamp(drawing.renderer.until_moving, least_step, slice);
     if (!pass.denoiser->advance(seconds, &pass.given_up)) pass.step = StillPass::Step::finish;
   } else if (pass.step == StillPass::Step::finish) {
-    finish_reconstruction(pass.visitor->picture.compositor.samples(), *pass.denoiser, pass.work,
+    finish_reconstruction(visitor.picture->compositor.samples(), *pass.denoiser, pass.work,
                           pass.frame);
-    tonemap(pass.frame, Tonemap{show.exhibit.exposure}, pass.picture);
+    tonemap(pass.frame, Tonemap{stage.exhibit.exposure}, pass.picture);
     make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
     pass.step = StillPass::Step::done;
   }
@@ -54,38 +56,38 @@ void go_on_with_pass(Show& show) {
 }
 
 void take_pass(Show& show) {
-  StillPass& pass = show.pass;
-  Visitor& visitor = *pass.visitor;
+  StillPass& pass = show.drawing->pass;
+  Visitor& visitor = visitor_of(show.visits, pass.visitor);
   pass.at_work = false;
-  if (pass.step != StillPass::Step::compute) visitor.picture.at_work = false;
+  if (pass.step != StillPass::Step::compute) visitor.picture->at_work = false;
   if (pass.given_up) {
-    pass.visitor = nullptr;
+    pass.visitor = 0;
     show.totals.given_up++;
     return;
   }
   if (pass.step != StillPass::Step::done) return;
-  if (visitor.picture.keyframe.view == pass.keyframe.view)
-    begin_fade(visitor.picture.keyframe, show.time, visitor.picture.fade);
-  std::swap(pass.keyframe, visitor.picture.keyframe);
-  visitor.picture.job = pass.job;
-  visitor.picture.costs.backdrop = pass.backdrop;
-  finish_backdrop(visitor.picture);
-  RestState& rest = visitor.picture.rest;
+  if (visitor.picture->keyframe.view == pass.keyframe.view)
+    begin_fade(visitor.picture->keyframe, show.time, visitor.picture->fade);
+  std::swap(pass.keyframe, visitor.picture->keyframe);
+  visitor.picture->job = pass.job;
+  visitor.picture->costs.backdrop = pass.backdrop;
+  finish_backdrop(*visitor.picture);
+  RestState& rest = visitor.picture->rest;
   rest.reconstructed = true;
   rest.passed_at = show.time;
   rest.passed_seconds = pass.seconds;
   log::debug("visitor {}: reconstruction took {:.0f} ms", visitor.link->id, 1000 * pass.seconds);
   show.totals.reconstructed++;
   show.totals.reconstruction_ms = float(1000 * pass.seconds);
-  pass.visitor = nullptr;
+  pass.visitor = 0;
 }
 
 void watch_pass(Show& show) {
-  StillPass& pass = show.pass;
-  if (!pass.visitor) return;
-  if (is_outdated(show, pass.job, *pass.visitor)) pass.given_up = true;
+  StillPass& pass = show.drawing->pass;
+  if (pass.visitor == 0) return;
+  if (is_outdated(show, pass.job, visitor_of(show.visits, pass.visitor))) pass.given_up = true;
   if (pass.given_up && !pass.at_work) {
-    pass.visitor = nullptr;
+    pass.visitor = 0;
     show.totals.given_up++;
   }
 }
@@ -105,22 +107,24 @@ bool may_be_laid_over(const PictureWindow& window, const View& view) {
 }
 
 void begin_skin_light(Show& show, const Visitor& visitor) {
-  SkinJob& job = show.renderer.skin;
+  SkinJob& job = show.drawing->renderer.skin;
   job.update = {};
   job.views.clear();
   float pixels = 0;
   bool alike = true;  // all visitors see the same moving things
-  for (const Visitor& one : show.visitors) {
+  for (const Visitor& one : show.visits.visitors) {
     const View& view = one.place.last_view;
-    if (!one.welcomed || !sees_moving(show, one, view)) continue;
-    alike &= see_the_same(show, one, visitor);
-    if (!see_the_same(show, one, visitor)) continue;
-    const float seen = see_skin(*show.world, show.skin, view, sight_rays, job.turn).pixels;
+    if (!one.welcomed || !sees_moving(show.cast, show.visits, one, view)) continue;
+    alike &= see_the_same(show.cast, show.visits, one, visitor);
+    if (!see_the_same(show.cast, show.visits, one, visitor)) continue;
+    const float seen =
+        see_skin(*show.stage.world, show.stage.skin, view, sight_rays, job.turn).pixels;
     if (seen > 0) job.views.push_back(view);
     pixels = std::max(pixels, seen);
   }
   job.update.views = job.views;
-  const SkinPace pace = plan_skin(pixels, double(show.samples_per_second), show.skin.samples);
+  const SkinPace pace =
+      plan_skin(pixels, double(show.drawing->samples_per_second), show.stage.skin.samples);
   job.update.samples = pace.samples;
   job.interval = alike ? pace.interval : least_interval;  // others may be nearer
   job.update.seed = mix64(show.ticks);
@@ -133,70 +137,70 @@ void begin_skin_light(Show& show, const Visitor& visitor) {
   job.at_work = true;
 }
 
-void compute_skin_light(Show& show) {
-  SkinJob& job = show.renderer.skin;
+void compute_skin_light(ExhibitStage& stage, ShowDrawing& drawing) {
+  SkinJob& job = drawing.renderer.skin;
   job.traced = 0;
   if (job.update.samples <= 0) return;
-  job.traced = size_t(update_skin(*show.world, show.lights, job.update, show.skin));
-  smooth_skin(*show.world, show.skin, job.cycles);
+  job.traced = size_t(update_skin(*stage.world, stage.lights, job.update, stage.skin));
+  smooth_skin(*stage.world, stage.skin, job.cycles);
 }
 
-void finish_skin_light(Show& show) {
-  show.renderer.skin.at_work = false;
-  show.totals.samples += show.renderer.skin.traced;
+void finish_skin_light(ShowDrawing& drawing, ShowTotals& totals) {
+  drawing.renderer.skin.at_work = false;
+  totals.samples += drawing.renderer.skin.traced;
 }
 
 namespace {
 
 // Finds the light of moving lights on still surfaces in the visitor's picture, and on moving
 // things.
-void light_picture(Show& show, VisitorPicture& picture) {
-  Renderer& renderer = show.renderer;
+void light_picture(ShowDrawing& drawing, const ExhibitStage& stage, VisitorPicture& picture) {
+  Renderer& renderer = drawing.renderer;
   DynamicImage& image = renderer.work.dynamic;
   const DynamicLights& from = renderer.posed_lights;
-  const SplatSettings& settings = show.settings.dynamic;
+  const SplatSettings settings = dynamic_splat_settings();
   const View& view = picture.keyframe.view;
   BackdropSurfaces& surfaces = picture.surfaces;
   SettledBounce& settled = picture.settled;
   if (surfaces.view != view) {
-    find_backdrop_surfaces(*show.visibility, view, surfaces);
+    find_backdrop_surfaces(*stage.visibility, view, surfaces);
     settled = {};
   }
-  see_surfaces(*show.visibility, dynamic_light_view(view), image.surfaces, RasterShows::moving);
+  see_surfaces(*stage.visibility, dynamic_light_view(view), image.surfaces, RasterShows::moving);
   DynamicLights others = from;
   take_settled(settled, others);
   if (wants_pass(settled))
-    add_pass(*show.world, show.lights, surfaces.surfaces, settings, settled, image.bounce);
-  begin_bounce(*show.world, show.lights, others, surfaces.surfaces, settings, {}, image.bounce);
-  light_surfaces(*show.world, show.lights, from, surfaces.surfaces, settings, image.bounce,
+    add_pass(*stage.world, stage.lights, surfaces.surfaces, settings, settled, image.bounce);
+  begin_bounce(*stage.world, stage.lights, others, surfaces.surfaces, settings, {}, image.bounce);
+  light_surfaces(*stage.world, stage.lights, from, surfaces.surfaces, settings, image.bounce,
                  renderer.work.backdrop_light);
   add_settled(settled, renderer.work.backdrop_light);
   if (!settled.lights.empty())
-    begin_bounce(*show.world, show.lights, from, surfaces.surfaces, settings, {}, image.bounce);
-  light_surfaces(*show.world, show.lights, from, image.surfaces, settings, image.bounce,
+    begin_bounce(*stage.world, stage.lights, from, surfaces.surfaces, settings, {}, image.bounce);
+  light_surfaces(*stage.world, stage.lights, from, image.surfaces, settings, image.bounce,
                  image.light);
 }
 
 }  // namespace
 
-void draw_moving(Show& show, Visitor& visitor) {
-  Renderer& renderer = show.renderer;
+void draw_moving(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& visitor) {
+  Renderer& renderer = drawing.renderer;
   double began = seconds_now();
-  VisitorPicture& picture = visitor.picture;
+  VisitorPicture& picture = *visitor.picture;
   const bool dynamic = !renderer.posed_lights.empty();
-  if (dynamic) light_picture(show, picture);
+  if (dynamic) light_picture(drawing, stage, picture);
   const BackdropLight relit{picture.surfaces, renderer.work.backdrop_light};
   picture.compositor.set_dynamic(dynamic ? &renderer.work.dynamic : nullptr);
-  picture.compositor.draw_moving(*show.world, picture.keyframe, dynamic ? &relit : nullptr,
-                                 *show.visibility, Tonemap{show.exhibit.exposure},
+  picture.compositor.draw_moving(*stage.world, picture.keyframe, dynamic ? &relit : nullptr,
+                                 *stage.visibility, Tonemap{stage.exhibit.exposure},
                                  renderer.posed_layer, renderer.work.moving_light,
                                  renderer.work.moving);
   renderer.posed_seconds = seconds_now() - began;
 }
 
-void finish_moving(Show& show, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
-  Renderer& renderer = show.renderer;
+void finish_moving(ShowDrawing& drawing, ShowTotals& totals, Visitor& visitor) {
+  VisitorPicture& picture = *visitor.picture;
+  Renderer& renderer = drawing.renderer;
   const bool is_first = picture.posed_at < 0;
   picture.posed_at = renderer.posed_at;
   MovingPicture& moving = renderer.work.moving;
@@ -214,7 +218,7 @@ void finish_moving(Show& show, Visitor& visitor) {
   picture.job.time_us = renderer.posed_us;
   // A page that has the still part of the picture need not get it again.
   if (!layer || relit || is_first) picture.unshown = true;
-  show.totals.posed++;
+  totals.posed++;
 }
 
 void finish_backdrop(VisitorPicture& picture) {

@@ -17,20 +17,20 @@
 
 namespace wellspring::show {
 
-// What a curator may say of a kiosk: `kiosks` of exhibit.json, all of it optional but the name.
+// A curator may describe a kiosk in `kiosks` of exhibit.json, all of it optional but the name.
 
 // Seconds that a kiosk waits; what they decide: show/kiosk/kiosk.h.
 struct KioskTimes {
   double hold_person = 2;       // a head counts as there after it was last seen
   double sleep_after = 30;      // without motion
-  double leave_after = 6;       // of who is engaged: without a head or a touch
-  double leave_untouched = 45;  // where no camera sees the guest: without a touch
+  double leave_after = 6;       // without a head or a touch of an engaged guest
+  double leave_untouched = 45;  // without a touch of a guest whom no camera sees
   double leave_playing = 90;    // likewise while something plays
   double farewell = 6;          // its length
   double sleep_latest = 20;     // from its beginning, where nothing moves after it
 };
 
-// Of the lit part of a screen, in metres; 0: unknown.
+// Holds the size of the lit part of a screen, in metres; 0: unknown.
 struct ScreenSize {
   float width = 0, height = 0;
   bool known() const { return width > 0 && height > 0; }
@@ -38,7 +38,7 @@ struct ScreenSize {
 
 struct KioskSettings {
   std::string name;       // as its page and its cameras say it
-  std::string viewpoint;  // where its screen is a window; empty: the storyteller's for kiosks
+  std::string viewpoint;  // viewpoint of its window; empty: the storyteller's for kiosks
   std::string teller;     // a storyteller's id: who comes there; empty: whoever is there
   float volume = 1;       // 0 to 1
   ScreenSize screen;      // known: its picture follows the head of its guest
@@ -59,7 +59,7 @@ const LocalLine::value_type* line_in(const LocalLine& line, const std::string& l
 LocalLine plain_line(const LocalText& text);
 // Sentence `index` of every language that has one.
 LocalLine line_at(const LocalScript& script, size_t index);
-size_t line_count(const LocalScript& script);  // of the longest language
+size_t line_count(const LocalScript& script);  // lines in the longest language
 
 struct ExhibitViewpoint {
   Viewpoint view;
@@ -108,7 +108,7 @@ struct StorytellerPlace {
   std::string id;
   std::string figure;  // file beside exhibit.json
   LocalText name;
-  dvec3 position{0};                 // of the feet
+  dvec3 position{0};                 // place of the feet
   float yaw = 0;                     // as Viewpoint: 0 faces -Z
   LocalScript greetings, farewells;  // a line each
   VoiceManner voice;
@@ -120,7 +120,7 @@ struct StorytellerPlace {
 
 struct PointOfInterest {
   std::string id, node;
-  std::vector<uint32_t> objects;  // what it is made of: indices into Scene::objects
+  std::vector<uint32_t> objects;  // its parts: indices into Scene::objects
   dvec3 place{0};                 // its middle, where one looks or points; absolute
   LocalText title, text;
   std::string story;                            // id of the one about it; may be empty
@@ -135,15 +135,15 @@ struct PointOfInterest {
 // A thing that a storyteller can hold.
 struct ExhibitProp {
   std::string id, file;
-  int side = 1;                     // of the hand that holds it: 0 left, 1 right
+  int side = 1;                     // hand that holds it: 0 left, 1 right
   std::string gesture = "hold_up";  // how the arm holds it: of the gesture library
   mat4 to_fist{1};                  // from the file's metres to the fist's (avatar/body/hold.h)
-  Flicker flicker;                  // of its lights
-  Scene scene;                      // of the file
+  Flicker flicker;                  // flicker of its lights
+  Scene scene;                      // contents of the file
 };
 inline constexpr size_t most_props = 16;
 
-// What visitors may ask the storyteller, and what the curator wants said.
+// Holds a question that visitors may ask the storyteller, and the curator's answer.
 struct AnsweredQuestion {
   std::vector<LocalText> question;  // ways to ask it, one or more; the first is offered
   LocalText answer;
@@ -156,21 +156,21 @@ struct ExhibitAnimation {
   std::string id;
   LocalText title;
   Start start = Start::loop;
-  int motion = 0, clip = 0;  // of scene.motions, of its clips
-  double seconds = 0;        // that it takes; above 0
+  int motion = 0, clip = 0;  // indices into scene.motions and into its clips
+  double seconds = 0;        // its duration; above 0
   int point = -1;            // index into Exhibit::points: whose touch starts it; -1: nobody's
   bool shared = false;       // who starts it does so for everybody
 };
 inline constexpr size_t most_animations = 64;
 
-// What an animation moves: it is no part of the scene any more.
+// Names a mesh that an animation moves: it is no part of the scene any more.
 struct ExhibitMover {
-  int motion = 0, mover = 0;  // of scene.motions, of its movers
-  int material = 0;           // of the scene
-  uint32_t object = 0;        // of the scene
+  int motion = 0, mover = 0;  // indices into scene.motions and into its movers
+  int material = 0;           // index into the scene's materials
+  uint32_t object = 0;        // index into the scene's objects
 };
 
-// What visitors may switch: scene.lamps[i] is what it is made of, and the sun of the day.
+// Holds a lamp that visitors may switch: scene.lamps[i] lists its parts, and the sun of the day.
 struct ExhibitLamp {
   std::string id;
   LocalText title;
@@ -185,8 +185,8 @@ struct BookPage {
   LocalText title;
   std::vector<LocalText> text;  // paragraphs
   std::string image;            // may be empty
-  LocalText alt, credit;        // what the picture shows, in words; whose it is
-  std::string link;             // of a partner; https or empty
+  LocalText alt, credit;        // words for the picture; its owner
+  std::string link;             // address of a partner; https or empty
 };
 struct BookSlide {
   LocalText title, text;
@@ -199,7 +199,7 @@ struct BookPresentation {
   LocalText title;
   std::vector<BookSlide> slides;
 };
-// What a kiosk's guests read.
+// Holds the book that a kiosk's guests read.
 struct Book {
   std::vector<BookPage> topics, partners;
   std::vector<BookPresentation> presentations;
@@ -217,13 +217,13 @@ struct ServedFile {
   std::string path, type;  // type: "image/jpeg", ...
   uint64_t bytes = 0;
   int64_t changed = 0;  // its last change, in the file system's own count
-  std::string etag;     // of its bytes
+  std::string etag;     // hash of its bytes
 };
 
 struct Exhibit {
   std::string id, folder;
   LocalText title, description;
-  std::string poster;  // of `files`; empty: none
+  std::string poster;  // one of `files`; empty: none
   std::vector<std::string> languages{"en"};
   float exposure = 1;  // multiplies radiance; measured where exhibit.json says "auto"
   bool auto_exposure = false;
@@ -236,7 +236,7 @@ struct Exhibit {
   std::vector<TourPlan> tours;
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
-  std::vector<ExhibitLamp> lamps;  // of each of the scene's, but for the day's sun
+  std::vector<ExhibitLamp> lamps;  // one for each of the scene's, but for the day's sun
   std::vector<ChangingLight> lights;
   std::optional<Day> day;
   std::vector<ExhibitAnimation> animations;
@@ -246,7 +246,7 @@ struct Exhibit {
   std::vector<AmbientSound> sounds;
   std::map<std::string, ServedFile> files;  // by the name that exhibit.json gives
   std::vector<KioskSettings> kiosks;
-  std::vector<Credit> credits;  // of those of its glTF files that say whose they are
+  std::vector<Credit> credits;  // authors that its glTF files name
   Scene scene;
 };
 
@@ -256,7 +256,7 @@ int find_lamp(const Exhibit& exhibit, std::string_view id);         // likewise
 int find_prop(const Exhibit& exhibit, std::string_view id);         // likewise
 const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id);
 
-// That there is none of that name, and which was perhaps meant.
+// Says that no viewpoint has that name, and which was perhaps meant.
 std::string unknown_viewpoint(const Exhibit& exhibit, const std::string& name);
 std::string unknown_storyteller(const Exhibit& exhibit, const std::string& id);
 std::string unknown_prop(const Exhibit& exhibit, const std::string& id);

@@ -9,7 +9,7 @@ inline constexpr size_t most_topics = 40, most_partners = 40, most_presentations
                         most_slides = 60, most_paragraphs = 20, most_sounds = 16;
 // Seconds that a slide may be shown.
 inline constexpr double shortest_slide = 1, longest_slide = 600;
-// What a page can make by itself.
+// A page can make these sounds by itself.
 inline constexpr const char* sound_kinds[] = {"fire", "water", "room", "wind"};
 
 // Fill exhibit.book and exhibit.sounds, and exhibit.files with what they name. Problems are noted

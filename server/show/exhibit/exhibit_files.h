@@ -32,7 +32,7 @@ bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const 
 std::string package_file(Fields& fields, const char* field, const std::string& folder,
                          const std::string& name);
 
-// Reads "scene" or "scenes", "scale", "light_scale" and "environment". Where a file cannot be read
+// Reads "scene" or "scenes", "scale", "light_scale" and "environment". If a file cannot be read
 // exhibit.scene.objects is empty.
 void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems);
 

@@ -99,7 +99,8 @@ PunctualLight read_new_light(const Exhibit& exhibit, Fields& fields) {
   return light;
 }
 
-// What a key leaves out is as in the one before, in the first as in the light itself.
+// Reads a key. A value that it leaves out is as in the one before, in the first as in the light
+// itself.
 void read_key(const Exhibit& exhibit, ChangingLight& light, Fields fields) {
   const bool first = light.track.empty();
   TrackKey key{0, light.light.position, light.light.direction, 1};
@@ -294,7 +295,7 @@ namespace {
 
 constexpr int width = 48, height = 27, samples = 16, bounces = 6;
 constexpr size_t most_viewpoints = 16;
-constexpr float least_albedo = 0.04f;  // of less, little is known about the light
+constexpr float least_albedo = 0.04f;  // darker surfaces tell little about the light
 constexpr float well_lit = 0.55f;      // mean light of a room that looks right, white wall: 1
 constexpr float brightest = 2.5f;      // the lightest tenth of a picture is at most so bright
 constexpr float least = 1e-6f, most = 1e6f;

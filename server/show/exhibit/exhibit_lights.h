@@ -19,7 +19,7 @@ void read_lamps(Exhibit& exhibit, Fields& root);
 std::vector<char> first_lamps(const Exhibit& exhibit);
 LampLevels first_levels(const Exhibit& exhibit);
 
-// What the object "flicker" says; nothing: the light is steady.
+// Reads the object "flicker"; without one the light is steady.
 Flicker read_flicker(Fields& fields);
 
 // Fills exhibit.lights; what of them are lights of the scene stay there. Call when lamps are read.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double largest_around = 1.5;  // metres: half of what is looked at from all sides
 
-// Of each node of the scene: does it, or one above it, have that number?
+// Returns whether a node of the scene, or one above it, has that number.
 bool is_below(const Scene& scene, int node, int above) {
   for (size_t steps = 0; node >= 0 && steps <= scene.nodes.size(); steps++) {
     if (node == above) return true;
@@ -45,7 +45,7 @@ std::vector<uint32_t> find_objects(const Scene& scene, const std::string& name) 
   return found;
 }
 
-// Of all that belongs to the objects, relative to the scene's origin; empty: low above high.
+// Returns the bounds of the objects, relative to the scene's origin; empty: low above high.
 Bounds bounds_of(const Scene& scene, const std::vector<uint32_t>& objects) {
   Bounds bounds;
   for (const Instance& instance : scene.instances) {
@@ -73,7 +73,7 @@ bool is_address(const std::string& text) {
          text.find_first_of(" \t\n\"<>") == std::string::npos;
 }
 
-// What is told of it.
+// Reads what pages say of it.
 void read_label(const Exhibit& exhibit, PointOfInterest& point, Fields& fields) {
   point.title = fields.local_text("title", false);
   point.text = fields.local_text("text", false);
@@ -147,7 +147,7 @@ float reach_of(const ExhibitProp& prop) {
   return reach;
 }
 
-// What makes it too much for a hand; empty: nothing.
+// Says why it is too much for a hand; empty: it is not.
 std::string too_much(const ExhibitProp& prop) {
   const Scene& scene = prop.scene;
   if (scene.instances.empty()) return "has nothing to hold";
@@ -280,12 +280,12 @@ std::vector<vec3> all_eye_places(const Exhibit& exhibit) {
 
 namespace {
 
-// Of edges of what moves: light is kept at its vertices.
+// Edges of moving meshes are at most this long: light is kept at their vertices.
 constexpr double longest_edge = 0.12;  // metres
 constexpr size_t most_named = 8;       // animations in a message
 constexpr size_t most_mover_triangles = 40'000;
 
-// Of one file's, or of all where none is named.
+// Holds the clips of one file, or of all if none is named.
 struct Clips {
   const Scene& scene;
   std::string file;
@@ -323,7 +323,7 @@ struct Clips {
   }
 };
 
-// What it moves besides meshes stays where it is.
+// Notes lights and cameras that it moves as problems: they stay at rest.
 void check_lights(const Exhibit& exhibit, const ExhibitAnimation& animation, Fields& fields) {
   const Scene& scene = exhibit.scene;
   const SceneMotion& motion = *scene.motions[size_t(animation.motion)].of;

@@ -26,11 +26,11 @@ inline constexpr size_t most_prop_triangles = 20'000, most_prop_texels = size_t(
                         most_prop_lights = 4;
 inline constexpr float farthest_prop = 1.5f;
 
-// Fills exhibit.props. Call when the storytellers are there. What is too large, or cannot be read
-// or held, is a problem.
+// Fills exhibit.props. Called when the storytellers are there. A thing that is too large, or cannot
+// be read or held, is a problem.
 void read_props(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems);
 
-// Where visitors' eyes are likely to be.
+// Says where visitors' eyes are likely to be.
 
 // The viewpoints, and places on the way between them, in scene coordinates.
 std::vector<vec3> eye_places(const Exhibit& exhibit);

@@ -230,7 +230,7 @@ namespace {
 constexpr double longest = 3600;  // seconds that a kiosk may be told to wait
 constexpr double smallest_screen = 0.1, largest_screen = 10;  // metres
 
-// What is left out stays as it is.
+// Reads the times that are given; the others stay as they are.
 void read_times(KioskTimes& times, Fields fields) {
   auto read = [&](const char* name, double& seconds) {
     seconds = fields.number(name, false, seconds, 0, longest);

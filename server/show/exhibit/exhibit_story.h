@@ -19,8 +19,9 @@ LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name,
 
 VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& otherwise);
 
-// After everything is read: whether emotions, gestures, objects, props and viewpoints of all marks
-// are there, and languages have as many sentences as each other. What is not is not fatal.
+// Checks, after everything is read, whether emotions, gestures, objects, props and viewpoints of
+// all marks are there, and whether languages have as many sentences as each other. A fault is not
+// fatal.
 void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems);
 
 // Questions that a curator has answered, out of exhibit.json: see content/README.md.

@@ -13,8 +13,7 @@
 
 namespace wellspring::show {
 
-// What is wrong with an exhibit package: every fault is noted with file and place, not only the
-// first.
+// Faults of an exhibit package are all noted with file and place, not only the first.
 
 struct Problem {
   std::string file, where, what;
@@ -73,7 +72,7 @@ class Fields {
             get(name, required, nlohmann::json::value_t::object, "an object"))
       each(Fields(*found, file_, where_ + "/" + name, problems_));
   }
-  std::vector<std::string> names() const;  // of all that is there
+  std::vector<std::string> names() const;  // names of all fields that are there
   // The value of a field as it is, noted as read; null: it is not there.
   const nlohmann::json* value(const char* name);
   const std::string& where() const { return where_; }

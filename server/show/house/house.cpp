@@ -14,7 +14,8 @@ namespace {
 
 bool is_over_midnight(const MinuteSpan& span) { return span.end <= span.begin; }
 
-// Of the part of a span that is on the day of its beginning, and of the rest on the next.
+// Returns whether the minute lies in the span: in its part on the day of its beginning, or in its
+// rest on the next.
 bool is_within(const MinuteSpan& span, int minute) {
   return minute >= span.begin && (is_over_midnight(span) || minute < span.end);
 }

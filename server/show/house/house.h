@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The day of the house: a function of its settings and of what the clock on its wall shows. Where
+// The day of the house is a function of its settings and of what the clock on its wall shows. When
 // the clock is put forward or back, the clock rules: an hour that is left out is nobody's, one that
 // comes twice is taken twice.
 #pragma once
@@ -15,12 +15,12 @@
 
 namespace wellspring::show {
 
-// What the house says on all screens.
+// The house says these things on all screens.
 
 struct Announcement {
   uint32_t id = 0;     // grows with each
   LocalText text;      // empty: the last is taken back
-  double seconds = 0;  // that it stays
+  double seconds = 0;  // duration on the screens
   bool urgent = false;
 };
 
@@ -38,13 +38,14 @@ struct HouseSettings {
   bool always_open = true;                        // whatever `open` says
   std::array<std::optional<MinuteSpan>, 7> open;  // by weekday; nothing: closed
   std::vector<MinuteSpan> quiet;                  // every day
-  float volume = 1, quiet_volume = 0.2f;          // of kiosks, 0 to 1
+  float volume = 1, quiet_volume = 0.2f;          // volumes of kiosks, 0 to 1
   bool headphones = false;                        // kiosks have some, for quiet hours
   std::optional<int> reload;                      // minute at which kiosk pages begin anew
-  std::string address;  // of this server for people's phones, without a slash at its end; or empty
+  std::string
+      address;  // this server's address for people's phones, without a slash at its end; or empty
 };
 
-// What a clock on the wall and a calendar show.
+// Holds what a clock on the wall and a calendar show.
 struct LocalTime {
   int64_t day = 0;  // since 1970-01-01
   int minute = 0;   // since midnight
@@ -60,7 +61,7 @@ struct HouseState {
 };
 HouseState house_at(const HouseSettings& settings, const LocalTime& now);
 
-// Of a kiosk whose own volume is `own`: quiet hours make none louder.
+// Returns the volume of a kiosk whose own volume is `own`: quiet hours make none louder.
 float kiosk_volume(const HouseSettings& settings, const HouseState& house, float own);
 
 // The house file of `./wellspring run --house FILE` (docs/kiosk.md), checked as an exhibit is.

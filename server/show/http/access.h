@@ -37,10 +37,10 @@ UpgradeAnswer admit(const AccessRules& rules, const HttpQuestion& question);
 
 // POST /api/v1/admin/announce: words of the house for all screens, by whoever has the token.
 
-inline constexpr size_t most_announced_bytes = 2000;       // of the text in one language
+inline constexpr size_t most_announced_bytes = 2000;       // length of the text in one language
 inline constexpr double longest_announcement = 24 * 3600;  // seconds
 
-// Where announcements are handed in.
+// Takes announcements in.
 struct AnnouncementDesk {
   std::function<uint32_t(Announcement)> put;  // tells the announcement's number
 };

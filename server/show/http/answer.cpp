@@ -158,7 +158,7 @@ const ServedExhibit* find_exhibit(const AnswerSources& sources, const std::strin
   return found == sources.exhibits.end() ? nullptr : &*found;
 }
 
-// What may change is not kept by browsers.
+// Tells browsers not to keep a reply that may change.
 HttpReply fresh(HttpReply reply, const AnswerSources& sources) {
   if (sources.changes) reply.headers["Cache-Control"] = "no-store";
   return reply;
@@ -178,7 +178,7 @@ HttpReply answer_exhibit(const AnswerSources& sources, const HttpQuestion& quest
   return error_reply(404, "not_found", "there is no '" + tail + "' in an exhibit");
 }
 
-// What is wrong with those that failed names files: that is the technician's.
+// Lists the exhibits. Only a technician learns why some failed, since the reasons name files.
 HttpReply answer_exhibits(const AnswerSources& sources, const Access& access) {
   json all = {{"exhibits", json::array()}, {"failed", json::array()}};
   for (const ServedExhibit& one : sources.exhibits)
@@ -203,8 +203,8 @@ HttpReply answer_metrics(const AnswerSources& sources) {
   return reply;
 }
 
-// The page of a path; null: there is none. Where there are several exhibits, "/" lists them, and
-// each has the visitor's page at /e/ID and at /?exhibit=ID.
+// Returns the page of a path; null: there is none. A server of several exhibits lists them at "/",
+// and each has the visitor's page at /e/ID and at /?exhibit=ID.
 const PageFile* find_page(const AnswerSources& sources, const HttpQuestion& question) {
   const std::string& path = question.path;
   const auto asked = question.query.find("exhibit");

@@ -32,7 +32,7 @@ struct FailedExhibit {
   std::vector<std::string> problems;  // each with file and place
 };
 
-// What replies are made from.
+// Holds what replies are made from.
 struct AnswerSources {
   std::vector<ServedExhibit> exhibits;  // the first: of whom asks for none by name
   std::vector<FailedExhibit> failed;
@@ -66,7 +66,8 @@ bool answer_later(const AnswerSources& sources, const HttpQuestion& question,
 std::string describe_api();
 // GET /metrics: Prometheus text exposition format 0.0.4.
 std::string write_metrics(const ShowReport& report);
-// Of several exhibits, by id: each sample gets the label `exhibit`, each name its help once.
+// Joins the metrics of several exhibits, by id: each sample gets the label `exhibit`, each name its
+// help once.
 std::string join_metrics(const std::vector<std::pair<std::string, std::string>>& texts);
 std::string failure_metrics(const std::vector<FailedExhibit>& failed);
 std::string still_metrics(const StillStatus& stills);

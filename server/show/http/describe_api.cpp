@@ -6,8 +6,8 @@
 
 namespace wellspring::show {
 
-// The machine-readable twin of the protocol's description in ARCHITECTURE.md. What a browser may
-// say comes from the messages' own lists of fields (wire/messages.h).
+// Writes the machine-readable twin of the protocol's description in ARCHITECTURE.md. The messages
+// of browsers come from their own lists of fields (wire/messages.h).
 std::string describe_api() {
   static const char* text = R"json({
   "name": "Wellspring", "version": "v1",

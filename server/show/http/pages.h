@@ -12,7 +12,7 @@ namespace wellspring::show {
 
 struct PageFile {
   std::string content_type, body, etag;
-  std::string gzip{};  // of text, where that is smaller than the body
+  std::string gzip{};  // the text packed, if that is smaller than the body
 };
 
 // Key of the visitor's page as it is at /e/ID: what it names lies one folder above.

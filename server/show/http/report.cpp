@@ -6,7 +6,9 @@
 
 #include "show/answer/cameras.h"
 #include "show/state/delivery.h"
+#include "show/state/drawing.h"
 #include "show/state/show.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 
@@ -29,54 +31,54 @@ ShowReport make_report(const Show& show) {
   report.ready = true;
   report.time = show.time;
   report.cores = int(std::thread::hardware_concurrency());
-  report.all_visitors = size_t(show.capacity->standing().seats);
-  report.exhibit_problems = show.problems.size();
+  report.all_visitors = size_t(show.visits.capacity->standing().seats);
+  report.exhibit_problems = show.stage.problems.size();
   report.ticks = show.ticks;
-  report.drawing_bytes = show.renderer.work_bytes + memory_bytes(show.warp);
-  report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
-  report.samples_per_second = show.samples_per_second;
-  report.denoiser_problem = show.pass.problem;
-  if (const IlluminationMap* maps = show.lights.maps.get()) {
+  report.drawing_bytes = show.drawing->renderer.work_bytes + memory_bytes(show.drawing->warp);
+  report.bad_samples = show.stage.lights.bad_samples ? show.stage.lights.bad_samples->load() : 0;
+  report.samples_per_second = show.drawing->samples_per_second;
+  report.denoiser_problem = show.drawing->pass.problem;
+  if (const IlluminationMap* maps = show.stage.lights.maps.get()) {
     report.display = "maps";
     report.map_error = maps->error;
     report.map_texels = maps->nodes.light.size();
   }
-  report.light_problem = show.light_problem;
-  if (show.baker) report.bake = show.baker->status();
-  for (const Kiosk& kiosk : show.kiosks) {
+  report.light_problem = show.stage.light_problem;
+  if (show.stage.baker) report.bake = show.stage.baker->status();
+  for (const Kiosk& kiosk : show.kiosks.all) {
     report.kiosks.push_back({kiosk.settings.name, kiosk.stage.now, kiosk.audience.guests.size(),
-                             show.her_kiosk == kiosk.settings.name});
+                             show.kiosks.her_kiosk == kiosk.settings.name});
     KioskReport& one = report.kiosks.back();
-    one.screens = int(std::ranges::count_if(show.visitors, [&](const Visitor& visitor) {
+    one.screens = int(std::ranges::count_if(show.visits.visitors, [&](const Visitor& visitor) {
       return visitor.welcomed && kiosk_of(show, visitor) == &kiosk;
     }));
     one.cameras = int(std::ranges::count_if(
-        show.eyes, [&](const Eye& eye) { return eye.kiosk == one.name && !is_lost(eye); }));
+        show.kiosks.eyes, [&](const Eye& eye) { return eye.kiosk == one.name && !is_lost(eye); }));
     report.audience = std::max(report.audience, kiosk.audience.state);
   }
-  report.open = show.house.open;
-  report.quiet = show.house.quiet;
-  report.connected_cameras = int(connected_cameras(show));
-  for (const Eye& eye : show.eyes) report.cameras.push_back(report_camera(eye, show.time));
-  report.mood = show.teller.mind.mood;
+  report.open = show.house.state.open;
+  report.quiet = show.house.state.quiet;
+  report.connected_cameras = int(connected_cameras(show.kiosks));
+  for (const Eye& eye : show.kiosks.eyes) report.cameras.push_back(report_camera(eye, show.time));
+  report.mood = show.cast.teller.mind.mood;
   report.totals = show.totals;
-  if (show.speech.counts) {
-    Speaker::Counts counts = show.speech.counts();
+  if (show.cast.speech.counts) {
+    Speaker::Counts counts = show.cast.speech.counts();
     report.voice_running = counts.process_id != 0;
     report.voice_restarts = counts.starts > 0 ? counts.starts - 1 : 0;
     report.voice_lines = counts.kept;
     report.voice_waiting = counts.waiting;
     report.voice_failed = counts.failed;
   }
-  for (const Visitor& visitor : show.visitors) {
-    const CacheStats& stats = visitor.picture.stats;
+  for (const Visitor& visitor : show.visits.visitors) {
+    const CacheStats& stats = visitor.picture->stats;
     VisitorReport one;
     one.id = visitor.link->id;
     one.width = visitor.wants.width;
     one.height = visitor.wants.height;
-    one.budget = visitor.picture.job.samples;
+    one.budget = visitor.picture->job.samples;
     one.drawing_ms = visitor.times.drawing;
-    const PicturePlan plan = picture_plan(show, visitor);
+    const PicturePlan plan = picture_plan(show.settings, visitor);
     one.quality = plan.quality;
     one.eighths = plan.eighths;
     one.limit = limit(visitor.shown.way);
@@ -89,7 +91,7 @@ ShowReport make_report(const Show& show) {
     one.tonemap_ms = visitor.times.tonemap;
     one.encode_ms = visitor.times.encode;
     one.decode_ms = visitor.shown.flow.decode_ms;
-    one.drawn_fps = visitor.picture.drawn_fps;
+    one.drawn_fps = visitor.picture->drawn_fps;
     one.warp_ms = visitor.times.warp;
     one.moving_ms = visitor.times.moving;
     one.whole_ms = visitor.times.whole;
@@ -97,8 +99,8 @@ ShowReport make_report(const Show& show) {
     one.empty = stats.empty;
     one.converged = stats.converged;
     one.mean_age = stats.mean_age;
-    one.cache_bytes = visitor.picture.cache_bytes;
-    one.memory_bytes = visitor.picture.memory_bytes;
+    one.cache_bytes = visitor.picture->cache_bytes;
+    one.memory_bytes = visitor.picture->memory_bytes;
     one.dropped = visitor.link->pictures_dropped();
     one.sounds_dropped = visitor.link->sounds_dropped();
     one.texts_dropped = visitor.link->texts_dropped();

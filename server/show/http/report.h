@@ -8,8 +8,8 @@
 
 #include "avatar/mind/storyteller_io.h"
 #include "show/kiosk/kiosk.h"
-#include "show/state/baker.h"
-#include "show/state/show.h"
+#include "show/house/house.h"
+#include "show/state/totals.h"
 #include "show/visit/flow.h"
 #include "wire/messages.h"
 
@@ -21,7 +21,7 @@ struct VisitorReport {
   float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, drawing_ms = 0, tonemap_ms = 0,
         encode_ms = 0,
         decode_ms = 0;               // the last: as the browser measures it
-  int eighths = 8;                   // of the width and height asked for
+  int eighths = 8;                   // part of the width and height asked for
   Limit limit = Limit::none;         // why pictures are fewer, or less fine, than asked for
   float line_ms = 0, line_rate = 0;  // there and back; bytes a second; 0: not known
   float drawn_fps = 0, warp_ms = 0, moving_ms = 0, whole_ms = 0;
@@ -52,7 +52,7 @@ struct CameraReport {
   EyeNetworks networks = EyeNetworks::all;
 };
 
-// Of the server's sockets, since the start.
+// Counts what the server's sockets did since the start.
 struct DoorCounts {
   uint64_t floods_closed = 0;  // connections, for sending more than any page does
   uint64_t accept_errors = 0;  // times that a connection could not be taken
@@ -68,27 +68,27 @@ struct ShowReport {
   std::vector<KioskReport> kiosks;
   bool open = true, quiet = false;  // the house is
   int connected_cameras = 0;
-  std::vector<CameraReport> cameras;     // of those, and some that were until a short time ago
+  std::vector<CameraReport> cameras;     // those, and some that were until a short time ago
   Presence audience = Presence::absent;  // before all of these
-  Mood mood = Mood::idle;                // of the storyteller
+  Mood mood = Mood::idle;                // mood of the storyteller
   ShowTotals totals;
   const char* display = "points";  // how visitors' pictures get their diffuse light
-  float map_error = 1;             // of the illumination maps in use; 1: there are none
+  float map_error = 1;             // error of the illumination maps in use; 1: there are none
   size_t map_texels = 0;
-  std::string light_problem;  // of the package's own light; empty: none
+  std::string light_problem;  // problem with the package's own light; empty: none
   BakerStatus bake;
   bool voice_running = false;
   uint64_t voice_restarts = 0, voice_lines = 0, voice_waiting = 0, voice_failed = 0;
   std::vector<VisitorReport> visitors;
-  size_t all_visitors = 0;      // of all exhibits of the process, who share its cores
+  size_t all_visitors = 0;      // visitors of all exhibits of the process, who share its cores
   size_t exhibit_problems = 0;  // Show::problems
-  // Of all exhibits of the process; who knows it sets it, in the report of the first.
+  // The following values count all exhibits of the process; the report of the first holds them.
   size_t waiting = 0;        // visitors for whom there is no seat yet
   uint64_t turned_away = 0;  // since so many waited already
   std::string sums_problem;  // why the ledger cannot be written; whoever has one sets it
   DoorCounts doors;          // likewise
-  std::vector<std::string> damaged_files;  // of the cache (base/write_file.h); likewise
-  std::vector<std::string> full_disks;     // what cannot be written; likewise
+  std::vector<std::string> damaged_files;  // files of the cache (base/write_file.h); likewise
+  std::vector<std::string> full_disks;     // places that cannot be written; likewise
 };
 
 // One writer, many readers; the lock is held for a copy.

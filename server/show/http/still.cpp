@@ -9,10 +9,13 @@
 #include <vector>
 
 #include "denoise/denoise.h"
+#include "frame/frame.h"
 #include "frame/tonemap.h"
 #include "image/image.h"
+#include "light/technique/technique.h"
 #include "light/visible/guides.h"
 #include "show/exhibit/exhibit_lights.h"
+#include "show/state/show.h"
 #include "wire/limits.h"
 
 namespace wellspring::show {
@@ -27,105 +30,133 @@ struct GivenUp {};
 
 }  // namespace
 
+// Holds what pictures are made from.
+struct StillRoom::Scenery {
+  Scenery(const Show& show, std::function<double()> clock);
+  std::optional<Frame> trace(const View& view, const StillJob& order, double seconds,
+                             const std::function<bool()>& given_up, StillCosts& costs) const;
+  std::optional<Frame> render(const StillJob& order, const std::function<bool()>& given_up,
+                              double denoise_seconds, StillCosts& costs,
+                              StillPicture& picture) const;
+  std::string comment(const StillPicture& picture) const;
+
+  const Exhibit& exhibit;
+  const Technique* technique;
+  TransportSettings transport;
+  std::string weights;
+  std::unique_ptr<World> world;
+  Lights lights;
+  std::function<double()> clock;
+};
+
 StillRoom::StillRoom(const Show& show, std::function<double()> clock)
-    : exhibit_(show.exhibit),
-      technique_(show.lights.known ? show.technique : show.still_technique),
-      transport_(show.settings.transport),
-      weights_(show.settings.weights),
-      clock_(std::move(clock)) {
+    : scenery_(std::make_unique<Scenery>(show, std::move(clock))) {}
+
+StillRoom::~StillRoom() = default;
+
+bool StillRoom::denoises() const { return !scenery_->weights.empty(); }
+
+StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_clock)
+    : exhibit(show.stage.exhibit),
+      technique(show.stage.lights.known ? show.stage.technique : show.stage.still_technique),
+      transport(show.settings.transport),
+      weights(show.settings.weights),
+      clock(std::move(given_clock)) {
   // The moving meshes as they are now: at the show's start.
   std::vector<Mesh> moving;
   std::vector<uint32_t> moving_object;
-  const int first = int(exhibit_.scene.instances.size()), count = show.world->instance_count();
+  const int first = int(exhibit.scene.instances.size()), count = show.stage.world->instance_count();
   for (int i = first; i < count; i++) {
-    moving.push_back(show.world->mesh_of(uint32_t(i)));
-    moving_object.push_back(show.world->object_of(uint32_t(i)));
+    moving.push_back(show.stage.world->mesh_of(uint32_t(i)));
+    moving_object.push_back(show.stage.world->object_of(uint32_t(i)));
   }
-  world_ = std::make_unique<World>(exhibit_.scene, std::move(moving), std::move(moving_object));
+  world = std::make_unique<World>(exhibit.scene, std::move(moving), std::move(moving_object));
   for (int i = first; i < count; i++)  // one storyteller at a time
-    world_->show(i - first, show.world->is_visible(uint32_t(i)));
-  world_->commit();
-  const LampLevels levels = first_levels(exhibit_);
-  for (size_t i = 0; i < levels.size(); i++) world_->set_lamp(int(i), levels[i]);
+    world->show(i - first, show.stage.world->is_visible(uint32_t(i)));
+  world->commit();
+  const LampLevels levels = first_levels(exhibit);
+  for (size_t i = 0; i < levels.size(); i++) world->set_lamp(int(i), levels[i]);
   std::vector<PunctualLight> moving_lights;  // as they are at the show's start, too
-  for (const ChangingLight& light : exhibit_.lights) {
+  for (const ChangingLight& light : exhibit.lights) {
     moving_lights.push_back(eval_light(light, 0));
     if (light.lamp >= 0)
       moving_lights.back().intensity *= brightness_of(levels[size_t(light.lamp)]);
   }
-  lights_ = make_lights(*world_, moving_lights);
-  lights_.lamps_seen = show.lights.lamps_seen;
-  const bool switched = !levels.empty() && show.switches.all.known;
-  lights_.known = switched ? relit(*show.switches.all.known, levels) : show.lights.known;
-  if (!lights_.known) transport_.clamp = 0;  // it is the reference
+  lights = make_lights(*world, moving_lights);
+  lights.lamps_seen = show.stage.lights.lamps_seen;
+  const bool switched = !levels.empty() && show.stage.switches.all.known;
+  lights.known = switched ? relit(*show.stage.switches.all.known, levels) : show.stage.lights.known;
+  if (!lights.known) transport.clamp = 0;  // it is the reference
 }
 
 // One sample a pixel, and as many more as there is time for by what that took.
-std::optional<Frame> StillRoom::trace(const View& view, const StillJob& order, double seconds,
-                                      const std::function<bool()>& given_up,
-                                      StillCosts& costs) const {
+std::optional<Frame> StillRoom::Scenery::trace(const View& view, const StillJob& order,
+                                               double seconds,
+                                               const std::function<bool()>& given_up,
+                                               StillCosts& costs) const {
   StillSettings settings;
   settings.spp = 1;
-  settings.transport = transport_;
+  settings.transport = transport;
   settings.progress = [&](double) {
     if (given_up && given_up()) throw GivenUp{};
   };
-  const double began = clock_();
+  const double began = clock();
   Frame frame;
   try {
-    frame = render_still(*technique_, *world_, lights_, view, settings);
-    const double each = clock_() - began;
+    frame = render_still(*technique, *world, lights, view, settings);
+    const double each = clock() - began;
     const int most = order.spp > 0 ? order.spp : max_still_spp;
     const double fit = each > 0 ? (seconds - each) / each : most;
     const int more = int(std::clamp(fit, 0.0, double(most - 1)));
     if (more > 0) {
       settings.spp = more;
       settings.seed++;
-      const Frame others = render_still(*technique_, *world_, lights_, view, settings);
+      const Frame others = render_still(*technique, *world, lights, view, settings);
       for (size_t i = 0; i < frame.color.size(); i++)
         frame.color[i] = (frame.color[i] + float(more) * others.color[i]) / float(1 + more);
     }
     costs.spp = 1 + more;
   } catch (const GivenUp&) {}
-  costs.trace_seconds = clock_() - began;
+  costs.trace_seconds = clock() - began;
   if (costs.spp == 0) return {};
   return frame;
 }
 
-std::optional<Frame> StillRoom::render(const StillJob& order, const std::function<bool()>& given_up,
-                                       double denoise_seconds, StillCosts& costs,
-                                       StillPicture& picture) const {
-  Viewpoint at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
+std::optional<Frame> StillRoom::Scenery::render(const StillJob& order,
+                                                const std::function<bool()>& given_up,
+                                                double denoise_seconds, StillCosts& costs,
+                                                StillPicture& picture) const {
+  Viewpoint at = exhibit.viewpoints[size_t(order.viewpoint)].view;
   at.position = order.position.value_or(at.position);
   at.yaw = order.yaw.value_or(at.yaw);
   at.pitch = order.pitch.value_or(at.pitch);
   at.roll = order.roll.value_or(at.roll);
   at.fov = order.fov.value_or(at.fov);
-  View view = make_view(exhibit_.scene, at, order.width, order.height);
+  View view = make_view(exhibit.scene, at, order.width, order.height);
   auto frame = trace(view, order, order.seconds - denoise_seconds, given_up, costs);
   if (!frame) return {};
   picture.spp = costs.spp;
   if (!order.denoise) return frame;
-  const double began = clock_();
+  const double began = clock();
   std::string problem;
-  auto denoiser = denoises() ? load_denoiser(still_net, problem, weights_) : nullptr;
+  auto denoiser = !weights.empty() ? load_denoiser(still_net, problem, weights) : nullptr;
   if (!denoiser) {
     picture.denoised = StillPicture::Denoised::no_weights;
     return frame;
   }
-  GuidePlanes guides = make_guides(*world_, lights_, view);
+  GuidePlanes guides = make_guides(*world, lights, view);
   denoiser->start({view.width, view.height, frame->color, guides.albedo, guides.normal});
   while (denoiser->advance(slice))
     if (given_up && given_up()) return {};
   denoiser->finish(frame->color);
-  costs.denoise_seconds = clock_() - began;
+  costs.denoise_seconds = clock() - began;
   picture.denoised = StillPicture::Denoised::yes;
   return frame;
 }
 
-std::string StillRoom::comment(const StillPicture& picture) const {
+std::string StillRoom::Scenery::comment(const StillPicture& picture) const {
   const std::string samples =
-      std::to_string(picture.spp) + " samples a pixel by " + technique_->name;
+      std::to_string(picture.spp) + " samples a pixel by " + technique->name;
   switch (picture.denoised) {
     case StillPicture::Denoised::yes:
       return samples + ", denoised by the network " + net_name(still_net);
@@ -140,8 +171,8 @@ StillCosts StillRoom::measure(const StillJob& order) {
   StillPicture picture;
   oneapi::tbb::task_arena arena(1, 1, oneapi::tbb::task_arena::priority::low);
   arena.execute([&] {
-    render(order, {}, 0, costs, picture);  // what it needs is at hand then
-    render(order, {}, 0, costs, picture);
+    scenery_->render(order, {}, 0, costs, picture);  // brings what the measured one needs
+    scenery_->render(order, {}, 0, costs, picture);
   });
   return costs;
 }
@@ -162,12 +193,13 @@ StillPicture StillRoom::make(const StillJob& order, const std::function<bool()>&
   oneapi::tbb::task_arena arena(cores, 1, oneapi::tbb::task_arena::priority::low);
   StillPicture picture;
   arena.execute([&] {
-    const std::optional<Frame> frame = render(order, given_up, denoise_seconds, spent, picture);
+    const std::optional<Frame> frame =
+        scenery_->render(order, given_up, denoise_seconds, spent, picture);
     if (!frame) return;
     Image8 image;
-    tonemap(*frame, Tonemap{exhibit_.exposure}, image);
+    tonemap(*frame, Tonemap{scenery_->exhibit.exposure}, image);
     encode_jpeg(image, still_jpeg_quality, true, bytes);
-    add_jpeg_comment(comment(picture), bytes);
+    add_jpeg_comment(scenery_->comment(picture), bytes);
   });
   if (costs) *costs = spent;
   if (bytes.empty()) return {};

@@ -7,21 +7,24 @@
 #include <functional>
 #include <list>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include "base/clock.h"
 #include "show/exhibit/exhibit.h"
-#include "show/state/show.h"
 
 namespace wellspring::show {
 
+struct Show;  // show/state/show.h
+
 struct StillJob {
   int viewpoint = 0, width = 640, height = 360;
-  double seconds = 8;   // of the thread that makes it, unless one sample a pixel takes longer
-  int spp = 0;          // samples a pixel at most; 0: as many as fit
-  bool denoise = true;  // where there are weights
+  double seconds =
+      8;        // seconds of the thread that makes it, unless one sample a pixel takes longer
+  int spp = 0;  // samples a pixel at most; 0: as many as fit
+  bool denoise = true;  // by the network, if there are weights
   // In place of the viewpoint's own; metres, radians.
   std::optional<dvec3> position;
   std::optional<float> yaw, pitch, roll, fov;
@@ -38,7 +41,8 @@ struct StillPicture {
   enum class Denoised : uint8_t { yes, not_asked, no_weights } denoised = Denoised::not_asked;
 };
 
-// What pictures take: seconds of the thread that makes them, so that others' work does not count.
+// Holds the costs of pictures in seconds of the thread that makes them, so that others' work does
+// not count.
 struct StillCosts {
   double trace_seconds = 0, denoise_seconds = 0;  // the latter without samples: guides, network
   int spp = 0;                                    // samples a pixel in the former
@@ -51,34 +55,24 @@ class StillRoom {
   // still.cpp.
   // `clock`: seconds that its time is taken by.
   explicit StillRoom(const Show& show, std::function<double()> clock = thread_seconds_now);
+  ~StillRoom();
   // A JPEG, whose comment says what it has, on at most `cores`. Empty: given up, as `given_up` (any
   // thread, every few milliseconds) said so. `denoise_seconds`: of its time that are kept for that.
   StillPicture make(const StillJob& order, const std::function<bool()>& given_up = {},
                     int cores = 1, double denoise_seconds = 0, StillCosts* costs = nullptr);
-  // Of a small picture that is made, and not remembered.
+  // Measures the costs of a small picture, which is made and not remembered.
   StillCosts measure(const StillJob& order);
   std::optional<StillPicture> find(const StillJob& order);  // among those that are remembered
-  bool denoises() const { return !weights_.empty(); }
+  bool denoises() const;
 
  private:
   struct Kept {
     StillJob order;
     StillPicture picture;
   };
-  std::optional<Frame> trace(const View& view, const StillJob& order, double seconds,
-                             const std::function<bool()>& given_up, StillCosts& costs) const;
-  std::optional<Frame> render(const StillJob& order, const std::function<bool()>& given_up,
-                              double denoise_seconds, StillCosts& costs,
-                              StillPicture& picture) const;
-  std::string comment(const StillPicture& picture) const;
-  const Exhibit& exhibit_;
-  const Technique* technique_;
-  TransportSettings transport_;
-  std::string weights_;
-  std::unique_ptr<World> world_;
-  Lights lights_;
-  const std::function<double()> clock_;
-  std::mutex mutex_;      // of what follows
+  struct Scenery;
+  std::unique_ptr<Scenery> scenery_;
+  std::mutex mutex_;      // guards the members below
   std::list<Kept> kept_;  // newest first
 };
 
@@ -86,8 +80,8 @@ class StillRoom {
 
 struct StillQuestion {
   StillJob job;
-  int status = 200;           // of HTTP; 200: `job` may be done
-  std::string code, problem;  // what is wrong with it otherwise, and with which field
+  int status = 200;           // status of HTTP; 200: `job` may be done
+  std::string code, problem;  // otherwise the fault, and its field
 };
 
 StillQuestion read_still_question(const Exhibit& exhibit,

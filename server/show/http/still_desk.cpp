@@ -16,9 +16,9 @@ namespace wellspring::show {
 
 namespace {
 
-constexpr double look_every = 0.25;      // seconds: whether those who wait are still there
-constexpr int low_priority = 10;         // of the threads: where cores are short, a tenth of one
-constexpr float newest_share = 0.3f;     // of the speed that is told by the last picture
+constexpr double look_every = 0.25;   // seconds: whether those who wait are still there
+constexpr int low_priority = 10;      // priority of the threads: if cores are short, a tenth of one
+constexpr float newest_share = 0.3f;  // weight of the last picture in the speed
 constexpr double unknown_network = 4e5;  // pixels a second, until it was measured
 
 void smooth_speed(double& speed, double measured) {
@@ -233,7 +233,7 @@ bool StillDesk::make_next(std::unique_lock<std::mutex>& lock, double most) {
 }
 
 void StillDesk::live(double most) {
-  setpriority(PRIO_PROCESS, 0, low_priority);  // of this thread alone, on Linux
+  setpriority(PRIO_PROCESS, 0, low_priority);  // sets this thread's alone, on Linux
   std::unique_lock lock(mutex_);
   while (!closed_) {
     drop_gone();

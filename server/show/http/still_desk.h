@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where finished pictures are asked for. One is made at a time, and beside it a cheap one, at low
-// priority, and while visitors need the cores by one thread each; equal questions share one. What a
-// picture costs is known before it is begun, in seconds of this machine: those that it is given, or
-// fewer or more by the speed that earlier ones had. They bound who may ask for what:
+// Makes the finished pictures that are asked for over HTTP. One is made at a time, and beside it a
+// cheap one, at low priority, and while visitors need the cores by one thread each; equal questions
+// share one. The cost of a picture is known before it is begun, in seconds of this machine: those
+// that it is given, or fewer or more by the speed that earlier ones had. Costs bound requests:
 //
 // - one that takes too long with a single sample a pixel is refused, and told what would fit;
 // - each address, and all together, have so many seconds, which come back slowly;
@@ -25,14 +25,14 @@
 namespace wellspring::show {
 
 struct StillLimits {
-  double most_seconds = 120;    // of the machine, for one picture
+  double most_seconds = 120;    // time of the machine, for one picture
   double cheap_seconds = 4;     // up to which a picture never waits for a dearer one
   double address_rate = 0.25;   // seconds of the machine that come back each second, to an address
-  double address_pictures = 2;  // of the dearest, at once after a pause
+  double address_pictures = 2;  // number of the dearest, at once after a pause
   double all_rate = 0.5;        // likewise, to all together
   double all_pictures = 10;
   size_t most_waiting = 64;
-  size_t most_addresses = 4096;  // that are remembered
+  size_t most_addresses = 4096;  // addresses that are remembered
 };
 
 struct StillOutcome {
@@ -44,8 +44,8 @@ struct StillOutcome {
 
 struct StillStatus {  // since the start, but for the first three: now
   size_t waiting = 0;
-  double waiting_seconds = 0;     // of the machine, until all of these are made
-  double samples_per_second = 0;  // of the last scene
+  double waiting_seconds = 0;     // time of the machine until all of these are made
+  double samples_per_second = 0;  // speed in the last scene
   uint64_t made = 0, shared = 0;  // shared: answered by a picture that was there, or being made
   uint64_t too_dear = 0, too_many = 0, given_up = 0;
 };
@@ -78,7 +78,7 @@ class StillDesk {
     StillRoom* room = nullptr;
     StillJob job;
     double cost = 0, since = 0;  // seconds of the machine; when it was asked for
-    double denoise_seconds = 0;  // of its cost
+    double denoise_seconds = 0;  // share of its cost
     std::vector<Asker> askers;
   };
   // Whose pictures a thread makes: of at most so many seconds.
@@ -94,9 +94,10 @@ class StillDesk {
   const StillLimits limits_;
   const std::function<bool()> busy_;
   std::mutex measuring_;
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
-  std::map<StillRoom*, Speed> speeds_;  // of rooms that have gone, too: never read but as a guess
+  std::map<StillRoom*, Speed>
+      speeds_;  // speeds of rooms that have gone, too: never read but as a guess
   std::list<Ticket> waiting_;
   std::list<Ticket> current_;  // at work
   std::map<std::string, RateBound> addresses_;

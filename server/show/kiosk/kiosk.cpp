@@ -92,7 +92,7 @@ constexpr vec3 slack{0.03f, 0.03f, 0.06f};
 // Shares of half the picture that what is far away shifts at most: what the viewpoint shows in its
 // middle stays well in the picture.
 constexpr float most_shift = 0.5f;
-constexpr float nearest = 0.75f, farthest = 1.25f;  // of the distance at rest
+constexpr float nearest = 0.75f, farthest = 1.25f;  // shares of the distance at rest
 constexpr float most_aside = 0.4f;                  // metres
 constexpr float least_distance = 0.2f;              // metres of a head from the screen
 

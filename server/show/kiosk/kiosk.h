@@ -26,9 +26,10 @@ namespace wellspring::show {
 //   farewell -> person       a head or a touch: the same visit goes on
 //   farewell -> awake, sleep      its time is over; something moved meanwhile, or nothing
 //
-// Gone: no head for hold_person, or for leave_after while engaged, and no touch meanwhile. A guest
-// who touches where no camera has a head, or none works, is gone without touches for
-// leave_untouched, while something plays leave_playing. Where the house closes, all are gone.
+// A guest is gone without a head for hold_person, or for leave_after while engaged, and without a
+// touch meanwhile. A guest who touches where no camera has a head, or none works, is gone without
+// touches for leave_untouched, while something plays leave_playing. All are gone when the house
+// closes.
 
 enum class Stage : uint8_t { sleep, awake, person, engaged, farewell };
 const char* to_string(Stage stage);
@@ -48,7 +49,7 @@ struct StageInput {
 struct StageState {
   Stage now = Stage::sleep;
   double since = 0;  // time of the last change
-  double time = 0;   // of the last step
+  double time = 0;   // time of the last step
   double last_motion = -1e9, last_head = -1e9, last_touch = -1e9;
   double camera_since = -1e9;    // from when a camera sees
   std::optional<double> parted;  // when the farewell began that is going on or led here
@@ -69,20 +70,20 @@ inline bool is_visit(Stage stage) { return has_guest(stage) || stage == Stage::f
 // Projection", 2008). Places before the screen are metres from its middle: to the right, up, away
 // from it.
 
-// Where a page's picture is seen from. A plain value.
+// Holds the place that a page's picture is seen from. It is a plain value.
 struct WindowEye {
   vec3 place{0};         // metres to the right of, above and behind the kiosk's viewpoint
   vec3 speed{0};         // metres a second
-  vec3 aim{0};           // where it glides to, as `place`
-  vec3 head{0};          // that is followed, before the screen
+  vec3 aim{0};           // place to which it glides, as `place`
+  vec3 head{0};          // head that it follows, before the screen
   bool follows = false;  // a head
   int watching = 0;      // heads near by: 0, 1, 2 or more
   float since = 0;       // seconds for which there have been as many
   bool operator==(const WindowEye&) const = default;
 };
 
-// Height of the picture, which covers the screen, in metres. Of a screen of unknown size: as high
-// as seen from viewing_distance.
+// Returns the height of the picture, which covers the screen, in metres. A screen of unknown size
+// is taken to be as high as seen from viewing_distance.
 float picture_height(const ScreenSize& screen, const View& rest);
 // How far before the screen the picture of the viewpoint is right: `rest`.
 float rest_distance(const ScreenSize& screen, const View& rest);
@@ -98,10 +99,10 @@ void watch_heads(WindowEye& eye, std::span<const vec3> heads, const ScreenSize& 
 // Stands still where it arrives. dt: seconds, 0 or more.
 void move_eye(WindowEye& eye, float dt);
 
-// What is seen through the screen from that place; `rest` where it is 0.
+// Returns the view through the screen from that place; `rest` if it is 0.
 View through_window(const View& rest, const ScreenSize& screen, vec3 place);
 
-// What is known of the guests of one visit, and forgotten when it ends.
+// Holds what is known of the guests of one visit; it is forgotten when the visit ends.
 struct KioskVisit {
   double began = 0;  // show time
   bool greeted = false;
@@ -112,18 +113,19 @@ struct KioskVisit {
 
 struct Kiosk {
   KioskSettings settings;
-  Audience audience;  // of its own cameras
+  Audience audience;  // people before its own cameras
   StageState stage;
-  bool changed = false;             // its stage, in the last step
-  Showing showing = Showing::well;  // of its page
+  bool changed = false;             // its stage did, in the last step
+  Showing showing = Showing::well;  // shown by its page
   KioskVisit visit;
-  std::vector<std::pair<uint64_t, std::string>> gestures;  // of its guests, by their ids, last tick
-  std::string gesture;                                     // the last that was handed to its page
-  uint32_t gesture_number = 0;                             // of that one; 0: none yet
-  std::string message;                                     // the last that its pages were sent
+  std::vector<std::pair<uint64_t, std::string>>
+      gestures;                 // last tick's gestures of its guests, by their ids
+  std::string gesture;          // the last that was handed to its page
+  uint32_t gesture_number = 0;  // number of that one; 0: none yet
+  std::string message;          // the last that its pages were sent
 };
 
-// What its page says.
+// Holds what its page says.
 struct KioskInput {
   bool touched = false, busy = false, playing = false;  // StageInput
   Showing showing = Showing::well;
@@ -140,7 +142,7 @@ std::vector<Guest> guests_of(const Kiosk& kiosk, const View& window);
 // Whether a page that shows this turns its pages by gestures itself.
 bool turns_pages(Showing showing);
 
-// What its cameras are to tell. `here`: the storyteller is; `page`: there is one.
+// Says what its cameras are to tell. `here`: the storyteller is; `page`: there is one.
 EyeNeeds needs_of(const Kiosk& kiosk, bool here, bool page);
 
 }  // namespace wellspring::show

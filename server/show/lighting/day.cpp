@@ -81,9 +81,10 @@ PunctualLight eval_light(const ChangingLight& light, double time) {
 namespace {
 
 constexpr double pi_ = 3.14159265358979323846;
-constexpr double tropic = 23.44 * pi_ / 180;  // of Cancer: no season has the sun farther from 0
+constexpr double tropic =
+    23.44 * pi_ / 180;  // Tropic of Cancer: no season has the sun farther from 0
 constexpr double tropic_slack = 0.1 * pi_ / 180;
-constexpr double minutes = 60;  // of an hour
+constexpr double minutes = 60;  // minutes of an hour
 
 double hour_angle(double hour) { return (hour - 12) * pi_ / 12; }
 
@@ -98,7 +99,7 @@ Height height_of(double latitude, double declination, double hour) {
           std::atan2(-cd * std::sin(h), cl * sd - sl * cd * std::cos(h))};
 }
 
-// Of the scene's sun; azimuth clockwise from -Z.
+// Returns the height of the scene's sun; azimuth clockwise from -Z.
 Height height_of(const PunctualLight& sun) {
   const dvec3 to = -dvec3(sun.direction);
   return {std::asin(std::clamp(to.y, -1.0, 1.0)), std::atan2(to.x, -to.z)};

@@ -43,9 +43,9 @@ struct TrackKey {
 };
 
 struct ChangingLight {
-  std::string name;     // of no other one; makes its flicker another than that of others
+  std::string name;     // its own name, which makes its flicker another than that of others
   PunctualLight light;  // without flicker and track
-  int lamp = -1;        // of Scene::lamps: it shines while that is on; -1: always
+  int lamp = -1;        // index into Scene::lamps: it shines while that is on; -1: always
   int of_scene = -1;    // its place in Scene::lights; -1: it is not there (any more)
   Flicker flicker;
   std::vector<TrackKey> track;  // empty: it stands still; times rise by 1 / most_turns or more
@@ -70,11 +70,11 @@ struct DaySettings {
 
 struct Day {
   DaySettings settings;
-  PunctualLight sun;  // of the scene, at its own hour
-  int lamp = -1;      // of Scene::lamps: all daylight but the sun
+  PunctualLight sun;  // the scene's, at its own hour
+  int lamp = -1;      // index into Scene::lamps: all daylight but the sun
   int sun_lamp = -1;  // likewise: the sun alone
   // Radians.
-  double declination = 0;  // of the sun: the season
+  double declination = 0;  // declination of the sun: the season
   double turn = 0;         // from north to -Z, clockwise seen from above
   // By the sun's height, rising.
   std::vector<double> elevations;  // degrees
@@ -83,7 +83,7 @@ struct Day {
 
 // Why the sun of the scene cannot stand so at that hour; empty: it can.
 std::string day_problem(const DaySettings& settings, const PunctualLight& sun);
-// Of settings without a problem. A tenth of a second.
+// Makes the day from settings without a problem. This takes a tenth of a second.
 Day make_day(const DaySettings& settings, const PunctualLight& sun);
 
 // The hour as one of the day's, whole minutes. Nothing: the exhibit's own hour.
@@ -92,11 +92,12 @@ std::optional<double> hour_of_day(const Day& day, double hour);
 // Towards the sun, unit.
 dvec3 eval_sun_place(const Day& day, double hour);
 PunctualLight eval_sun(const Day& day, double hour);
-// Of the sky, times that of the exhibit's own hour, at most 1.
+// Returns the light of the sky, times that of the exhibit's own hour, at most 1.
 float eval_sky(const Day& day, double hour);
 
-// Of the scene's lamps, where `on` says which of the exhibit's are on, at an hour of the day
-// (nothing: the exhibit's own). At another one the scene's sun is off: it stands elsewhere then.
+// Returns the levels of the scene's lamps, if `on` says which of the exhibit's are on, at an hour
+// of the day (nothing: the exhibit's own). At another one the scene's sun is off: it stands
+// elsewhere then.
 LampLevels lamp_levels(const std::optional<Day>& day, std::span<const char> on,
                        std::optional<double> hour);
 

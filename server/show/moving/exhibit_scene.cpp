@@ -14,9 +14,9 @@ namespace wellspring::show {
 
 namespace {
 
-constexpr int reach_steps = 24;  // of an animation, at which its reach is measured
+constexpr int reach_steps = 24;  // times of an animation at which its reach is measured
 
-// Of each clip of a motion, from those of the exhibit's animations.
+// Returns the time of each clip of a motion, from those of the exhibit's animations.
 std::vector<double> clip_times(const Exhibit& exhibit, int motion,
                                const std::vector<double>& times) {
   std::vector<double> of(exhibit.scene.motions[size_t(motion)].of->clips.size(), -1);

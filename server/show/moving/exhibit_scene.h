@@ -6,19 +6,19 @@
 
 namespace wellspring::show {
 
-// What the exhibit's animations move, in a World: a moving mesh each.
+// The exhibit's animations move these in a World: a moving mesh each.
 
-// Where something may be while it moves, relative to the scene's origin.
+// Bounds the places of something while it moves, relative to the scene's origin.
 struct Reach {
   vec3 centre{0};
   float radius = 0;  // metres; 0: nothing moves
 };
 
 struct Movers {
-  std::vector<int> moving;     // of each of Exhibit::movers, which of the World's moving meshes
-  std::vector<Reach> reach;    // of each of Exhibit::animations
+  std::vector<int> moving;     // for each of Exhibit::movers one of the World's moving meshes
+  std::vector<Reach> reach;    // one for each of Exhibit::animations
   std::vector<double> posed;   // the times of these for which the world stands
-  std::vector<char> mirrored;  // of each mover: its mesh was turned round when the world was made
+  std::vector<char> mirrored;  // for each mover: its mesh was turned round when the world was made
   bool empty() const { return moving.empty(); }
 };
 
@@ -37,7 +37,7 @@ Mesh mover_mesh(const Exhibit& exhibit, size_t mover, const std::vector<double>&
 // How far an animation has come. One that loops runs by the show's clock; one that is started by
 // touch runs to its end and stays there, until it is touched again and runs back.
 
-// Of an animation that is started by touch. Times are show times.
+// Holds the state of an animation that is started by touch. Times are show times.
 struct Play {
   bool on = false;      // it is at its end, or on the way there
   double from = 0;      // seconds of the animation, at the last touch

@@ -12,18 +12,18 @@ namespace wellspring::show {
 
 struct FigurePart {
   int moving = 0;                  // which of the World's moving meshes
-  std::vector<uint32_t> vertices;  // of the character, in the mesh's order
+  std::vector<uint32_t> vertices;  // vertices of the character, in the mesh's order
 };
 
 // A look that expressions change, as it is now.
 struct FigurePaint {
-  int appearance = 0, material = 0;  // of the character, of the scene
+  int appearance = 0, material = 0;  // indices into the character's, into the scene's
   Repaint change;
 };
 
 struct Figure {
   std::vector<FigurePart> parts;
-  std::vector<FigurePaint> paints;  // of the looks in use alone
+  std::vector<FigurePaint> paints;  // paints of the looks in use alone
   uint32_t object = 0;              // in Scene::objects, named as the character
   // Working memory of pose_figure.
   std::vector<vec3> positions, normals, part_positions, part_normals;

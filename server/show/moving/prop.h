@@ -11,7 +11,7 @@ struct PropPart {
   int moving = 0;                        // which of the World's moving meshes
   std::vector<vec3> positions, normals;  // in the fist's frame (avatar/body/hold.h)
   bool shines = false;                   // it is seen to emit: a flame
-  vec3 foot{0};                          // of a flame: it grows from here, along the fist's y
+  vec3 foot{0};  // foot of a flame, which grows from here along the fist's y
   bool shown = false;
 };
 

@@ -86,9 +86,9 @@ namespace {
 
 constexpr float k1 = 1.2f, b = 0.75f;  // as the source recommends
 constexpr float title_weight = 2,
-                further_weight = 1.5f;  // of a word there, against one that is said
-constexpr float next_weight = 0.4f;     // of one in a story's next sentence
-// Of the score: of what was written as an answer, of what explains, of a part of what is narrated.
+                further_weight = 1.5f;  // weights of a word there, against one that is said
+constexpr float next_weight = 0.4f;     // weight of a word in a story's next sentence
+// The score is multiplied by these for a written answer, an explanation, a part of a narration.
 constexpr float answer_weight = 1.5f, explains_weight = 1.25f, narrates_weight = 1;
 constexpr float sure_share = 0.5f, partly_share = 0.25f;
 

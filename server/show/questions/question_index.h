@@ -30,8 +30,8 @@ std::string_view stop_words_json();  // show/questions/stop_words.json
 struct Passage {
   enum class Kind : uint8_t { answer, object, story, tour, topic };
   Kind kind = Kind::answer;
-  std::string id;     // of the object, story, tour or topic; of an answer empty
-  LocalText title;    // of that; of an answer its question
+  std::string id;     // id of the object, story, tour or topic; empty: an answer
+  LocalText title;    // title of that; the question of an answer
   LocalScript said;   // a few sentences
   LocalText further;  // words to find it by that are not said
 };
@@ -44,7 +44,7 @@ struct QuestionIndex {
     float length = 0;
   };
   struct Language {
-    std::vector<Entry> entries;            // of each passage; empty: it has no words in it
+    std::vector<Entry> entries;            // one for each passage; empty: it has no words in it
     std::map<std::string, int> documents;  // stem -> passages that have it
     float mean_length = 1;
   };
@@ -55,7 +55,7 @@ struct FoundAnswer {
   enum class Kind : uint8_t { none, partly, sure } kind = Kind::none;
   int passage = -1;                // index; -1 for none
   float score = 0;                 // BM25
-  float share = 0;                 // of the question's words that the passage has, 0 to 1
+  float share = 0;                 // share of the question's words that the passage has, 0 to 1
   std::vector<std::string> words;  // these, as they were asked
 };
 
@@ -63,8 +63,8 @@ QuestionIndex make_question_index(const Exhibit& exhibit);
 // In `lang`, else in its base language, else in the exhibit's first.
 FoundAnswer find_answer(const QuestionIndex& index, const Exhibit& exhibit,
                         const std::string& question, const std::string& lang);
-// What is said in answer: the passage, after a word of caution where it is not sure, or kind words
-// where there is none.
+// Returns the words of an answer: the passage, after a word of caution if it is not sure, or kind
+// words if there is none.
 LocalScript words_for(const QuestionIndex& index, const FoundAnswer& found);
 
 }  // namespace wellspring::show

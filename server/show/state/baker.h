@@ -13,6 +13,7 @@
 #include "light/bake/bake.h"
 #include "light/sample/illumination_map.h"
 #include "light/sample/lights.h"
+#include "show/state/totals.h"
 
 namespace wellspring::show {
 
@@ -27,12 +28,6 @@ struct BakerSettings {
   float shown_error = 1;       // error of the map that is shown already; 1: not known
   // map on which walks end, all lamps full; may be null
   std::shared_ptr<const IlluminationMap> known;
-};
-
-struct BakerStatus {
-  bool works = false;  // whether it bakes at the moment, on all cores
-  uint64_t passes = 0;
-  float error = 1;  // error of the bake so far, share of the mean light; 1: nothing is baked
 };
 
 enum class BakerCores : uint8_t {

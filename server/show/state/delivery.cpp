@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/delivery.h"
+#include "show/state/visitor_picture.h"
 
 #include <algorithm>
 
@@ -9,15 +10,16 @@ namespace wellspring::show {
 // things.
 static constexpr double most_keyframes = 10, most_layers = 25;
 
-FlowWishes flow_wishes(const Show& show, const Visitor& visitor) {
+FlowWishes flow_wishes(const ShowSettings& settings, const Visitor& visitor) {
   const PictureWishes& wants = visitor.wants;
-  double rate = wants.fps > 0 ? double(wants.fps) : double(show.settings.fps);
-  if (wants.local) rate = std::min(rate, visitor.picture.job.still ? most_layers : most_keyframes);
+  double rate = wants.fps > 0 ? double(wants.fps) : double(settings.fps);
+  if (wants.local)
+    rate = std::min(rate, is_still(visitor.picture->job) ? most_layers : most_keyframes);
   return {wants.best_quality, rate, double(wants.width) * wants.height, wants.bandwidth};
 }
 
-PicturePlan picture_plan(const Show& show, const Visitor& visitor) {
-  return plan_picture(visitor.shown.way, visitor.shown.flow, flow_wishes(show, visitor));
+PicturePlan picture_plan(const ShowSettings& settings, const Visitor& visitor) {
+  return plan_picture(visitor.shown.way, visitor.shown.flow, flow_wishes(settings, visitor));
 }
 
 }  // namespace wellspring::show

@@ -6,7 +6,7 @@
 namespace wellspring::show {
 
 // Returns what this visitor would get if line, encoder and decoder set no limit.
-FlowWishes flow_wishes(const Show& show, const Visitor& visitor);
-PicturePlan picture_plan(const Show& show, const Visitor& visitor);
+FlowWishes flow_wishes(const ShowSettings& settings, const Visitor& visitor);
+PicturePlan picture_plan(const ShowSettings& settings, const Visitor& visitor);
 
 }  // namespace wellspring::show

@@ -20,9 +20,10 @@ vec3 above_feet(const Teller& teller, float height) {
 
 // Returns metres to the storyteller's head if the visitor may see it, else nobody_near.
 float distance_to_head(const Show& show, const Visitor& visitor, const Teller& teller) {
-  if (!visitor.welcomed || &teller_of(show, visitor) != &teller) return nobody_near;
+  if (!visitor.welcomed || &teller_of(show.cast, show.visits, visitor) != &teller)
+    return nobody_near;
   View view = view_of(show, visitor);
-  if (!sees_head(show, teller, view)) return nobody_near;
+  if (!sees_head(show.cast, teller, view)) return nobody_near;
   const vec3 head = above_feet(teller, head_height);
   const Kiosk* kiosk = kiosk_of(show, visitor);
   if (!kiosk || kiosk->audience.guests.empty()) return glm::length(view.position - head);
@@ -45,34 +46,34 @@ bool in_view(const View& view, vec3 centre, float radius) {
          slope * std::max(depth, 0.0f) + radius * std::sqrt(1 + slope * slope);
 }
 
-View rest_view(const Show& show, const Visitor& visitor) {
+View rest_view(const ExhibitStage& stage, const Visitor& visitor) {
   const Around& around = visitor.place.around;
   const Viewpoint& at = around.point >= 0 ? around.view : visitor.place.view;
-  View view = make_view(show.exhibit.scene, at, visitor.wants.width, visitor.wants.height);
+  View view = make_view(stage.exhibit.scene, at, visitor.wants.width, visitor.wants.height);
   view.near = around.near;
   return view;
 }
 
 View view_of(const Show& show, const Visitor& visitor) {
-  const View rest = rest_view(show, visitor);
+  const View rest = rest_view(show.stage, visitor);
   const Kiosk* kiosk = kiosk_of(show, visitor);
   return kiosk ? through_window(rest, kiosk->settings.screen, visitor.window.place) : rest;
 }
 
-bool sees_head(const Show& show, const Teller& teller, const View& view) {
-  return !show.figures.empty() && teller.visible &&
+bool sees_head(const ShowCast& cast, const Teller& teller, const View& view) {
+  return !cast.figures.empty() && teller.visible &&
          in_view(view, above_feet(teller, head_height), head_reach);
 }
 
-bool sees_figure(const Show& show, const Teller& teller, const View& view) {
-  return !show.figures.empty() && teller.visible &&
+bool sees_figure(const ShowCast& cast, const Teller& teller, const View& view) {
+  return !cast.figures.empty() && teller.visible &&
          in_view(view, above_feet(teller, body_height), body_reach);
 }
 
 const Visitor* heard_on_tour(const Show& show, const Teller& teller) {
   const Visitor* nearest = nullptr;
   float least = nobody_near;
-  for (const Visitor& visitor : show.visitors) {
+  for (const Visitor& visitor : show.visits.visitors) {
     const Voice& voice = visitor.hearing.narration.voice;
     if (voice.queue.empty() || voice.paused) continue;
     if (float distance = distance_to_head(show, visitor, teller); distance < least)
@@ -82,16 +83,16 @@ const Visitor* heard_on_tour(const Show& show, const Teller& teller) {
 }
 
 const PointOfInterest* looked_at_beside_her(const Show& show, const Teller& teller) {
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && visitor.place.closer >= 0 && listens_to(show, visitor, teller) &&
-        sees_head(show, teller, view_of(show, visitor)))
-      return &show.exhibit.points[size_t(visitor.place.closer)];
+        sees_head(show.cast, teller, view_of(show, visitor)))
+      return &show.stage.exhibit.points[size_t(visitor.place.closer)];
   return nullptr;
 }
 
 float viewer_distance(const Show& show, const Teller& teller) {
   float nearest = nobody_near;
-  for (const Visitor& visitor : show.visitors)
+  for (const Visitor& visitor : show.visits.visitors)
     nearest = std::min(nearest, distance_to_head(show, visitor, teller));
   return nearest;
 }
@@ -101,8 +102,9 @@ namespace {
 using Start = ExhibitAnimation::Start;
 
 const Play& play_of(const Show& show, const Visitor& visitor, size_t i) {
-  const Visitor* own = show.exhibit.animations[i].shared ? nullptr : who_touched(show, visitor);
-  return own ? own->plays[i] : show.plays[i];
+  const Visitor* own =
+      show.stage.exhibit.animations[i].shared ? nullptr : who_touched(show.visits, visitor);
+  return own ? own->plays[i] : show.cast.plays[i];
 }
 
 bool in_reach(const View& view, const Reach& reach) {
@@ -110,27 +112,28 @@ bool in_reach(const View& view, const Reach& reach) {
 }
 
 void set_animation(Show& show, Visitor& visitor, size_t i, bool on) {
-  const ExhibitAnimation& animation = show.exhibit.animations[i];
-  if (!animation.shared && visitor.plays.empty()) visitor.plays.resize(show.plays.size());
-  Play& play = animation.shared ? show.plays[i] : visitor.plays[i];
+  const ExhibitAnimation& animation = show.stage.exhibit.animations[i];
+  if (!animation.shared && visitor.plays.empty()) visitor.plays.resize(show.cast.plays.size());
+  Play& play = animation.shared ? show.cast.plays[i] : visitor.plays[i];
   set_on(animation, on, show.time, play);
   visitor.state_sent_at = -1e9;
   if (!animation.shared) return;
-  for (Visitor& other : show.visitors) other.state_sent_at = -1e9;
+  for (Visitor& other : show.visits.visitors) other.state_sent_at = -1e9;
 }
 
 }  // namespace
 
-const Visitor* who_touched(const Show& show, const Visitor& visitor) {
-  const Visitor* leader = leader_of(show, visitor);
+const Visitor* who_touched(const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
   const Visitor& who = leader ? *leader : visitor;
   return who.plays.empty() ? nullptr : &who;
 }
 
 std::vector<double> animation_times(const Show& show, const Visitor& visitor) {
   std::vector<double> times;
-  for (size_t i = 0; i < show.exhibit.animations.size(); i++)
-    times.push_back(time_of(show.exhibit.animations[i], play_of(show, visitor, i), show.time));
+  for (size_t i = 0; i < show.stage.exhibit.animations.size(); i++)
+    times.push_back(
+        time_of(show.stage.exhibit.animations[i], play_of(show, visitor, i), show.time));
   return times;
 }
 
@@ -138,23 +141,26 @@ bool is_on(const Show& show, const Visitor& visitor, size_t animation) {
   return play_of(show, visitor, animation).on;
 }
 
-bool sees_moving(const Show& show, const Visitor& visitor, const View& view) {
-  return !visitor.dynamic.empty() || sees_figure(show, teller_of(show, visitor), view) ||
-         std::ranges::any_of(show.movers.reach,
+bool sees_moving(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor,
+                 const View& view) {
+  return !visitor.dynamic.empty() || sees_figure(cast, teller_of(cast, visits, visitor), view) ||
+         std::ranges::any_of(cast.movers.reach,
                              [&](const Reach& reach) { return in_reach(view, reach); });
 }
 
 bool sees_motion(const Show& show, const Visitor& visitor, const View& view) {
-  if (!visitor.dynamic.empty() || sees_figure(show, teller_of(show, visitor), view)) return true;
-  for (size_t i = 0; i < show.exhibit.animations.size(); i++)
-    if (in_reach(view, show.movers.reach[i]) &&
-        is_running(show.exhibit.animations[i], play_of(show, visitor, i), show.time))
+  if (!visitor.dynamic.empty() ||
+      sees_figure(show.cast, teller_of(show.cast, show.visits, visitor), view))
+    return true;
+  for (size_t i = 0; i < show.stage.exhibit.animations.size(); i++)
+    if (in_reach(view, show.cast.movers.reach[i]) &&
+        is_running(show.stage.exhibit.animations[i], play_of(show, visitor, i), show.time))
       return true;
   return false;
 }
 
 bool play_animation(Show& show, Visitor& visitor, std::string_view id, bool on) {
-  const std::vector<ExhibitAnimation>& all = show.exhibit.animations;
+  const std::vector<ExhibitAnimation>& all = show.stage.exhibit.animations;
   const auto found = std::ranges::find(all, id, &ExhibitAnimation::id);
   if (found == all.end() || found->start != Start::touch) return false;
   set_animation(show, visitor, size_t(found - all.begin()), on);
@@ -162,8 +168,8 @@ bool play_animation(Show& show, Visitor& visitor, std::string_view id, bool on) 
 }
 
 void touch_object(Show& show, Visitor& visitor, int point) {
-  for (size_t i = 0; i < show.exhibit.animations.size(); i++) {
-    const ExhibitAnimation& animation = show.exhibit.animations[i];
+  for (size_t i = 0; i < show.stage.exhibit.animations.size(); i++) {
+    const ExhibitAnimation& animation = show.stage.exhibit.animations[i];
     if (animation.start == Start::touch && animation.point == point)
       set_animation(show, visitor, i, !is_on(show, visitor, i));
   }

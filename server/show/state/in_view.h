@@ -12,15 +12,15 @@ namespace wellspring::show {
 bool in_view(const View& view, vec3 centre, float radius);
 
 // Returns the view from where the visitor stands; for a kiosk's page, from its viewpoint.
-View rest_view(const Show& show, const Visitor& visitor);
+View rest_view(const ExhibitStage& stage, const Visitor& visitor);
 // Returns the visitor's present view; for a kiosk's page, through the screen from where the guest's
 // head is.
 View view_of(const Show& show, const Visitor& visitor);
 
 // Return whether the storyteller's head, or any part of it, may be in that picture. False while the
 // storyteller is hidden.
-bool sees_head(const Show& show, const Teller& teller, const View& view);
-bool sees_figure(const Show& show, const Teller& teller, const View& view);
+bool sees_head(const ShowCast& cast, const Teller& teller, const View& view);
+bool sees_figure(const ShowCast& cast, const Teller& teller, const View& view);
 
 // Returns the visitor whose narration moves the storyteller's lips besides its own voice: of its
 // visitors on a tour that is narrated now, who may see its face, the nearest; null: nobody.
@@ -38,7 +38,7 @@ float viewer_distance(const Show& show, const Teller& teller);
 
 // Returns whose own animations the visitor sees: the visitor or their leader; null: that one has
 // touched none.
-const Visitor* who_touched(const Show& show, const Visitor& visitor);
+const Visitor* who_touched(const ShowVisits& visits, const Visitor& visitor);
 // Returns the present time of each animation, in seconds.
 std::vector<double> animation_times(const Show& show, const Visitor& visitor);
 // Returns whether the animation has been started, and not been sent back, by touch; `animation`:
@@ -46,7 +46,8 @@ std::vector<double> animation_times(const Show& show, const Visitor& visitor);
 bool is_on(const Show& show, const Visitor& visitor, size_t animation);
 // Returns whether that picture may show anything that can move: a dynamic light, the visitor's
 // storyteller, or what an animation moves, at rest or not.
-bool sees_moving(const Show& show, const Visitor& visitor, const View& view);
+bool sees_moving(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor,
+                 const View& view);
 // Returns whether any of these moves now; the storyteller always does.
 bool sees_motion(const Show& show, const Visitor& visitor, const View& view);
 

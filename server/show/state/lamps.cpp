@@ -7,37 +7,39 @@
 #include "light/visible/facet.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "show/state/in_view.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 namespace {
 
 constexpr double least_between = 0.2;  // seconds from one change of the light to the next
 
-const LightChange& change_between(Show& show, const LampLevels& before, const LampLevels& after) {
-  Switches& switches = show.switches;
+const LightChange& change_between(ExhibitStage& stage, const LampLevels& before,
+                                  const LampLevels& after) {
+  Switches& switches = stage.switches;
   for (const LightStep& step : switches.steps)
     if (step.before == before && step.after == after) return step.change;
   switches.steps.push_back(
       {before, after,
-       LightChange(show.exhibit.scene, switches.all, switches.cells, before, after)});
+       LightChange(stage.exhibit.scene, switches.all, switches.cells, before, after)});
   return switches.steps.back().change;
 }
 
 // Returns the light on moving things, guessed from another state's until there are samples.
-SkinLight changed_skin(Show& show, const LampLevels& before, const LampLevels& after) {
-  SkinLight skin = show.skin;
+SkinLight changed_skin(ExhibitStage& stage, const LampLevels& before, const LampLevels& after) {
+  SkinLight skin = stage.skin;
   if (skin.places.empty()) return skin;
-  const LightChange& change = change_between(show, before, after);
+  const LightChange& change = change_between(stage, before, after);
   auto changes = [&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
     return change.changes(place, normal, kept, added);
   };
-  relight_skin(*show.world, changes, skin);
+  relight_skin(*stage.world, changes, skin);
   return skin;
 }
 
-void switch_world(Show& show, const LampLevels& lamps) {
-  for (size_t lamp = 0; lamp < lamps.size(); lamp++) show.world->set_lamp(int(lamp), lamps[lamp]);
-  show.switches.lit = lamps;
+void switch_world(ExhibitStage& stage, const LampLevels& lamps) {
+  for (size_t lamp = 0; lamp < lamps.size(); lamp++) stage.world->set_lamp(int(lamp), lamps[lamp]);
+  stage.switches.lit = lamps;
 }
 
 void look_anew(VisitorPicture& picture) {
@@ -59,89 +61,93 @@ std::vector<char> shining_objects(const Scene& scene) {
   return shining;
 }
 
-void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
-  const bool first = !show.lights.maps;
-  const Scene& scene = show.exhibit.scene;
-  show.mapped = mapped_objects(scene, *maps);
-  if (first) show.shining = shining_objects(scene);
-  show.known = show.mapped;
-  for (size_t i = 0; i < show.known.size(); i++)
-    if (show.shining[i] || !(maps->error < most_sure_error)) show.known[i] = 0;
-  show.lights.maps = maps;
-  if (!show.exhibit.lamps.empty()) {
-    show.switches.all.maps = std::move(maps);
-    show.switches.others.clear();
-    show.lights = relit(show.switches.all, *show.world);
+void use_maps(ExhibitStage& stage, ShowVisits& visits,
+              std::shared_ptr<const IlluminationMap> maps) {
+  const bool first = !stage.lights.maps;
+  const Scene& scene = stage.exhibit.scene;
+  stage.mapped = mapped_objects(scene, *maps);
+  if (first) stage.shining = shining_objects(scene);
+  stage.known = stage.mapped;
+  for (size_t i = 0; i < stage.known.size(); i++)
+    if (stage.shining[i] || !(maps->error < most_sure_error)) stage.known[i] = 0;
+  stage.lights.maps = maps;
+  if (!stage.exhibit.lamps.empty()) {
+    stage.switches.all.maps = std::move(maps);
+    stage.switches.others.clear();
+    stage.lights = relit(stage.switches.all, *stage.world);
   }
-  for (Visitor& visitor : show.visitors) {
-    look_anew(visitor.picture);
-    visitor.picture.fades_next = true;
+  for (Visitor& visitor : visits.visitors) {
+    look_anew(*visitor.picture);
+    visitor.picture->fades_next = true;
     if (!first) continue;
     // So far points hold the light itself, not multiples of a map's light.
-    visitor.picture.cache.clear();
+    visitor.picture->cache.clear();
   }
 }
 
-void use_better_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
-  (show.exhibit.lamps.empty() ? show.lights : show.switches.all).known = maps;
-  use_maps(show, std::move(maps));
+void use_better_maps(ExhibitStage& stage, ShowVisits& visits,
+                     std::shared_ptr<const IlluminationMap> maps) {
+  (stage.exhibit.lamps.empty() ? stage.lights : stage.switches.all).known = maps;
+  use_maps(stage, visits, std::move(maps));
 }
 
-void begin_lamps(Show& show) {
-  show.switches.wanted = first_lamps(show.exhibit);
-  if (show.exhibit.lamps.empty()) return;
-  show.switches.all = show.lights;
-  if (show.lights.known)
-    show.switches.cells =
-        std::make_shared<LampCells>(make_lamp_cells(*show.world, *show.lights.known));
-  switch_world(show, first_levels(show.exhibit));
-  show.lights = relit(show.switches.all, *show.world);
+void begin_lamps(ExhibitStage& stage) {
+  stage.switches.wanted = first_lamps(stage.exhibit);
+  if (stage.exhibit.lamps.empty()) return;
+  stage.switches.all = stage.lights;
+  if (stage.lights.known)
+    stage.switches.cells =
+        std::make_shared<LampCells>(make_lamp_cells(*stage.world, *stage.lights.known));
+  switch_world(stage, first_levels(stage.exhibit));
+  stage.lights = relit(stage.switches.all, *stage.world);
 }
 
 namespace {
 // Returns the lamps of the visitor whose wishes count: the leader's, if there is one.
-const VisitorLamps& wishes_of(const Show& show, const Visitor& visitor) {
-  const Visitor* leader = leader_of(show, visitor);
+const VisitorLamps& wishes_of(const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
   return (leader ? *leader : visitor).lamps;
 }
 }  // namespace
 
-std::vector<char> switches_of(const Show& show, const Visitor& visitor) {
-  std::vector<char> on = show.switches.wanted;
-  const VisitorLamps& wishes = wishes_of(show, visitor);
+std::vector<char> switches_of(const ExhibitStage& stage, const ShowVisits& visits,
+                              const Visitor& visitor) {
+  std::vector<char> on = stage.switches.wanted;
+  const VisitorLamps& wishes = wishes_of(visits, visitor);
   for (size_t i = 0; i < wishes.own.size(); i++)
     if (wishes.own[i]) on[i] = wishes.wish[i];
   return on;
 }
 
 std::optional<double> hour_of(const Show& show, const Visitor& visitor) {
-  return wishes_of(show, visitor).hour;
+  return wishes_of(show.visits, visitor).hour;
 }
 
 LampLevels lamps_of(const Show& show, const Visitor& visitor) {
-  return lamp_levels(show.exhibit.day, switches_of(show, visitor), hour_of(show, visitor));
+  return lamp_levels(show.stage.exhibit.day, switches_of(show.stage, show.visits, visitor),
+                     hour_of(show, visitor));
 }
 
-bool set_hour(const Show& show, Visitor& visitor, std::optional<double> hour) {
-  if (!show.exhibit.day) return false;
-  visitor.lamps.hour = hour ? hour_of_day(*show.exhibit.day, *hour) : hour;
+bool set_hour(const ExhibitStage& stage, Visitor& visitor, std::optional<double> hour) {
+  if (!stage.exhibit.day) return false;
+  visitor.lamps.hour = hour ? hour_of_day(*stage.exhibit.day, *hour) : hour;
   visitor.state_sent_at = -1e9;
   return true;
 }
 
 bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on) {
-  const int found = find_lamp(show.exhibit, name);
+  const int found = find_lamp(show.stage.exhibit, name);
   if (found < 0) return false;
   const size_t lamp = size_t(found);
-  if (bool(switches_of(show, visitor)[lamp]) == on) return true;
+  if (bool(switches_of(show.stage, show.visits, visitor)[lamp]) == on) return true;
   show.totals.lamps_switched++;
-  if (show.exhibit.lamps[lamp].shared) {
-    show.switches.wanted[lamp] = on;
-    for (Visitor& other : show.visitors) other.state_sent_at = -1e9;
+  if (show.stage.exhibit.lamps[lamp].shared) {
+    show.stage.switches.wanted[lamp] = on;
+    for (Visitor& other : show.visits.visitors) other.state_sent_at = -1e9;
     return true;
   }
   VisitorLamps& own = visitor.lamps;
-  own.own.resize(show.exhibit.lamps.size());
+  own.own.resize(show.stage.exhibit.lamps.size());
   own.wish.resize(own.own.size());
   own.own[lamp] = true;
   own.wish[lamp] = on;
@@ -163,40 +169,41 @@ void light_lamps(Show& show, Visitor& visitor) {
   lamps.lit_hour = hour_of(show, visitor);
   if (first) return;
   lamps.lit_at = show.time;
-  visitor.picture.around = {}, visitor.picture.fade = {};  // both show another light
-  look_anew(visitor.picture);
+  visitor.picture->around = {}, visitor.picture->fade = {};  // both show another light
+  look_anew(*visitor.picture);
 }
 
-void light_world(Show& show, const LampLevels& lamps) {
-  Switches& switches = show.switches;
+void light_world(ExhibitStage& stage, const LampLevels& lamps) {
+  Switches& switches = stage.switches;
   if (lamps == switches.lit) return;
   const LampLevels before = switches.lit;
   auto known = switches.others.extract(lamps);
   KnownLight next;
   if (known) {
     next = std::move(known.mapped());
-    switch_world(show, lamps);
+    switch_world(stage, lamps);
   } else {
-    next.skin = changed_skin(show, before, lamps);
-    switch_world(show, lamps);
-    next.lights = relit(switches.all, *show.world);
+    next.skin = changed_skin(stage, before, lamps);
+    switch_world(stage, lamps);
+    next.lights = relit(switches.all, *stage.world);
   }
-  switches.others[before] = {std::exchange(show.lights, std::move(next.lights)),
-                             std::exchange(show.skin, std::move(next.skin))};
+  switches.others[before] = {std::exchange(stage.lights, std::move(next.lights)),
+                             std::exchange(stage.skin, std::move(next.skin))};
 }
 
-void follow_lamps(Show& show, Visitor& visitor) {
-  VisitorPicture& picture = visitor.picture;
-  picture.compositor.set_maps(show.lights.maps);
+void follow_lamps(ExhibitStage& stage, Visitor& visitor) {
+  VisitorPicture& picture = *visitor.picture;
+  picture.compositor.set_maps(stage.lights.maps);
   picture.hour = visitor.lamps.lit_hour;
-  const LampLevels& lit = show.switches.lit;
+  const LampLevels& lit = stage.switches.lit;
   if (picture.lamps == lit) return;
   if (picture.lamps.size() == lit.size()) {
-    const LightChange& change = change_between(show, picture.lamps, lit);
+    const LightChange& change = change_between(stage, picture.lamps, lit);
     picture.cache.relight([&](const RenderCache::Surface& at, vec3& kept, vec3& added) {
       if (!change.changes(at.place, at.normal, kept, added)) return false;
       // Light that counts in multiples of a map's light changes with the map.
-      if (at.object < show.mapped.size() && show.mapped[at.object]) kept = vec3(1), added = vec3(0);
+      if (at.object < stage.mapped.size() && stage.mapped[at.object])
+        kept = vec3(1), added = vec3(0);
       return true;
     });
   }
@@ -205,14 +212,14 @@ void follow_lamps(Show& show, Visitor& visitor) {
   picture.lamps = lit;
 }
 
-void forget_lights(Show& show) {
-  Switches& switches = show.switches;
+void forget_lights(ExhibitStage& stage, const ShowVisits& visits) {
+  Switches& switches = stage.switches;
   auto anybody = [&](const auto& needs) {
-    return std::any_of(show.visitors.begin(), show.visitors.end(), needs);
+    return std::any_of(visits.visitors.begin(), visits.visitors.end(), needs);
   };
   std::erase_if(switches.steps, [&](const LightStep& step) {
     return !anybody([&](const Visitor& visitor) {
-      return visitor.picture.lamps == step.before && visitor.lamps.lit == step.after;
+      return visitor.picture->lamps == step.before && visitor.lamps.lit == step.after;
     });
   });
   std::erase_if(switches.others, [&](const auto& other) {
@@ -226,8 +233,9 @@ void add(const PunctualLight& light, uint32_t id, DynamicLights& lights) {
   if (max_component(light.intensity) > 0) lights.push_back({light, id});
 }
 
-void add_changing(const Show& show, const LampLevels& lit, double time, DynamicLights& lights) {
-  const std::vector<ChangingLight>& all = show.exhibit.lights;
+void add_changing(const ExhibitStage& stage, const LampLevels& lit, double time,
+                  DynamicLights& lights) {
+  const std::vector<ChangingLight>& all = stage.exhibit.lights;
   for (size_t i = 0; i < all.size(); i++) {
     PunctualLight light = eval_light(all[i], time);
     if (all[i].lamp >= 0) light.intensity *= brightness_of(lit[size_t(all[i].lamp)]);
@@ -239,14 +247,15 @@ void add_changing(const Show& show, const LampLevels& lit, double time, DynamicL
 
 DynamicLights dynamic_lights_of(const Show& show, const Visitor& visitor, double time) {
   DynamicLights lights;
-  add_held_lights(show.exhibit, teller_of(show, visitor).held, time, first_carried, lights);
+  add_held_lights(show.stage.exhibit, teller_of(show.cast, show.visits, visitor).held, time,
+                  first_carried, lights);
   // Lamps and hour are as pictures show them; they follow the visitor's wishes.
   const VisitorLamps& now = visitor.lamps;
-  const std::optional<Day>& day = show.exhibit.day;
+  const std::optional<Day>& day = show.stage.exhibit.day;
   if (!now.lit.empty() && day && now.lit_hour && now.lit[size_t(day->lamp)] > 0)
     add(eval_sun(*day, *now.lit_hour), sun_of_the_day, lights);
-  if (!show.exhibit.lights.empty())
-    add_changing(show, now.lit.empty() ? lamps_of(show, visitor) : now.lit, time, lights);
+  if (!show.stage.exhibit.lights.empty())
+    add_changing(show.stage, now.lit.empty() ? lamps_of(show, visitor) : now.lit, time, lights);
   return lights;
 }
 

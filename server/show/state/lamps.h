@@ -22,16 +22,18 @@ namespace wellspring::show {
 // Returns for each object whether some of its light depends on the view, which maps do not hold.
 std::vector<char> shining_objects(const Scene& scene);
 // Makes pictures show maps of all lamps from now on. Call it while nothing is drawn.
-void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
+void use_maps(ExhibitStage& stage, ShowVisits& visits, std::shared_ptr<const IlluminationMap> maps);
 // Does the same with maps of the scene as it is: walks end on them, too.
-void use_better_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
-// Puts the lamps as they are at first. show.lights were made, and are prepared, while all lamps
-// were full.
-void begin_lamps(Show& show);
+void use_better_maps(ExhibitStage& stage, ShowVisits& visits,
+                     std::shared_ptr<const IlluminationMap> maps);
+// Puts the lamps as they are at first. show.stage.lights were made, and are prepared, while all
+// lamps were full.
+void begin_lamps(ExhibitStage& stage);
 // Return what the visitor wants: which of the exhibit's lamps are on, by the visitor's own wish or
 // the house's; the hour of the day (none: the exhibit's own); and the levels of the scene's lamps
 // that follow from both.
-std::vector<char> switches_of(const Show& show, const Visitor& visitor);
+std::vector<char> switches_of(const ExhibitStage& stage, const ShowVisits& visits,
+                              const Visitor& visitor);
 std::optional<double> hour_of(const Show& show, const Visitor& visitor);
 LampLevels lamps_of(const Show& show, const Visitor& visitor);
 // Switches a lamp; pages whose visitors see it are informed with the next tick. Returns false if
@@ -39,20 +41,20 @@ LampLevels lamps_of(const Show& show, const Visitor& visitor);
 bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on);
 // Sets the hour; none: back to the exhibit's own. The visitor's page is informed with the next
 // tick. Returns false if the exhibit has no day.
-bool set_hour(const Show& show, Visitor& visitor, std::optional<double> hour);
+bool set_hour(const ExhibitStage& stage, Visitor& visitor, std::optional<double> hour);
 // Returns whether the visitor's light is to follow the wishes now.
 bool lamps_wait(const Show& show, const Visitor& visitor);
 // Makes the visitor's light follow from the next picture on. Call it while none is drawn for that
 // visitor.
 void light_lamps(Show& show, Visitor& visitor);
 // Puts the world and its lights into that state. Only while the renderer is idle.
-void light_world(Show& show, const LampLevels& lamps);
+void light_world(ExhibitStage& stage, const LampLevels& lamps);
 // Makes the visitor's cache follow the world's present light. Whoever draws calls it before
 // anything is drawn for a visitor.
-void follow_lamps(Show& show, Visitor& visitor);
+void follow_lamps(ExhibitStage& stage, Visitor& visitor);
 // Drops the light of states that nobody sees any more, and changes that nobody has yet to follow.
 // Only while the renderer is idle.
-void forget_lights(Show& show);
+void forget_lights(ExhibitStage& stage, const ShowVisits& visits);
 
 // Finds a visitor's lights that move or change (light/dynamic/direct_light.h): those of
 // exhibit.json, at the visitor's hour of the day, and those that the visitor's storyteller carries.

@@ -14,6 +14,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 // Puts another storyteller in place of the present one, which falls silent. The new one knows
 // nobody yet and greets anew; it is seen from the next picture on. Does nothing if it is there
 // already.
-void change_storyteller(const Show& show, Teller& teller, size_t storyteller_index);
+void change_storyteller(const ExhibitStage& stage, const ShowCast& cast, Teller& teller,
+                        size_t storyteller_index);
 
 }  // namespace wellspring::show

@@ -49,6 +49,17 @@ struct RestState {
   bool reconstructed = false;  // whether the last pass's picture is the one shown
 };
 
+// Says what a picture is drawn for, and so what its stages do. A moving picture is shown for a
+// moment only: maps alone light what is plain, samples may come after it, and it is tone-mapped as
+// it is drawn. The others are drawn in steps, between which the world may move and moving things
+// may be drawn.
+enum class PictureKind : uint8_t {
+  moving,
+  still,           // shown while its visitor stands
+  reconstruction,  // drawn with guides, not shown: a reconstruction begins with it
+  samples,         // not drawn: only samples, as the reconstruction that is shown stays
+};
+
 // Holds all that a picture's drawing depends on besides the world and the samples that the
 // visitor's cache remembers.
 struct PictureJob {
@@ -58,21 +69,16 @@ struct PictureJob {
   View view;         // view to be drawn: the expected one, and some around
   View ahead;        // view in the picture after that, when answers to its requests are shown
   uint32_t seq = 0;  // number of the visitor's last input
-  uint32_t camera_cuts = 0;   // the visitor's camera cuts by then
-  bool still = false;         // the visitor has not moved for a moment
-  bool moving = false;        // something that can move may be in it
-  bool learns = false;        // its samples are kept for each pixel, for reconstructions
-  bool reconstruct = false;   // it becomes a reconstruction instead of being shown
-  bool samples_only = false;  // nothing is drawn
-  bool settled = false;       // the visitor has rested for long: the reference takes over
-  // shown for a moment only, so tone-mapped as it is drawn (picture/compose_drawn.h)
-  bool passing = false;
-  RestState rest;   // the visitor's rest by then
-  float scale = 1;  // sides of its view, in pixels, over those of the visitor's picture
+  uint32_t camera_cuts = 0;  // the visitor's camera cuts by then
+  PictureKind kind = PictureKind::moving;
+  bool sees_moving = false;  // something that can move may be in it
+  bool learns = false;       // its samples are kept for each pixel, for reconstructions
+  bool settled = false;      // the visitor has rested for long: the reference takes over
+  RestState rest;            // the visitor's rest by then
+  float scale = 1;           // sides of its view, in pixels, over those of the visitor's picture
   bool attention = true;
   std::shared_ptr<const std::vector<float>> weights;  // weights of objects; null: all are 1
   bool note_seen = false;                             // the picture is noted for the next weights
-  bool keep = false;  // it is kept as a keyframe, from which others are made
   uint64_t seed = 0;
   // wide view for a quick turn; drawn before the picture, in fewer pixels
   std::optional<View> around;
@@ -80,18 +86,14 @@ struct PictureJob {
   DynamicLights dynamic;  // lights that move or change, as they are at that time
 };
 
-// Returns whether it is drawn in steps, between which the world may move and moving things may be
-// drawn.
-inline bool in_steps(const PictureJob& job) { return job.still && job.keep; }
+// Returns whether it is drawn in steps for a visitor who stands.
+inline bool is_still(const PictureJob& job) { return job.kind != PictureKind::moving; }
 
 // Holds the learned reconstruction of a picture at rest that is under way. show/draw/still_pass.h
 // works on it.
-
-struct Visitor;
-
 struct StillPass {
   enum class Step : uint8_t { compute, finish, done };
-  Visitor* visitor = nullptr;  // visitor whose picture it is; null: none is under way
+  uint64_t visitor = 0;  // Link::id of the visitor whose picture it is; 0: none is under way
   PictureJob job;
   bool backdrop = false;  // the picture is without moving things (show/draw/still_pass.h)
   Step step = Step::compute;
@@ -127,8 +129,6 @@ struct PictureCosts {
 
 // A picture at rest is drawn in steps, so that moving things in it need not wait for all of them.
 enum class DrawingStep : uint8_t { plan, trace, draw, guide, done };
-
-struct Visitor;
 
 // Holds what drawing a picture needs, whoever it is for.
 struct DrawingWork {
@@ -171,12 +171,13 @@ struct Renderer {
   SkinJob skin;
   size_t work_bytes = 0;  // bytes of `work`, when last finished
   double served = 0;      // least VisitorPicture::served of those who wanted the last picture begun
-  double work_seconds = 0;   // seconds that the last piece of work took
-  Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
+  double work_seconds = 0;  // seconds that the last piece of work took
+  // Link::id of the visitor whose picture is being drawn or has just been; 0: nobody's
+  uint64_t drawn = 0;
   DrawingStep step = DrawingStep::done;  // next step of that picture
-  double until_moving = 1;   // seconds from the step's beginning until moving things are due
-  Visitor* posed = nullptr;  // visitor for whom moving things are drawn, between two such steps
-  double posed_at = 0;       // show time of that job
+  double until_moving = 1;  // seconds from the step's beginning until moving things are due
+  uint64_t posed = 0;   // Link::id of the visitor for whom moving things are drawn between steps
+  double posed_at = 0;  // show time of that job
   uint64_t posed_us = 0;
   DynamicLights posed_lights;  // dynamic lights of that visitor then
   bool posed_layer = false;    // for a page that lays moving things over by itself
@@ -186,7 +187,7 @@ struct Renderer {
   // The tick sets it when nobody needs that picture any more (is_outdated); what is not drawn of
   // the picture yet is then left out.
   std::atomic<bool> given_up{false};
-  std::vector<Broker*> brokers;  // brokers whose requests are being traced; empty: none are
+  std::vector<uint64_t> asking;  // Link::id of those whose samples are traced; empty: nobody's
   double seconds = 0;            // seconds allowed for that
   size_t traced = 0;             // number of samples traced
   double traced_seconds = 0;     // seconds that it took

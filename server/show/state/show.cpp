@@ -1,89 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/show.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
+#include "light/visible/visibility.h"
+#include "show/state/drawing.h"
+
 namespace wellspring::show {
 
-void Arrivals::put(std::shared_ptr<Link> link, std::unique_ptr<Seat> seat) {
-  std::lock_guard lock(mutex_);
-  all_.push_back({std::move(link), std::move(seat)});
+ExhibitStage::ExhibitStage() = default;
+ExhibitStage::~ExhibitStage() = default;
+
+Show::Show() : drawing(std::make_unique<ShowDrawing>()) {}
+Show::~Show() = default;
+
+const Visitor& visitor_of(const ShowVisits& visits, uint64_t id) {
+  return *std::ranges::find(visits.visitors, id, [](const Visitor& one) { return one.link->id; });
 }
 
-std::vector<Arrival> Arrivals::take() {
-  std::lock_guard lock(mutex_);
-  return std::exchange(all_, {});
+Visitor& visitor_of(ShowVisits& visits, uint64_t id) {
+  return const_cast<Visitor&>(visitor_of(std::as_const(visits), id));
 }
 
-uint32_t Arrivals::announce(Announcement announcement) {
-  std::lock_guard lock(mutex_);
-  announcement.id = ++announced_;
-  announcements_.push_back(std::move(announcement));
-  return announced_;
-}
-
-std::vector<Announcement> Arrivals::take_announcements() {
-  std::lock_guard lock(mutex_);
-  return std::exchange(announcements_, {});
-}
-
-const Visitor* leader_of(const Show& show, const Visitor& visitor) {
+const Visitor* leader_of(const ShowVisits& visits, const Visitor& visitor) {
   const VisitorGroup& group = visitor.group;
   if (group.follows.empty() || group.away) return nullptr;
-  for (const Visitor& other : show.visitors)
+  for (const Visitor& other : visits.visitors)
     if (other.group.leads == group.follows && !other.left) return &other;
   return nullptr;
 }
 
-const Teller& teller_of(const Show& show, const Visitor& visitor) {
-  const Visitor* leader = leader_of(show, visitor);
+const Teller& teller_of(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
   const Visitor& who = leader ? *leader : visitor;
-  return who.own_teller ? *who.own_teller : show.teller;
+  return who.own_teller ? *who.own_teller : cast.teller;
 }
 
 Teller& teller_of(Show& show, Visitor& visitor) {
-  return const_cast<Teller&>(teller_of(std::as_const(show), std::as_const(visitor)));
+  return const_cast<Teller&>(
+      teller_of(std::as_const(show).cast, std::as_const(show).visits, std::as_const(visitor)));
 }
 
-std::vector<Teller*> tellers_of(Show& show) {
-  std::vector<Teller*> all{&show.teller};
-  for (Visitor& visitor : show.visitors)
+std::vector<Teller*> tellers_of(ShowCast& cast, ShowVisits& visits) {
+  std::vector<Teller*> all{&cast.teller};
+  for (Visitor& visitor : visits.visitors)
     if (visitor.own_teller) all.push_back(visitor.own_teller.get());
   return all;
 }
 
-const StorytellerPlace* storyteller_of(const Show& show, const Teller& teller) {
-  return show.figures.empty() ? nullptr : &show.exhibit.storytellers[teller.index];
+const StorytellerPlace* storyteller_of(const ExhibitStage& stage, const ShowCast& cast,
+                                       const Teller& teller) {
+  return cast.figures.empty() ? nullptr : &stage.exhibit.storytellers[teller.index];
 }
 
 std::string kiosk_name(const Show& show, const std::string& said) {
   if (!said.empty()) return said;
   std::set<std::string> names;
-  for (const KioskSettings& kiosk : show.exhibit.kiosks) names.insert(kiosk.name);
-  for (const Eye& eye : show.eyes) names.insert(eye.seen.kiosk);
-  for (const Visitor& visitor : show.visitors)
+  for (const KioskSettings& kiosk : show.stage.exhibit.kiosks) names.insert(kiosk.name);
+  for (const Eye& eye : show.kiosks.eyes) names.insert(eye.seen.kiosk);
+  for (const Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && visitor.kiosk) names.insert(visitor.name);
   names.erase("");
   return names.size() == 1 ? *names.begin() : "";
 }
 
-const Kiosk* find_kiosk(const Show& show, const std::string& name) {
-  for (const Kiosk& kiosk : show.kiosks)
+const Kiosk* find_kiosk(const ShowKiosks& kiosks, const std::string& name) {
+  for (const Kiosk& kiosk : kiosks.all)
     if (kiosk.settings.name == name) return &kiosk;
   return nullptr;
 }
 
 const Kiosk* kiosk_of(const Show& show, const Visitor& visitor) {
-  return visitor.kiosk ? find_kiosk(show, kiosk_name(show, visitor.name)) : nullptr;
+  return visitor.kiosk ? find_kiosk(show.kiosks, kiosk_name(show, visitor.name)) : nullptr;
 }
 
 bool hears_storyteller(const Show& show, const Visitor& visitor) {
-  return !visitor.kiosk || !show.her_kiosk || *show.her_kiosk == kiosk_name(show, visitor.name);
+  return !visitor.kiosk || !show.kiosks.her_kiosk ||
+         *show.kiosks.her_kiosk == kiosk_name(show, visitor.name);
 }
 
 bool listens_to(const Show& show, const Visitor& visitor, const Teller& teller) {
-  return visitor.welcomed && &teller_of(show, visitor) == &teller &&
+  return visitor.welcomed && &teller_of(show.cast, show.visits, visitor) == &teller &&
          hears_storyteller(show, visitor);
 }
 

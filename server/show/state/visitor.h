@@ -9,19 +9,15 @@
 #include <variant>
 #include <vector>
 
-#include "avatar/mind/storyteller.h"
 #include "base/clock.h"
 #include "base/worker.h"
 #include "frame/tonemap.h"
 #include "image/image.h"
 #include "show/kiosk/kiosk.h"
-#include "show/moving/exhibit_scene.h"
 #include "show/state/capacity.h"
+#include "show/state/cast.h"
 #include "show/state/switches.h"
 #include "show/state/visitor_attention.h"
-#include "show/state/visitor_picture.h"
-#include "show/storyteller/held_prop.h"
-#include "show/storyteller/voice.h"
 #include "show/visit/flow.h"
 #include "show/visit/place.h"
 #include "wire/link.h"
@@ -29,26 +25,6 @@
 #include "world/view.h"
 
 namespace wellspring::show {
-
-// Holds a storyteller as the visitors see it who share it: which of the exhibit's it is, how it is,
-// what it says. The house has one, for kiosks and for visitors who only look on. A visitor who
-// calls the storyteller, hides it or asks for a story gets one of their own, so that nobody takes
-// it from anybody. All of them share one figure in the world, which is posed before each picture as
-// the visitor's storyteller is.
-
-struct Teller {
-  uint64_t number = 0;  // Link::id of the visitor who first called it; 0: the house's
-  size_t index = 0;     // index into Exhibit::storytellers
-  Storyteller storyteller;
-  StorytellerState mind;
-  Pose pose;
-  Voice voice;
-  Sounding sounding;
-  HeldProp held;
-  bool visible = true, humanlike = true;
-  double agent_sent_at = -1e9;  // show time of the last agent message
-  Mood agent_mood = Mood::idle;
-};
 
 // Holds what a browser that takes parts has on its screen while its visitor stands
 // (show/draw/parts.h).
@@ -139,7 +115,27 @@ struct VisitorPresence {
   bool asked = false;  // the visitor was asked whether they are there
 };
 
+// Holds what the visitor's page asks for.
+struct PictureWishes {
+  int width = 1280, height = 720;
+  float fps = 0;                              // 0: the show's
+  double bandwidth = 0;                       // bytes a second for pictures; 0: no limit
+  bool saver = false;                         // nothing is sent that can be done without
+  bool parts = false;                         // it takes pictures at rest in parts, packet.h
+  bool local = false;                         // it takes keyframes with depth, packet.h
+  int best_quality = 82, still_quality = 92;  // JPEG quality in motion and at rest
+  bool attention = true;                      // CacheSettings::attention
+  // Weight for attention (attention/task.h): 0 what catches the eye, 1 what the visitor looks
+  // at.
+  float task_weight = 0.5f;
+};
+
+struct VisitorPicture;  // show/state/visitor_picture.h
+
 struct Visitor {
+  Visitor();
+  ~Visitor();
+
   std::shared_ptr<Link> link;
   std::unique_ptr<Seat> seat;  // share of the machine's capacity; null: not counted
   VisitorPresence presence;
@@ -165,9 +161,9 @@ struct Visitor {
   VisitorPlace place;  // show/visit
   WindowEye window;    // eye before a kiosk's screen
   PictureWishes wants;
-  VisitorAttention looks;  // show/draw/steer.h
-  VisitorPicture picture;  // show/draw
-  VisitorDelivery shown;   // show/draw/present.h
+  VisitorAttention looks;                   // show/draw/steer.h
+  std::unique_ptr<VisitorPicture> picture;  // show/draw; never null
+  VisitorDelivery shown;                    // show/draw/present.h
   StageTimes times;
   int counted_tour = -1;  // tour that is counted as begun; -1: none (show/count)
   View posed;             // view that the page was sent (pose_message())

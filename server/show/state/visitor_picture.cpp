@@ -41,7 +41,7 @@ size_t memory_bytes(const VisitorPicture& picture) {
          picture.broker.memory_bytes() + memory_bytes(picture.keyframe) +
          memory_bytes(picture.around.keyframe) + memory_bytes(picture.moving) +
          memory_bytes(picture.surfaces) + memory_bytes(picture.settled) +
-         bytes_of(picture.image.rgb, picture.fade.from.rgb);
+         bytes_of(picture.fade.from.rgb);
 }
 
 }  // namespace wellspring::show

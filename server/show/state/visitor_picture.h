@@ -34,21 +34,6 @@ float fade_share(const Fade& fade, const View& view, double time);
 // Mixes the picture that was shown before into one of the same size, in display codes.
 void mix_fade(const Fade& fade, float share, Image8& image);
 
-// Holds what the visitor's page asks for.
-struct PictureWishes {
-  int width = 1280, height = 720;
-  float fps = 0;                              // 0: the show's
-  double bandwidth = 0;                       // bytes a second for pictures; 0: no limit
-  bool saver = false;                         // nothing is sent that can be done without
-  bool parts = false;                         // it takes pictures at rest in parts, packet.h
-  bool local = false;                         // it takes keyframes with depth, packet.h
-  int best_quality = 82, still_quality = 92;  // JPEG quality in motion and at rest
-  bool attention = true;                      // CacheSettings::attention
-  // Weight for attention (attention/task.h): 0 what catches the eye, 1 what the visitor looks
-  // at.
-  float task_weight = 0.5f;
-};
-
 // Holds a keyframe that shows in fewer pixels what lies around the main one, while somebody moves.
 struct Surroundings {
   Keyframe keyframe;         // empty: nothing
@@ -77,7 +62,6 @@ struct VisitorPicture {
   CacheStats stats;
   double drawn_at = -1e9;  // show time of its job
   float drawn_fps = 0;
-  Image8 image;       // picture, until it is shown
   Keyframe keyframe;  // keyframe from which pictures are warped until the next
   float relief = 0;   // uncovered_a_metre() of the keyframe
   Surroundings around;

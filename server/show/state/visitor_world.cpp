@@ -7,46 +7,50 @@
 namespace wellspring::show {
 namespace {
 
-uint64_t number_who_touched(const Show& show, const Visitor& visitor) {
-  const Visitor* who = who_touched(show, visitor);
+uint64_t number_who_touched(const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* who = who_touched(visits, visitor);
   return who ? who->link->id : 0;
 }
 
 }  // namespace
 
-void pose_world(Show& show, const Teller& teller, const std::vector<double>& times) {
-  bool moved = pose_movers(show.exhibit, times, show.movers, *show.world);
-  show.posed_as = teller.number;
-  for (size_t i = 0; i < show.figures.size(); i++)
-    show_figure(*show.world, show.figures[i], i == teller.index && teller.visible);
-  for (size_t i = 0; i < show.props.size(); i++)
-    moved |= pose_prop(*show.world, show.props[i],
-                       pose_of(show.exhibit, teller.held, int(i), show.time));
-  if (show.figures.empty() && !moved) return;
-  if (teller.visible && !show.figures.empty())
-    pose_figure(*show.world, show.figures[teller.index], storyteller_of(show, teller)->character,
-                teller.pose, teller.storyteller.placement, show.scratch);
-  show.world->commit();
-  show.pose_number++;
+void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& teller,
+                const std::vector<double>& times) {
+  bool moved = pose_movers(stage.exhibit, times, cast.movers, *stage.world);
+  cast.posed_as = teller.number;
+  for (size_t i = 0; i < cast.figures.size(); i++)
+    show_figure(*stage.world, cast.figures[i], i == teller.index && teller.visible);
+  for (size_t i = 0; i < cast.props.size(); i++)
+    moved |=
+        pose_prop(*stage.world, cast.props[i], pose_of(stage.exhibit, teller.held, int(i), time));
+  if (cast.figures.empty() && !moved) return;
+  if (teller.visible && !cast.figures.empty())
+    pose_figure(*stage.world, cast.figures[teller.index],
+                storyteller_of(stage, cast, teller)->character, teller.pose,
+                teller.storyteller.placement, cast.scratch);
+  stage.world->commit();
+  cast.pose_number++;
 }
 
 void begin_world_of(Show& show, Visitor& visitor) {
-  light_world(show, visitor.lamps.lit);
-  pose_world(show, teller_of(show, visitor), animation_times(show, visitor));
-  show.posed_for = number_who_touched(show, visitor);
+  light_world(show.stage, visitor.lamps.lit);
+  pose_world(show.stage, show.cast, show.time, teller_of(show, visitor),
+             animation_times(show, visitor));
+  show.cast.posed_for = number_who_touched(show.visits, visitor);
 }
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
-  light_world(show, visitor.lamps.lit);
-  if (show.posed_as == teller_of(show, visitor).number &&
-      show.posed_for == number_who_touched(show, visitor))
+  light_world(show.stage, visitor.lamps.lit);
+  if (show.cast.posed_as == teller_of(show, visitor).number &&
+      show.cast.posed_for == number_who_touched(show.visits, visitor))
     return;
   begin_world_of(show, visitor);
 }
 
-bool see_the_same(const Show& show, const Visitor& a, const Visitor& b) {
-  return &teller_of(show, a) == &teller_of(show, b) && a.lamps.lit == b.lamps.lit &&
-         a.lamps.lit_hour == b.lamps.lit_hour && who_touched(show, a) == who_touched(show, b);
+bool see_the_same(const ShowCast& cast, const ShowVisits& visits, const Visitor& a,
+                  const Visitor& b) {
+  return &teller_of(cast, visits, a) == &teller_of(cast, visits, b) && a.lamps.lit == b.lamps.lit &&
+         a.lamps.lit_hour == b.lamps.lit_hour && who_touched(visits, a) == who_touched(visits, b);
 }
 
 }  // namespace wellspring::show

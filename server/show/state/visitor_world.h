@@ -8,7 +8,8 @@
 namespace wellspring::show {
 
 // Shows that storyteller alone, as it is now, and animations at these times, seconds of each.
-void pose_world(Show& show, const Teller& teller, const std::vector<double>& times);
+void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& teller,
+                const std::vector<double>& times);
 // Prepares the world for a new picture: the visitor's lamps, and the storyteller and the visitor's
 // animations as they are now.
 void begin_world_of(Show& show, Visitor& visitor);
@@ -16,6 +17,7 @@ void begin_world_of(Show& show, Visitor& visitor);
 // somebody who sees others.
 void go_on_in_world_of(Show& show, Visitor& visitor);
 // Returns whether two visitors see the same lamps, hour, animations and storyteller.
-bool see_the_same(const Show& show, const Visitor& a, const Visitor& b);
+bool see_the_same(const ShowCast& cast, const ShowVisits& visits, const Visitor& a,
+                  const Visitor& b);
 
 }  // namespace wellspring::show

@@ -144,7 +144,7 @@ void judge_camera(Judge& judge, const CameraReport& camera, double now) {
   }
 }
 
-// Where there is none, they are said once for the kiosk and not for each.
+// Judges the cameras. If a kiosk has none, that is said once and not for each.
 void judge_cameras(Judge& judge, const ShowReport& report, JudgeMemory& memory) {
   std::map<std::string, double> lost;  // kiosks, and when their last camera went
   for (const CameraReport& camera : report.cameras) {

@@ -12,7 +12,7 @@ namespace wellspring::show {
 
 // Its words make one line: "WHAT since 14:03: WHY. REMEDY"
 struct Finding {
-  std::string about;   // of the same problem always the same: "camera hall/left"
+  std::string about;   // the same for the same problem: "camera hall/left"
   bool grave = false;  // guests notice
   std::string what;    // "No camera at kiosk 'hall'"
   double since = 0;    // report time
@@ -20,11 +20,11 @@ struct Finding {
   std::string remedy;  // "Check its cable and the program 'wellspring kiosk'."
 };
 
-// What is remembered from one report to the next; begins empty.
+// Holds what is remembered from one report to the next; begins empty.
 struct JudgeMemory {
   struct Mark {
     double since = 0, last = 0;  // report times at which it was first and last so
-    uint64_t before = 0;         // of what only grows: as it was before
+    uint64_t before = 0;         // last value of a counter that only grows
   };
   std::map<std::string, Mark> marks;                     // by Finding::about
   std::map<std::string, uint64_t> counted;               // likewise, as of the last report
@@ -32,8 +32,9 @@ struct JudgeMemory {
   double began = -1;                                     // time of the first report
 };
 
-// Grave ones first, then in the order of their beginning. What comes and goes is told when it has
-// lasted a moment, and a moment longer than it lasts; what is counted, for ten minutes after.
+// Returns grave findings first, then in the order of their beginning. A problem that comes and goes
+// is reported when it has lasted a moment, and a moment longer than it lasts; one that is counted,
+// for ten minutes after.
 std::vector<Finding> judge(const ShowReport& report, JudgeMemory& memory);
 
 }  // namespace wellspring::show

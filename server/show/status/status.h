@@ -29,10 +29,11 @@ struct Standing {
   std::vector<Finding> findings;
 };
 
-// {"fine", "findings": [{exhibit, about, grave, what, seconds (that it has been so), why, remedy}],
-//  "house": {open, quiet}, "kiosks": [{name, exhibit, stage, people, storyteller, screens,
-//  cameras}], "cameras": [{kiosk, name, state, seconds}], "sums": boolean: there are some}. What is
-//  wrong in several exhibits alike is told once; what failed to load is told, too.
+// Writes {"fine", "findings": [{exhibit, about, grave, what, seconds (that it has been so), why,
+// remedy}], "house": {open, quiet}, "kiosks": [{name, exhibit, stage, people, storyteller, screens,
+// cameras}], "cameras": [{kiosk, name, state, seconds}], "sums": boolean: there are some}. A
+// problem that several exhibits have alike is reported once; exhibits that failed to load are
+// reported, too.
 std::string write_status(const std::vector<Standing>& exhibits,
                          const std::vector<FailedExhibit>& failed, bool sums);
 

@@ -31,7 +31,7 @@ struct SeenPerson {
   Guest guest;
   float confidence = 0;
   size_t eye = 0;
-  size_t known = 0;  // of Audience::known
+  size_t known = 0;  // index into Audience::known
 };
 
 KnownPerson& find_known(std::vector<KnownPerson>& known, uint64_t person, double now) {

@@ -23,7 +23,7 @@ struct Eye {
   uint32_t number = 1;    // 1, 2, ...; stays as it is while other cameras come and go
   double gone = -1;       // show time at which a closed link was noticed; -1: it is not
   std::string kiosk{};    // whose it is
-  std::string ordered{};  // what it was told last (EyeOrder)
+  std::string ordered{};  // the last order it was sent (EyeOrder)
 };
 
 // Whom a camera's person is taken for.
@@ -39,7 +39,7 @@ struct Audience {
   std::vector<KnownPerson> known;
   float nearest = 0;  // metres of the first from the screen; 0: there is none
   float aside = 0;    // metres right of the screen's middle, of that one
-  std::optional<CalibrationStep> calibration;  // of a camera that is being set up
+  std::optional<CalibrationStep> calibration;  // step of a camera that is being set up
 };
 
 // Distance from the screen at which the picture's camera is where the visitor's eyes are, where
@@ -53,9 +53,9 @@ inline constexpr double observation_lifetime = 2;
 // `away`: from where before the screen the view is seen.
 Guest place_person(const Person& person, const View& kiosk_view, uint32_t eye,
                    float away = viewing_distance);
-// Of the cameras of one kiosk. Who is seen by several of them at one place is one guest, with the
-// number under which it was known first, and keeps it while one camera or another has it. `before`:
-// the last answer.
+// Gathers what the cameras of one kiosk see. A person whom several of them see at one place is one
+// guest, with the number under which they were known first, and keeps it while one camera or
+// another sees them. `before`: the last answer.
 Audience gather_audience(const std::vector<Eye>& eyes, const std::string& kiosk,
                          const View& kiosk_view, double now, const Audience& before = {},
                          float away = viewing_distance);

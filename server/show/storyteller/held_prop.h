@@ -21,7 +21,7 @@ struct HeldProp {
 
 inline constexpr float glow_seconds = 0.6f;
 
-// What the story has her hold, by the name that its mark gives.
+// Finds the thing that the story has her hold, by the name that its mark gives.
 HeldThing find_held_thing(const Exhibit& exhibit, const std::string& prop);
 
 // After tick_storyteller(); `visible`: she is there to be seen.
@@ -39,7 +39,8 @@ void add_held_lights(const Exhibit& exhibit, const HeldProp& held, double time, 
 // A story's marks on the stage of an exhibit: names become places in the world, for the
 // storyteller's body.
 
-// What the story asks of the body now; nothing while nothing marked is told. `events` of this tick.
+// Returns what the story asks of the body now; nothing while nothing marked is told. `events` are
+// this tick's.
 StoryCue make_cue(const Exhibit& exhibit, const Voice& voice, const VoiceEvents& events);
 
 }  // namespace wellspring::show

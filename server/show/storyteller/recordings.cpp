@@ -23,7 +23,7 @@ namespace {
 constexpr uint64_t method = 1;  // grows when the same recording gets other marks than before
 constexpr int best_rate = 48000;
 
-// What marks depend on: the sound, the text and how it is pronounced.
+// Returns a name made of all that marks depend on: the sound, the text and how it is pronounced.
 std::string cache_name(const Sound& sound, const std::vector<StoryLine>& lines,
                        const SpeechRequest& voice) {
   uint64_t a = method, b = uint64_t(sound.rate);

@@ -24,7 +24,7 @@ struct PortraitShot {
   bool close = false;  // head and shoulders instead of the whole figure
   float turn =
       0;  // camera's way round the figure, radians; 0: before its face, positive: to its left
-  // What it holds, in humanoid space, of an exhibit's props; null: nothing.
+  // Thing that it holds, in humanoid space, one of an exhibit's props; null: nothing.
   const Exhibit* exhibit = nullptr;
   HeldProp held;
 };

@@ -28,15 +28,15 @@ struct Utterance {
 
 struct Voice {
   std::deque<Utterance> queue;  // front: being said
-  float elapsed = 0;            // of the front; below 0: the breath before it
-  float silent_until = -1e9f;   // of the front: its sound begins only there (it was paused)
+  float elapsed = 0;            // time in the front; below 0: the breath before it
+  float silent_until = -1e9f;   // time in the front at which its sound begins (it was paused)
   float waited = 0;             // seconds the front has waited for its speech
   bool started = false;         // the front's subtitle has been shown
   bool paused = false;
   size_t cursor = 0;      // into the front's timeline
   StoryHold held;         // emotion and gaze that the marks so far ask for
   std::string story;      // id of the story being told; "" for greetings and the like
-  int sentence = 0;       // of the story
+  int sentence = 0;       // index in the story
   uint32_t cuts = 0;      // how often what was being said has been broken off
   uint64_t asked_by = 0;  // link id of the visitor who asked for it; 0: nobody
 };
@@ -52,7 +52,7 @@ struct VoiceEvents {
 struct SpeechState {
   std::shared_ptr<const Speech> speech;
   bool pending = false;
-  std::string lang;  // that it is, or would be, spoken in; empty: any
+  std::string lang;  // language that it is, or would be, spoken in; empty: any
 };
 using AskSpeech = std::function<SpeechState(const Utterance&)>;
 
@@ -76,7 +76,7 @@ void pause_voice(Voice& voice);
 void resume_voice(Voice& voice);
 // Without `ask` everything is told by subtitles.
 VoiceEvents advance_voice(Voice& voice, float dt, const AskSpeech& ask = {});
-// What is being heard now, or null: between sentences, in a pause, without a speech.
+// Returns what is being heard now, or null: between sentences, in a pause, without a speech.
 const Speech* heard(const Voice& voice);
 // Mouth shapes of what is heard `ahead` seconds from now; silence where there is nothing.
 VisemeWeights mouth_shape(const Voice& voice, float ahead = 0);
@@ -84,9 +84,9 @@ VisemeWeights mouth_shape(const Voice& voice, float ahead = 0);
 // at the beginning of the sentence and a fall at its end.
 float speaking(const Voice& voice, float ahead = 0);
 
-// The sound of a voice as values: who can speak, what of it is being heard, and what of it one
-// visitor has been sent. Nothing is made for those who do not listen. What is done with them, tick
-// by tick: show/answer/sound.h.
+// The sound of a voice is held as values: who can speak, what of it is being heard, and what of it
+// one visitor has been sent. Nothing is made for those who do not listen. show/answer/sound.h uses
+// them tick by tick.
 
 // Who speaks: a Speaker, or a test's stand-in. Each call returns at once.
 struct SpeechSource {
@@ -97,9 +97,9 @@ struct SpeechSource {
 };
 SpeechSource make_speech_source(std::shared_ptr<Speaker> speaker);
 
-// What is being heard, remembered from tick to tick.
+// Holds what is being heard, remembered from tick to tick.
 struct Sounding {
-  uint32_t number = 0;  // of the utterance; grows with every one, and after every pause
+  uint32_t number = 0;  // number of the utterance; grows with every one, and after every pause
   bool going = false;   // it is being heard now
   uint32_t cuts = 0;    // Voice::cuts when it began
   std::shared_ptr<const Speech> speech;
@@ -115,19 +115,20 @@ struct Narration {
   Sounding sounding;
 };
 
-// What one visitor hears.
+// Holds what one visitor hears.
 struct VisitorSound {
   bool wanted = true;       // the visitor wants to hear
   uint32_t utterance = 0;   // whose sound is being sent; 0: none
   uint32_t given_up = 0;    // the utterance that was too much for its connection
-  size_t samples_sent = 0;  // of the utterance
-  Narration narration;      // of the tour
+  size_t samples_sent = 0;  // samples of the utterance
+  Narration narration;      // narrator of the tour
 };
 
 // A line as the synthesiser is asked for it.
 SpeechRequest request_of(const StoryLine& line, const std::string& lang, const VoiceManner& manner);
-// What the storytellers and the narrator of tours may say, greetings first: stories that anybody
-// may tell and tours in the voice of the first. The rest is made when it is asked for.
+// Returns the lines that the storytellers and the narrator of tours may say, greetings first:
+// stories that anybody may tell and tours in the voice of the first. All others are made when they
+// are asked for.
 std::vector<SpeechRequest> lines_of(const Exhibit& exhibit);
 
 }  // namespace wellspring::show

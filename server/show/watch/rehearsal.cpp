@@ -164,14 +164,14 @@ std::string write_problems(const std::vector<Problem>& problems) {
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-void set_problems(Show& show, std::vector<Problem> problems) {
-  const std::string message = problems.empty() && show.problems_message.empty()
+void set_problems(ExhibitStage& stage, ShowVisits& visits, std::vector<Problem> problems) {
+  const std::string message = problems.empty() && stage.problems_message.empty()
                                   ? std::string()  // nothing was ever wrong
                                   : write_problems(problems);
-  show.problems = std::move(problems);
-  if (message == show.problems_message) return;
-  show.problems_message = message;
-  for (Visitor& visitor : show.visitors)
+  stage.problems = std::move(problems);
+  if (message == stage.problems_message) return;
+  stage.problems_message = message;
+  for (Visitor& visitor : visits.visitors)
     if (visitor.welcomed) visitor.link->send_text(message);
 }
 

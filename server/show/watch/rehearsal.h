@@ -76,6 +76,6 @@ std::string write_problems(const std::vector<Problem>& problems);
 
 // Sets the present problems, and sends them to all visitors; `hello` sends them to those who come.
 // Nothing is sent if that is no news.
-void set_problems(Show& show, std::vector<Problem> problems);
+void set_problems(ExhibitStage& stage, ShowVisits& visits, std::vector<Problem> problems);
 
 }  // namespace wellspring::show

@@ -32,7 +32,7 @@ struct Crowd : testing::Test, ShowStage {
     add_storyteller(exhibit, "otto", {-2, 0, 2});
     add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
     exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
-    ShowSettings settings = settings_for("direct", false, 1);
+    ShowSettings settings = settings_for("direct", 1);
     settings.idle_after = 0;  // the quiet one stays
     tick_seconds = 0.25;
     begin(std::move(exhibit), settings);
@@ -112,9 +112,9 @@ TEST_F(Crowd, DisturbsNobodyAndLeavesNothingBehind) {
     while (present.size() < people) come();
     run(1);
     read();
-    ASSERT_EQ(show->visitors.size(), people + 1) << second;
-    ASSERT_LE(show->kept.size(), 4u);
-    for (const Visitor& visitor : show->visitors)
+    ASSERT_EQ(show->visits.visitors.size(), people + 1) << second;
+    ASSERT_LE(show->visits.kept.size(), 4u);
+    for (const Visitor& visitor : show->visits.visitors)
       ASSERT_TRUE(is_finite(vec3(visitor.place.view.position))) << second;
     if (second == seconds / 3) early = mallinfo2().uordblks;
   }

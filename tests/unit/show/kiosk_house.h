@@ -35,7 +35,7 @@ struct KioskHouse : testing::Test, ShowStage {
       for (int i = 0; i < 40; i++) story.text["en"].emplace_back().text = "And on it goes, and on.";
     exhibit.kiosks = std::move(kiosks);
     tick_seconds = 0.05;
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
   }
   size_t page(const std::string& kiosk) {
     const size_t number = connect();

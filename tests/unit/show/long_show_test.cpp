@@ -5,6 +5,8 @@
 #include <cmath>
 #include <malloc.h>
 
+#include "show/state/drawing.h"
+#include "show/state/visitor_picture.h"
 #include "unit/show/kiosk_house.h"
 #include "unit/show/show_stage.h"
 
@@ -13,7 +15,7 @@ namespace {
 
 struct House : ShowStage {
   explicit House(int visitors) {
-    begin(make_tiny_exhibit(), settings_for("direct", false, 50));
+    begin(make_tiny_exhibit(), settings_for("direct", 50));
     for (int i = 0; i < visitors; i++) join(48, 32);
   }
 };
@@ -36,16 +38,16 @@ TEST(LongShow, ADayOfIdlingAndWalkingNeitherGrowsNorDrifts) {
                 R"(,"name":"corner"})");
     house.step(step);
     house.step();
-    const Visitor& visitor = house.show->visitors.front();
+    const Visitor& visitor = house.show->visits.visitors.front();
     vec3 place(visitor.place.view.position);
     ASSERT_TRUE(is_finite(place) && std::abs(place.x) < 4 && std::abs(place.z) < 4) << i;
-    for (vec3 c : house.show->renderer.work.frame.color) ASSERT_TRUE(is_finite(c)) << i;
-    if (i == 62) memory = visitor.picture.cache_bytes;
+    for (vec3 c : house.show->drawing->renderer.work.frame.color) ASSERT_TRUE(is_finite(c)) << i;
+    if (i == 62) memory = visitor.picture->cache_bytes;
     if (i > 62) {
       // Lists keep room for the most that they ever held, and how much that is depends on the
       // machine.
-      ASSERT_LE(visitor.picture.cache_bytes, memory + memory / 8) << i;
-      ASSERT_LE(visitor.picture.memory_bytes, memory + (1 << 19)) << i;
+      ASSERT_LE(visitor.picture->cache_bytes, memory + memory / 8) << i;
+      ASSERT_LE(visitor.picture->memory_bytes, memory + (1 << 19)) << i;
       ASSERT_LE(visitor.place.heading.past.size(), 64u);
       ASSERT_LE(visitor.shown.flow.in_flight.size(), 4024u);
     }
@@ -62,10 +64,11 @@ TEST(LongShow, TwoVisitorsGetPicturesAndSamplesAlike) {
     house.step();
   }
   EXPECT_EQ(house.pictures(0).size(), house.pictures(1).size());
-  const Visitor &one = house.show->visitors.front(), &other = house.show->visitors.back();
-  EXPECT_GT(one.picture.broker.stats().asked, 0u);
-  double share = double(one.picture.broker.stats().asked) /
-                 double(one.picture.broker.stats().asked + other.picture.broker.stats().asked);
+  const Visitor &one = house.show->visits.visitors.front(),
+                &other = house.show->visits.visitors.back();
+  EXPECT_GT(one.picture->broker.stats().asked, 0u);
+  double share = double(one.picture->broker.stats().asked) /
+                 double(one.picture->broker.stats().asked + other.picture->broker.stats().asked);
   EXPECT_NEAR(share, 0.5, 0.2);
 }
 
@@ -86,20 +89,20 @@ TEST_F(KioskDay, LeavesNothingBehind) {
   for (int visit = 0; visit < 24; visit++) {
     see(eye, {near_screen + vec3(0.01f * float(visit % 7), 0, 0)});
     go(2);
-    ASSERT_TRUE(has_guest(show->kiosks[0].stage.now)) << visit;
+    ASSERT_TRUE(has_guest(show->kiosks.all[0].stage.now)) << visit;
     does(hall, "story");
     tells(hall, visit % 2 ? "other" : "tale");
     go(2);
     see(eye, {});
     does(hall, "well", false);
-    for (int i = 0; i < 30 && show->kiosks[0].stage.now != Stage::sleep; i++) go(1);
-    ASSERT_EQ(show->kiosks[0].stage.now, Stage::sleep) << visit;
+    for (int i = 0; i < 30 && show->kiosks.all[0].stage.now != Stage::sleep; i++) go(1);
+    ASSERT_EQ(show->kiosks.all[0].stage.now, Stage::sleep) << visit;
     step(3590.0);
     go(1);
-    EXPECT_TRUE(show->kiosks[0].visit.heard.empty());
-    EXPECT_TRUE(show->teller.voice.queue.empty());
-    EXPECT_TRUE(show->teller.mind.behaviour.people.empty());
-    EXPECT_TRUE(show->kiosks[0].audience.known.empty());
+    EXPECT_TRUE(show->kiosks.all[0].visit.heard.empty());
+    EXPECT_TRUE(show->cast.teller.voice.queue.empty());
+    EXPECT_TRUE(show->cast.teller.mind.behaviour.people.empty());
+    EXPECT_TRUE(show->kiosks.all[0].audience.known.empty());
     cameras[eye].orders.clear();
     for (Browser& browser : browsers) {
       browser.texts.clear(), browser.pictures.clear(), browser.sounds.clear();
@@ -111,7 +114,7 @@ TEST_F(KioskDay, LeavesNothingBehind) {
   }
   EXPECT_EQ(show->totals.greetings, 24u);
   EXPECT_EQ(show->totals.farewells, 24u);
-  EXPECT_EQ(show->kiosks.size(), 1u);
+  EXPECT_EQ(show->kiosks.all.size(), 1u);
 }
 
 }  // namespace

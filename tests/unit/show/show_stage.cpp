@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "image/image.h"
+#include "show/draw/picture.h"
+#include "show/state/drawing.h"
 #include "show/state/make_show.h"
 #include "show/tick.h"
 
@@ -15,11 +17,10 @@ namespace wellspring::test {
 
 using nlohmann::json;
 
-ShowSettings settings_for(const std::string& technique, bool background, float fps) {
+ShowSettings settings_for(const std::string& technique, float fps) {
   ShowSettings settings;
   settings.technique = technique;
   settings.still_technique = technique == "gather" ? "path" : technique;
-  settings.background = background;
   settings.fps = fps;
   return settings;
 }
@@ -61,14 +62,14 @@ void ShowStage::turn(double yaw, double forward, size_t visitor) {
 
 void ShowStage::step(double seconds) {
   tick(*show, arrivals, now += seconds);
-  for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-  show->renderer.worker.wait();
+  for (Visitor& visitor : show->visits.visitors) visitor.shown.encoder->task.wait();
+  show->drawing->renderer.worker.wait();
   take_sent();
 }
 
 void ShowStage::step_on() {
   tick(*show, arrivals, now += tick_seconds);
-  for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
+  for (Visitor& visitor : show->visits.visitors) visitor.shown.encoder->task.wait();
   take_sent();
 }
 
@@ -81,6 +82,11 @@ void ShowStage::run(double seconds) { steps(int(std::ceil(seconds / tick_seconds
 void ShowStage::order(const std::string& text, size_t visitor) {
   say(text, visitor);
   run(0.1);
+}
+
+void ShowStage::draw_all(const PictureJob& job, Visitor& visitor) {
+  for (DrawingStep step = DrawingStep::plan; step != DrawingStep::done;)
+    step = draw_step(*show, job, step, visitor);
 }
 
 void ShowStage::take_sent() {
@@ -133,8 +139,9 @@ Image8 ShowStage::truth(const View& view, int samples) {
   settings.spp = samples;
   settings.transport = show->settings.transport;
   Image8 picture;
-  tonemap(render_still(*show->still_technique, *show->world, show->lights, view, settings),
-          Tonemap{show->exhibit.exposure}, picture);
+  tonemap(render_still(*show->stage.still_technique, *show->stage.world, show->stage.lights, view,
+                       settings),
+          Tonemap{show->stage.exhibit.exposure}, picture);
   return picture;
 }
 

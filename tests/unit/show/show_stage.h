@@ -4,6 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "frame/tonemap.h"
+#include "show/state/arrivals.h"
+#include "show/state/renderer.h"
 #include "show/state/show.h"
 #include "unit/show/tiny_exhibit.h"
 #include "wire/packet.h"
@@ -11,7 +13,7 @@
 namespace wellspring::test {
 
 // Pictures at rest are drawn by the same technique, but after "gather" by "path".
-ShowSettings settings_for(const std::string& technique, bool background = true, float fps = 60);
+ShowSettings settings_for(const std::string& technique, float fps = 60);
 
 struct Browser {
   std::shared_ptr<Link> link;
@@ -52,9 +54,11 @@ struct ShowStage {
     while (most-- > 0 && !holds()) step();
     return holds();
   }
+  // Draws a picture in all its steps at once.
+  void draw_all(const PictureJob& job, Visitor& visitor);
   void take_sent();  // by every browser that reads; a step ends with it
 
-  Visitor& visitor() { return show->visitors.front(); }
+  Visitor& visitor() { return show->visits.visitors.front(); }
   const std::vector<Packet>& pictures(size_t visitor = 0) { return browsers[visitor].pictures; }
   PacketHeader header(size_t picture);  // the first visitor's
   Image8 image(size_t picture);

@@ -6,6 +6,7 @@
 
 #include "image/image.h"
 #include "show/http/answer.h"
+#include "show/state/drawing.h"
 #include "show/state/make_show.h"
 #include "unit/show/show_stage.h"
 #include "wire/json.h"
@@ -16,7 +17,6 @@ namespace {
 struct ShowTest : testing::Test, ShowStage {
   void begin(dvec3 origin = dvec3(0), ShowSettings settings = {}) {
     settings.fps = 50;
-    settings.background = false;
     ShowStage::begin(make_tiny_exhibit(origin), settings);
     join(96, 64);
   }
@@ -52,15 +52,15 @@ TEST_F(ShowTest, PicturesCarryTheLastSeqAndGrowingNumbers) {
 TEST_F(ShowTest, WalksOnUntilTheNextInput) {
   begin();
   run(0.1);
-  dvec3 from = show->visitors.front().place.view.position;
+  dvec3 from = show->visits.visitors.front().place.view.position;
   say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})");
   run(1);
   say(R"({"type":"input","seq":2,"move":[0,0,0],"look":[0,0]})");
   run(0.5);
-  dvec3 to = show->visitors.front().place.view.position;
+  dvec3 to = show->visits.visitors.front().place.view.position;
   EXPECT_NEAR(from.z - to.z, 1, 0.1);
   run(1);
-  EXPECT_EQ(show->visitors.front().place.view.position, to);
+  EXPECT_EQ(show->visits.visitors.front().place.view.position, to);
 }
 
 TEST_F(ShowTest, StandingStillConvergesToTheReference) {
@@ -68,17 +68,19 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
   // On a busy machine pictures have fewer samples: it goes on until there are 120 a pixel.
   run(4);
   for (int i = 0; i < 600 && show->totals.samples < 120u * 96 * 64; i++) run(0.1);
-  const Visitor& visitor = show->visitors.front();
+  const Visitor& visitor = show->visits.visitors.front();
   StillSettings settings;
   settings.spp = 768;
   settings.transport = show->settings.transport;
-  Frame reference = render_still(*show->still_technique, *show->world, show->lights,
-                                 visitor.place.last_view, settings);
+  Frame reference = render_still(*show->stage.still_technique, *show->stage.world,
+                                 show->stage.lights, visitor.place.last_view, settings);
   double error = 0, size = 0;
   for (size_t i = 0; i < reference.color.size(); i++) {
     // Pictures are compared as they are shown: lamps are no brighter than white.
-    auto seen = [&](vec3 light) { return luminance(min(light * show->exhibit.exposure, vec3(1))); };
-    error += std::abs(seen(show->renderer.work.frame.color[i]) - seen(reference.color[i]));
+    auto seen = [&](vec3 light) {
+      return luminance(min(light * show->stage.exhibit.exposure, vec3(1)));
+    };
+    error += std::abs(seen(show->drawing->renderer.work.frame.color[i]) - seen(reference.color[i]));
     size += seen(reference.color[i]);
   }
   EXPECT_LT(error / size, 0.08);
@@ -88,11 +90,11 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
 TEST_F(ShowTest, FarFromTheOriginThePictureIsTheSame) {
   begin();
   run(2);
-  std::vector<vec3> near = show->renderer.work.frame.color;
+  std::vector<vec3> near = show->drawing->renderer.work.frame.color;
   begin(dvec3(1e6, 0, -1e6));
   run(2);
   double error = 0, size = 0;
-  const std::vector<vec3>& far = show->renderer.work.frame.color;
+  const std::vector<vec3>& far = show->drawing->renderer.work.frame.color;
   for (size_t i = 0; i < near.size(); i++) {
     error += std::abs(luminance(near[i]) - luminance(far[i]));
     size += luminance(near[i]);
@@ -109,7 +111,7 @@ TEST_F(ShowTest, OrdersAreObeyedOrAnswered) {
   say(R"({"type":"viewpoint","seq":4,"name":"moon"})");
   run(0.1);
   EXPECT_EQ(last("error")["code"], "unknown_viewpoint");
-  EXPECT_EQ(show->visitors.front().place.seq, 3u);
+  EXPECT_EQ(show->visits.visitors.front().place.seq, 3u);
   say(R"({"type":"viewpoint","seq":5,"name":"door"})");
   say(R"({"type":"tour","action":"play","name":"round"})");
   run(0.6);
@@ -130,22 +132,22 @@ TEST_F(ShowTest, TheTourWaitsForAVisitorWhoWalksOff) {
   run(0.5);
   say(R"({"type":"input","seq":1,"move":[0,0,0.5],"look":[0,0]})");
   run(0.1);
-  EXPECT_EQ(show->visitors.front().place.tour.state, TourRide::State::paused);
+  EXPECT_EQ(show->visits.visitors.front().place.tour.state, TourRide::State::paused);
 }
 
 TEST_F(ShowTest, ByeAndClosedLinksLeave) {
   begin();
   run(0.1);
-  EXPECT_EQ(show->visitors.size(), 1u);
+  EXPECT_EQ(show->visits.visitors.size(), 1u);
   say(R"({"type":"bye"})");
   run(0.1);
-  EXPECT_TRUE(show->visitors.empty());
+  EXPECT_TRUE(show->visits.visitors.empty());
   size_t other = connect();
   run(0.05);
-  EXPECT_EQ(show->visitors.size(), 1u);
+  EXPECT_EQ(show->visits.visitors.size(), 1u);
   browsers[other].link->mark_closed();
   run(0.05);
-  EXPECT_TRUE(show->visitors.empty());
+  EXPECT_TRUE(show->visits.visitors.empty());
 }
 
 TEST_F(ShowTest, ClockJumpsAreSurvived) {
@@ -156,7 +158,7 @@ TEST_F(ShowTest, ClockJumpsAreSurvived) {
     now += jump;
     run(0.06);
   }
-  dvec3 position = show->visitors.front().place.view.position;
+  dvec3 position = show->visits.visitors.front().place.view.position;
   EXPECT_LT(std::abs(position.x), 4);
   EXPECT_LT(std::abs(position.z), 4);
 }

@@ -16,7 +16,7 @@ struct Asking : testing::Test, ShowStage {
     exhibit.questions = {{{{{"en", "May I take photographs?"}, {"de", "Darf ich fotografieren?"}}},
                           {{"en", "Yes, without a flash."}, {"de", "Ja, ohne Blitz."}}}};
     tick_seconds = 0.1;
-    ShowStage::begin(std::move(exhibit), settings_for("direct", false, 10));
+    ShowStage::begin(std::move(exhibit), settings_for("direct", 10));
     join(32, 32, "de");
     join(32, 32);
     run(0.3);

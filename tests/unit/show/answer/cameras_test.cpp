@@ -19,7 +19,7 @@ struct Cameras : testing::Test, ShowStage {
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
     add_storyteller(exhibit, "anna", {-2, 0, 1});
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
   }
   std::shared_ptr<Link> connect_camera(const std::string& name) {
     auto link = std::make_shared<Link>(next_link++, LinkKind::eye, "test");
@@ -55,7 +55,7 @@ TEST_F(Cameras, ALostOneIsListedUntilItIsForgotten) {
   wait(90);
   speak(*right, "hall, right");
   EXPECT_EQ(listed(), (List{"1 hall, left disconnected 89", "2 hall, right good 0"}));
-  EXPECT_EQ(connected_cameras(*show), 1u);
+  EXPECT_EQ(connected_cameras(show->kiosks), 1u);
   const std::string text = write_metrics(make_report(*show));
   EXPECT_NE(text.find("wellspring_kiosk_cameras 1\n"), std::string::npos);
   EXPECT_NE(text.find("wellspring_kiosk_camera_seconds{camera=\"1\",name=\"hall, left\","
@@ -98,7 +98,7 @@ TEST_F(Cameras, FewOfManyLostOnesAreListed) {
   for (int i = 0; i < 50; i++) connect_camera("kiosk " + std::to_string(i))->mark_closed();
   step();
   ASSERT_EQ(listed().size(), most_lost_cameras);
-  EXPECT_EQ(show->eyes.front().seen.name, "kiosk 18");
+  EXPECT_EQ(show->kiosks.eyes.front().seen.name, "kiosk 18");
 }
 
 TEST_F(Cameras, ThereAreNotMoreThanMayBe) {
@@ -107,7 +107,7 @@ TEST_F(Cameras, ThereAreNotMoreThanMayBe) {
     seen.kiosk = "kiosk " + std::to_string(i / most_kiosk_cameras);
     links.push_back(connect_camera("camera " + std::to_string(i)));
   }
-  EXPECT_EQ(show->eyes.size(), most_cameras);
+  EXPECT_EQ(show->kiosks.eyes.size(), most_cameras);
   std::string reason;
   EXPECT_FALSE(links[most_cameras - 1]->close_requested(reason));
   ASSERT_TRUE(links[most_cameras]->close_requested(reason));
@@ -119,7 +119,7 @@ TEST_F(Cameras, ThereAreNotMoreThanMayBe) {
   step();
   seen.kiosk = "kiosk 0";
   connect_camera("camera 3");
-  EXPECT_EQ(show->eyes.size(), most_cameras) << "one that comes back has its place";
+  EXPECT_EQ(show->kiosks.eyes.size(), most_cameras) << "one that comes back has its place";
 }
 
 TEST_F(Cameras, OneKioskHasFewerThanAll) {
@@ -145,17 +145,17 @@ TEST_F(Cameras, ATokenOfOneKioskIsGoodForNoOther) {
   link->kiosk = "hall";
   arrivals.put(link);
   speak(*link, "");
-  EXPECT_EQ(show->eyes.at(0).kiosk, "hall") << "it need not say so";
+  EXPECT_EQ(show->kiosks.eyes.at(0).kiosk, "hall") << "it need not say so";
   seen.kiosk = "hall";
   speak(*link, "");
-  EXPECT_EQ(show->eyes.at(0).refused, 0u);
+  EXPECT_EQ(show->kiosks.eyes.at(0).refused, 0u);
   seen.kiosk = "yard";
   seen.state = Presence::person;
   seen.people = {Person{.id = 7}};
   speak(*link, "");
-  EXPECT_EQ(show->eyes.at(0).refused, 1u);
-  EXPECT_EQ(show->eyes.at(0).kiosk, "hall");
-  for (const Kiosk& kiosk : show->kiosks) EXPECT_TRUE(kiosk.audience.guests.empty());
+  EXPECT_EQ(show->kiosks.eyes.at(0).refused, 1u);
+  EXPECT_EQ(show->kiosks.eyes.at(0).kiosk, "hall");
+  for (const Kiosk& kiosk : show->kiosks.all) EXPECT_TRUE(kiosk.audience.guests.empty());
   std::string answer;
   for (Link::Out out; link->take_out(out);) answer = out.text;
   EXPECT_EQ(nlohmann::json::parse(answer)["code"], "not_trusted");
@@ -171,16 +171,16 @@ TEST_F(Cameras, WhoStaysBeforeOneKeepsTheirNumberWhenAnotherGoes) {
   seen.people = {person};
   speak(*right, "right");
   step(0.1);
-  ASSERT_EQ(show->kiosks.at(0).audience.guests.size(), 1u);
-  const uint64_t guest = show->kiosks.at(0).audience.guests[0].id;
+  ASSERT_EQ(show->kiosks.all.at(0).audience.guests.size(), 1u);
+  const uint64_t guest = show->kiosks.all.at(0).audience.guests[0].id;
   left->mark_closed();
   for (int i = 0; i < 10; i++) speak(*right, "right"), step(1.0);
-  ASSERT_EQ(show->eyes.size(), 2u);
-  show->eyes.front().gone -= lost_camera_listed;
+  ASSERT_EQ(show->kiosks.eyes.size(), 2u);
+  show->kiosks.eyes.front().gone -= lost_camera_listed;
   for (int i = 0; i < 10; i++) speak(*right, "right"), step(1.0);
-  EXPECT_EQ(show->eyes.size(), 1u);
-  ASSERT_EQ(show->kiosks.at(0).audience.guests.size(), 1u);
-  EXPECT_EQ(show->kiosks.at(0).audience.guests[0].id, guest);
+  EXPECT_EQ(show->kiosks.eyes.size(), 1u);
+  ASSERT_EQ(show->kiosks.all.at(0).audience.guests.size(), 1u);
+  EXPECT_EQ(show->kiosks.all.at(0).audience.guests[0].id, guest);
 }
 
 TEST_F(Cameras, TheScreenIsToldWhereThePersonIsToStand) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "show/exhibit/exhibit_lights.h"
+#include "show/state/visitor_picture.h"
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
@@ -26,12 +27,12 @@ struct ComeBack : testing::Test, ShowStage {
     add_storyteller(exhibit, "otto", {-2, 0, 2});
     add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
     exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
-    ShowSettings settings = settings_for("direct", false, 10);
+    ShowSettings settings = settings_for("direct", 10);
     settings.cache = folder.path;
     settings.bakes = false;
     tick_seconds = 0.1;
     begin(std::move(exhibit), settings);
-    show->local_time.day = day;
+    show->house.local_time.day = day;
   }
   void SetUp() override { open(); }
   std::string token(size_t visitor = 0) { return last("keep", visitor)["token"]; }
@@ -64,7 +65,7 @@ struct ComeBack : testing::Test, ShowStage {
     EXPECT_EQ(last("agent", visitor)["teller"], "otto");
     EXPECT_EQ(last("agent", visitor)["story"], "tale");
     EXPECT_EQ(last("agent", visitor)["paused"], true);
-    const Visitor& now = show->visitors.back();
+    const Visitor& now = show->visits.visitors.back();
     ASSERT_TRUE(now.own_teller);
     EXPECT_EQ(now.own_teller->voice.sentence, 1);
     EXPECT_FALSE(now.own_teller->humanlike);
@@ -73,18 +74,18 @@ struct ComeBack : testing::Test, ShowStage {
 
 TEST_F(ComeBack, AVisitWhoseLineBrokeGoesOnWithWhatItKnows) {
   begin_visit();
-  const size_t points = visitor().picture.cache.stats().points;
+  const size_t points = visitor().picture->cache.stats().points;
   ASSERT_GT(points, 0u);
   const std::string code = last("group")["code"];
   break_line();
-  EXPECT_TRUE(show->visitors.empty());
+  EXPECT_TRUE(show->visits.visitors.empty());
   EXPECT_EQ(show->totals.visits, 1u);
   const size_t again = come(token());
   expect_visit(again);
-  EXPECT_GE(show->visitors.front().picture.cache.stats().points, points);
-  EXPECT_EQ(show->visitors.front().group.leads, code);
+  EXPECT_GE(show->visits.visitors.front().picture->cache.stats().points, points);
+  EXPECT_EQ(show->visits.visitors.front().group.leads, code);
   EXPECT_EQ(show->totals.visits, 1u);
-  EXPECT_TRUE(show->kept.empty());
+  EXPECT_TRUE(show->visits.kept.empty());
 }
 
 // A picture of who is here may be drawn on another thread, so it is not exchanged for a kept one.
@@ -92,15 +93,15 @@ TEST_F(ComeBack, WhoIsHereAlreadyTakesNoKeptVisit) {
   begin_visit();
   const std::string sealed = token();
   break_line();
-  ASSERT_EQ(show->kept.size(), 1u);
+  ASSERT_EQ(show->visits.kept.size(), 1u);
   const size_t other = join(32, 32);
   step();
   say(json{{"type", "hello"}, {"width", 32}, {"height", 32}, {"resume", sealed}}.dump(), other);
   run(0.2);
   EXPECT_NE(last("welcome", other)["resumed"], true);
-  EXPECT_EQ(show->kept.size(), 1u);
+  EXPECT_EQ(show->visits.kept.size(), 1u);
   expect_visit(come(sealed));
-  EXPECT_TRUE(show->kept.empty());
+  EXPECT_TRUE(show->visits.kept.empty());
 }
 
 TEST_F(ComeBack, NorDoesWhoHasSaidGoodbye) {
@@ -113,15 +114,15 @@ TEST_F(ComeBack, NorDoesWhoHasSaidGoodbye) {
       json{{"type", "hello"}, {"width", 32}, {"height", 32}, {"resume", sealed}}.dump();
   for (const std::string& text : {std::string(R"({"type":"bye"})"), hello}) {
     say(text, other);
-    visitor().picture.at_work = true;  // as if the renderer drew it
+    visitor().picture->at_work = true;  // as if the renderer drew it
     step();
-    ASSERT_EQ(show->visitors.size(), 1u);
+    ASSERT_EQ(show->visits.visitors.size(), 1u);
     EXPECT_FALSE(visitor().welcomed);
-    EXPECT_EQ(show->kept.size(), 1u);
+    EXPECT_EQ(show->visits.kept.size(), 1u);
   }
-  visitor().picture.at_work = false;
+  visitor().picture->at_work = false;
   step();
-  EXPECT_TRUE(show->visitors.empty());
+  EXPECT_TRUE(show->visits.visitors.empty());
 }
 
 TEST_F(ComeBack, LaterAndAfterANewStartItIsWhereItWas) {
@@ -129,15 +130,15 @@ TEST_F(ComeBack, LaterAndAfterANewStartItIsWhereItWas) {
   const std::string code = last("group")["code"], sealed = token();
   break_line();
   run(kept_seconds + 1);
-  EXPECT_TRUE(show->kept.empty());
+  EXPECT_TRUE(show->visits.kept.empty());
   expect_visit(come(sealed));
-  EXPECT_EQ(show->visitors.front().group.leads, code);
+  EXPECT_EQ(show->visits.visitors.front().group.leads, code);
   open();
   expect_visit(come(sealed));
   EXPECT_EQ(show->totals.stories, 0u) << "it was counted when it was begun";
   const size_t second = come(sealed);
   expect_visit(second);
-  EXPECT_EQ(show->visitors.back().group.leads, "") << "a group has one leader";
+  EXPECT_EQ(show->visits.visitors.back().group.leads, "") << "a group has one leader";
 }
 
 TEST_F(ComeBack, TheTokenOfWhoCameToRestIsNotOlderThanTheMove) {
@@ -173,7 +174,7 @@ TEST_F(ComeBack, FollowersWaitForALeaderWhoComesBack) {
   run(2.5);
   const std::string sealed = token(0);
   break_line(0);
-  EXPECT_EQ(show->visitors.front().group.follows, code);
+  EXPECT_EQ(show->visits.visitors.front().group.follows, code);
   const size_t leader = come(sealed);
   order(R"({"type":"viewpoint","seq":1,"name":"corner"})", leader);
   EXPECT_EQ(last("state", 1)["position"], last("state", leader)["position"]);
@@ -187,13 +188,13 @@ TEST_F(ComeBack, TextsThatAreNotOursChangeNothing) {
   const std::string sealed = token();
   std::string broken = sealed;
   broken[5] ^= 1;
-  const std::string elsewhere = show->seal->close(R"({"exhibit":"other","day":100})");
+  const std::string elsewhere = show->visits.seal->close(R"({"exhibit":"other","day":100})");
   std::vector<std::string> texts = {"x", broken, elsewhere};
   for (const char* text :
        {"{", "[1]", R"({"exhibit":1,"day":100,"id":"1"})", R"({"exhibit":"tiny","id":"1"})",
         R"({"exhibit":"tiny","day":"100","id":"1"})", R"({"exhibit":"tiny","day":100,"id":1})",
         R"({"exhibit":"tiny","day":-9223372036854775808,"id":"1"})"})
-    texts.push_back(show->seal->close(text));
+    texts.push_back(show->visits.seal->close(text));
   for (const std::string& text : texts) {
     const size_t number = come(text);
     EXPECT_EQ(last("welcome", number)["resumed"], false) << text;
@@ -202,13 +203,13 @@ TEST_F(ComeBack, TextsThatAreNotOursChangeNothing) {
   open(100 + token_days + 1);
   EXPECT_EQ(last("welcome", come(sealed))["resumed"], false) << "too old";
   const size_t odd =
-      come(show->seal->close(R"({"exhibit":"tiny","day":108,"id":"1","place":[1]})"));
+      come(show->visits.seal->close(R"({"exhibit":"tiny","day":108,"id":"1","place":[1]})"));
   EXPECT_EQ(last("welcome", odd)["resumed"], true);
   EXPECT_FALSE(told("state", odd).empty());
 }
 
 TEST_F(ComeBack, NumbersThatNoPlaceHasAreBounded) {
-  const size_t number = come(show->seal->close(
+  const size_t number = come(show->visits.seal->close(
       R"({"exhibit":"tiny","day":100,"id":"1","place":[1e300,-1e300,0,1e300,-1e300,1e300],)"
       R"("viewpoint":-7,"tour":{"id":"round","stop":1e300,"paused":true}})"));
   EXPECT_EQ(last("welcome", number)["resumed"], true);
@@ -231,7 +232,7 @@ TEST_F(ComeBack, FewAreKeptAndWhatDidNotChangeIsNotToldAgain) {
   run(2.5);
   EXPECT_EQ(told("keep").size(), told_before + 1);
   for (size_t i = 0; i < most_kept + 2; i++) break_line(i);
-  EXPECT_EQ(show->kept.size(), most_kept);
+  EXPECT_EQ(show->visits.kept.size(), most_kept);
 }
 
 }  // namespace

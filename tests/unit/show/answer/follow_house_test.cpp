@@ -23,7 +23,7 @@ struct FollowHouse : KioskHouse {
     set_clock(10);
   }
   void set_clock(int hour, int minute = 0, int64_t day = 20000) {
-    show->local_time = {day, hour * 60 + minute};
+    show->house.local_time = {day, hour * 60 + minute};
   }
   size_t reloads(size_t page) {
     size_t count = 0;
@@ -77,7 +77,7 @@ TEST_F(FollowHouse, AtClosingAVisitIsBiddenFarewellAndTheEyeIdles) {
   set_clock(17);
   go(0.3);
   EXPECT_EQ(stage(hall), "farewell");
-  EXPECT_EQ(show->teller.voice.story, "");
+  EXPECT_EQ(show->cast.teller.voice.story, "");
   EXPECT_EQ(heard(hall)["people"], 0);
   go(1);
   EXPECT_EQ(read(hall).back(), "Goodbye.");
@@ -103,7 +103,7 @@ TEST_F(FollowHouse, AtClosingAVisitIsBiddenFarewellAndTheEyeIdles) {
 TEST_F(FollowHouse, WhoWasNotGreetedIsNotBiddenFarewell) {
   const size_t hall = page("hall"), in_hall = camera("hall");
   see(in_hall, {near_screen});
-  step_until([&] { return has_guest(find_kiosk(*show, "hall")->stage.now); });
+  step_until([&] { return has_guest(find_kiosk(show->kiosks, "hall")->stage.now); });
   go(0.1);
   set_clock(17);
   go(0.3);
@@ -114,7 +114,7 @@ TEST_F(FollowHouse, WhoWasNotGreetedIsNotBiddenFarewell) {
 TEST_F(FollowHouse, ClosedKiosksGetPicturesNowAndThenVisitorsAsEver) {
   const size_t hall = page("hall"), home = join(32, 32);
   go(1);
-  const Visitor &kiosk = show->visitors.front(), &visitor = show->visitors.back();
+  const Visitor &kiosk = show->visits.visitors.front(), &visitor = show->visits.visitors.back();
   ASSERT_TRUE(kiosk.kiosk && !visitor.kiosk);
   EXPECT_GT(picture_rate(*show, kiosk), 1);
   const double rate = picture_rate(*show, visitor), drawing = drawing_rate(*show, visitor);

@@ -45,13 +45,13 @@ struct GoTest : testing::Test, ShowStage {
     return exhibit;
   }
   void begin(Exhibit exhibit) {
-    ShowSettings settings = settings_for("direct", false, 5);
+    ShowSettings settings = settings_for("direct", 5);
     ShowStage::begin(std::move(exhibit), settings);
     join(96, 64);
     run(0.3);
   }
   void SetUp() override { begin(make_room()); }
-  VisitorPlace& place() { return show->visitors.front().place; }
+  VisitorPlace& place() { return show->visits.visitors.front().place; }
   vec3 here() { return vec3(place().view.position - origin); }
   void go(nlohmann::json order) {
     order["type"] = "go";
@@ -80,7 +80,7 @@ TEST_F(GoTest, GlidesAroundTheWallToWhereTheMapWasClicked) {
   ASSERT_EQ(last("went")["seq"], last_seq);
   EXPECT_TRUE(last("went")["object"].is_null());
   EXPECT_GT(last("went")["seconds"], 2);
-  const WalkMap& map = *show->roads.map;
+  const WalkMap& map = *show->stage.roads.map;
   float farthest_right = -10, least_clear = 10;
   EXPECT_TRUE(step_until([&] {
     farthest_right = std::max(farthest_right, here().x);
@@ -142,7 +142,7 @@ TEST_F(GoTest, LooksCloserThroughGlassWithAllOfItInThePicture) {
   ASSERT_EQ(last("went")["object"], "statue");
   EXPECT_EQ(place().closer, 0);
   arrive();
-  View view = rest_view(*show, show->visitors.front());
+  View view = rest_view(show->stage, show->visits.visitors.front());
   for (int i = 0; i < 8; i++) {
     vec3 corner(i & 1 ? -3.2f : -2.9f, i & 2 ? 0.8f : 1.3f, i & 4 ? -3.2f : -2.9f);
     Projected seen = project_point(view, corner);
@@ -151,9 +151,9 @@ TEST_F(GoTest, LooksCloserThroughGlassWithAllOfItInThePicture) {
                 seen.y < float(view.height))
         << seen.x << ", " << seen.y;
   }
-  Hit hit = first_solid(*show->world, view_ray(view, 48, 32));
-  EXPECT_EQ(show->world->object_of(hit.instance), 3u) << "and nothing before it";
-  EXPECT_GE(clear_at(*show->roads.map, here() - vec3(0, 1.6f, 0)), 0.2f);
+  Hit hit = first_solid(*show->stage.world, view_ray(view, 48, 32));
+  EXPECT_EQ(show->stage.world->object_of(hit.instance), 3u) << "and nothing before it";
+  EXPECT_GE(clear_at(*show->stage.roads.map, here() - vec3(0, 1.6f, 0)), 0.2f);
   say(R"({"type":"input","seq":90,"move":[0,0,1]})");
   step();
   EXPECT_EQ(place().closer, -1) << "who walks off looks closer no more";
@@ -168,13 +168,14 @@ TEST_F(GoTest, AnObjectOfTheMapIsLookedAtFromBehindTheWallToo) {
 
 TEST_F(GoTest, SmallThingsNeedNoSteadyHand) {
   stand_at({-3.05f, 1.6f, -0.6f}, 0, -0.2f);
-  View view = rest_view(*show, show->visitors.front());
+  View view = rest_view(show->stage, show->visits.visitors.front());
   Projected top = project_point(view, {-3.05f, 1.3f, -2.9f});
   Projected wall = project_point(view, {-3.05f, 1.35f, -4});
-  auto near = point_at(show->exhibit, *show->world, view, vec2(top.x / 96, top.y / 64 - 0.01f));
+  auto near =
+      point_at(show->stage.exhibit, *show->stage.world, view, vec2(top.x / 96, top.y / 64 - 0.01f));
   ASSERT_TRUE(near);
   EXPECT_EQ(near->point, 0);
-  auto far = point_at(show->exhibit, *show->world, view, vec2(wall.x / 96, 0.1f));
+  auto far = point_at(show->stage.exhibit, *show->stage.world, view, vec2(wall.x / 96, 0.1f));
   ASSERT_TRUE(far);
   EXPECT_EQ(far->point, -1);
 }
@@ -228,8 +229,9 @@ SeenStatue see_statue(const Show& show, const View& view) {
   SeenStatue seen;
   for (int y = 0; y < view.height; y++)
     for (int x = 0; x < view.width; x++) {
-      const Hit hit = first_solid(*show.world, view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
-      if (!hit.valid() || show.world->object_of(hit.instance) != 3) continue;
+      const Hit hit =
+          first_solid(*show.stage.world, view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
+      if (!hit.valid() || show.stage.world->object_of(hit.instance) != 3) continue;
       seen.pixels++;
       seen.cut |= x == 0 || y == 0 || x == view.width - 1 || y == view.height - 1;
     }
@@ -239,7 +241,7 @@ SeenStatue see_statue(const Show& show, const View& view) {
 TEST_F(GoTest, AnObjectIsLookedAtFromAllSidesThroughWhatStandsInTheWay) {
   go({{"object", "statue"}, {"around", true}});
   EXPECT_EQ(last("error")["code"], "no_way") << "the exhibit does not say so";
-  show->exhibit.points[0].around = true;
+  show->stage.exhibit.points[0].around = true;
   stand_at({-2, 1.6f, 3}, 0, 0);  // behind the wall, where it cannot be seen
   const Viewpoint before = place().view;
   go({{"object", "statue"}, {"around", true}});
@@ -248,7 +250,7 @@ TEST_F(GoTest, AnObjectIsLookedAtFromAllSidesThroughWhatStandsInTheWay) {
   EXPECT_EQ(place().view.position, before.position) << "the visitor stays";
   std::vector<vec3> eyes;
   for (int i = 0; i < 8; i++) {
-    const View view = rest_view(*show, show->visitors.front());
+    const View view = rest_view(show->stage, show->visits.visitors.front());
     const SeenStatue seen = see_statue(*show, view);
     EXPECT_GT(seen.pixels, 96 * 64 / 20) << i;
     EXPECT_FALSE(seen.cut) << i;
@@ -260,8 +262,10 @@ TEST_F(GoTest, AnObjectIsLookedAtFromAllSidesThroughWhatStandsInTheWay) {
   for (vec3 eye : eyes) EXPECT_NEAR(eye.y, eyes[0].y, 1e-3);
   say(R"({"type":"input","seq":71,"look":[0,-9]})");
   run(1);
-  EXPECT_FALSE(see_statue(*show, rest_view(*show, show->visitors.front())).cut) << "from above";
-  const float far = glm::length(rest_view(*show, show->visitors.front()).position - eyes[0]);
+  EXPECT_FALSE(see_statue(*show, rest_view(show->stage, show->visits.visitors.front())).cut)
+      << "from above";
+  const float far =
+      glm::length(rest_view(show->stage, show->visits.visitors.front()).position - eyes[0]);
   EXPECT_GT(far, 0.1f);
   const double far_away = place().around.distance;
   say(R"({"type":"input","seq":72,"move":[0,0,2]})");
@@ -272,12 +276,12 @@ TEST_F(GoTest, AnObjectIsLookedAtFromAllSidesThroughWhatStandsInTheWay) {
   run(2);
   EXPECT_TRUE(last("state")["around"].is_null());
   EXPECT_EQ(place().around.point, -1);
-  EXPECT_EQ(rest_view(*show, show->visitors.front()).near, 0);
+  EXPECT_EQ(rest_view(show->stage, show->visits.visitors.front()).near, 0);
   EXPECT_EQ(place().view.position, before.position);
 }
 
 TEST_F(GoTest, WhoGoesAwayFromAnObjectThatIsTurnedStandsWhereTheyStood) {
-  show->exhibit.points[0].around = true;
+  show->stage.exhibit.points[0].around = true;
   stand_at({-2, 1.6f, 3}, 0, 0);
   const dvec3 before = place().view.position;
   go({{"object", "statue"}, {"around", true}});
@@ -304,7 +308,8 @@ TEST_F(GoTest, TheStorytellerTurnsToWhatIsLookedAtInHerSight) {
     return glm::length(vec3(dvec3(at[0], at[1], at[2]) - origin) - statue);
   };
   stand_at({-1, 1.6f, -0.6f}, 0.6f, -0.1f);
-  ASSERT_TRUE(sees_head(*show, show->teller, rest_view(*show, show->visitors.front())));
+  ASSERT_TRUE(sees_head(show->cast, show->cast.teller,
+                        rest_view(show->stage, show->visits.visitors.front())));
   run(1);
   EXPECT_GT(off(), 0.5f);
   place().closer = 0;

@@ -20,14 +20,16 @@ struct Groups : testing::Test, ShowStage {
     add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
     exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
     tick_seconds = 0.04;
-    begin(std::move(exhibit), settings_for("direct", false, 25));
+    begin(std::move(exhibit), settings_for("direct", 25));
     for (int i = 0; i < 3; i++) join(32, 32);  // a leader, a follower, a stranger
     run(0.2);
     order(R"({"type":"group","action":"lead"})", 0);
     code = last("group", 0)["code"];
     order(R"({"type":"group","action":"follow","code":")" + code + R"("})", 1);
   }
-  const VisitorPlace& place(size_t i) { return std::next(show->visitors.begin(), long(i))->place; }
+  const VisitorPlace& place(size_t i) {
+    return std::next(show->visits.visitors.begin(), long(i))->place;
+  }
 };
 
 TEST_F(Groups, FollowersGoWhereTheLeaderGoesAndStrangersDoNot) {
@@ -104,7 +106,7 @@ TEST_F(Groups, EndsWhenTheLeaderLeavesAndCodesAreChecked) {
   order(R"({"type":"group","action":"leave"})", 0);
   for (size_t i : {1, 2}) {
     EXPECT_EQ(last("group", i)["role"], "none");
-    EXPECT_TRUE(std::next(show->visitors.begin(), long(i))->group.follows.empty());
+    EXPECT_TRUE(std::next(show->visits.visitors.begin(), long(i))->group.follows.empty());
   }
 }
 

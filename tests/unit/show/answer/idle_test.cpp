@@ -17,7 +17,7 @@ struct Idle : testing::Test, ShowStage {
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
     add_storyteller(exhibit, "anna", {-2, 0, 1});
-    ShowSettings settings = settings_for("direct", true, 10);
+    ShowSettings settings = settings_for("direct", 10);
     settings.idle_after = 20, settings.idle_answer = 5, settings.hidden_after = 4;
     tick_seconds = 0.1;
     begin(std::move(exhibit), settings);
@@ -27,8 +27,9 @@ struct Idle : testing::Test, ShowStage {
     return said.is_null() ? "" : said["state"].get<std::string>();
   }
   bool is_there(size_t visitor = 0) {
-    return std::ranges::any_of(
-        show->visitors, [&](const Visitor& one) { return one.link == browsers[visitor].link; });
+    return std::ranges::any_of(show->visits.visitors, [&](const Visitor& one) {
+      return one.link == browsers[visitor].link;
+    });
   }
   void here(bool is, size_t visitor = 0) {
     say(json{{"type", "presence"}, {"here", is}}.dump(), visitor);
@@ -46,8 +47,8 @@ TEST_F(Idle, WhoDoesNothingIsAskedAndThenRests) {
   run(1.5);
   EXPECT_FALSE(is_there());
   EXPECT_EQ(asked(), "paused");
-  ASSERT_EQ(show->resting.size(), 1u);
-  EXPECT_EQ(show->resting[0], browsers[0].link);
+  ASSERT_EQ(show->visits.resting.size(), 1u);
+  EXPECT_EQ(show->visits.resting[0], browsers[0].link);
   EXPECT_FALSE(browsers[0].link->closed());
   EXPECT_EQ(told("idle").size(), 2u) << "each is said once";
 }
@@ -85,12 +86,12 @@ TEST_F(Idle, AVisitGoesOnWhereItRested) {
   order(R"({"type":"viewpoint","seq":1,"name":"corner"})");
   order(R"({"type":"settings","width":48,"height":32})");
   run(26);
-  ASSERT_EQ(show->resting.size(), 1u);
-  auto link = show->resting[0];
+  ASSERT_EQ(show->visits.resting.size(), 1u);
+  auto link = show->visits.resting[0];
   const json hello = json::parse(link->first_heard()->text);
   EXPECT_EQ(hello["type"], "hello");
   EXPECT_EQ(hello["width"], 48);
-  show->resting.clear();
+  show->visits.resting.clear();
   arrivals.put(link);  // as the reception does
   run(1);
   EXPECT_TRUE(is_there());
@@ -167,7 +168,7 @@ TEST_F(Idle, WhoRestsOrHasGoneGivesTheirSeatBack) {
   EXPECT_EQ(capacity->standing().seats, 2);
   browsers[gone].link->mark_closed();
   run(0.5);
-  EXPECT_EQ(show->kept.size(), 1u);
+  EXPECT_EQ(show->visits.kept.size(), 1u);
   EXPECT_EQ(capacity->standing().seats, 1);
   const auto standing = capacity->standing();
   EXPECT_NEAR(standing.busy, cores_a_pixel(standing.cost, 15, false) * weighed_pixels(64 * 32),

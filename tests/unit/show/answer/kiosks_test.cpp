@@ -39,17 +39,18 @@ TEST_F(Kiosks, OneCameraLessSilencesNoOtherKiosk) {
   see(in_hall, {near_screen});
   see(in_attic, {near_screen});
   go(1);
-  const uint64_t guest = find_kiosk(*show, "attic")->audience.guests.at(0).id;
+  const uint64_t guest = find_kiosk(show->kiosks, "attic")->audience.guests.at(0).id;
   cameras[in_hall].on = false;
   cameras[in_hall].link->mark_closed();
   go(3);
   EXPECT_EQ(stage(attic), "person");
-  EXPECT_EQ(find_kiosk(*show, "attic")->audience.guests.at(0).id, guest) << "the same as before";
+  EXPECT_EQ(find_kiosk(show->kiosks, "attic")->audience.guests.at(0).id, guest)
+      << "the same as before";
   EXPECT_EQ(heard(hall)["cameras"], 0);
   camera("hall");
   see(2, {near_screen});
   go(1);
-  EXPECT_NE(find_kiosk(*show, "hall")->audience.guests.at(0).id, guest);
+  EXPECT_NE(find_kiosk(show->kiosks, "hall")->audience.guests.at(0).id, guest);
 }
 
 TEST_F(Kiosks, AScreenOfKnownSizeIsSeenThroughFromTheGuestsHead) {
@@ -60,7 +61,7 @@ TEST_F(Kiosks, AScreenOfKnownSizeIsSeenThroughFromTheGuestsHead) {
   const size_t hall = page("hall"), attic = page("attic");
   const size_t in_hall = camera("hall"), in_attic = camera("attic");
   auto seen = [&](size_t number) {
-    return std::next(show->visitors.begin(), long(number))->place.last_view;
+    return std::next(show->visits.visitors.begin(), long(number))->place.last_view;
   };
   const View rest = seen(hall), other = seen(attic);
   const float away = rest_distance(hall_settings.screen, rest);
@@ -72,7 +73,7 @@ TEST_F(Kiosks, AScreenOfKnownSizeIsSeenThroughFromTheGuestsHead) {
   const View view = seen(hall);
   EXPECT_NE(view.middle, vec2(0));
   // The storyteller looks at the guest's head: from there the picture is seen.
-  const vec3 guest = find_kiosk(*show, "hall")->audience.guests.at(0).head;
+  const vec3 guest = find_kiosk(show->kiosks, "hall")->audience.guests.at(0).head;
   EXPECT_LT(glm::length(guest - view.position), 1e-3f);
   for (vec2 corner : {vec2(-0.3f, 0.3f), vec2(0.3f, 0.3f), vec2(0.3f, -0.3f)}) {
     const vec3 place =
@@ -107,7 +108,7 @@ TEST_F(Kiosks, SheIsWithTheFirstUntilItsFarewellIsOver) {
   EXPECT_TRUE(read(attic).empty());
   tells(attic, "tale");
   EXPECT_EQ(last("error", attic)["code"], "storyteller_busy");
-  EXPECT_EQ(show->teller.voice.story, "");
+  EXPECT_EQ(show->cast.teller.voice.story, "");
   see(in_hall, {});
   go(3);
   EXPECT_EQ(stage(hall), "farewell");
@@ -119,7 +120,7 @@ TEST_F(Kiosks, SheIsWithTheFirstUntilItsFarewellIsOver) {
   go(2);
   EXPECT_EQ(read(attic), std::vector<std::string>{"Hello."}) << "now its turn has come";
   tells(attic, "tale");
-  EXPECT_EQ(show->teller.voice.story, "tale");
+  EXPECT_EQ(show->cast.teller.voice.story, "tale");
   EXPECT_EQ(show->totals.greetings, 2u);
   EXPECT_EQ(show->totals.farewells, 1u);
 }
@@ -132,11 +133,11 @@ TEST_F(Kiosks, AFarewellStopsWhatTheGuestBegan) {
   EXPECT_EQ(stage(hall), "engaged");
   see(in_hall, {});
   go(5);
-  EXPECT_EQ(show->teller.voice.story, "tale") << "who looks away is told on";
+  EXPECT_EQ(show->cast.teller.voice.story, "tale") << "who looks away is told on";
   EXPECT_EQ(stage(hall), "engaged");
   go(2);
   EXPECT_EQ(stage(hall), "farewell");
-  EXPECT_EQ(show->teller.voice.story, "");
+  EXPECT_EQ(show->cast.teller.voice.story, "");
   EXPECT_EQ(read(hall).back(), "Goodbye.");
   EXPECT_EQ(show->totals.farewells, 1u);
   go(30);
@@ -154,8 +155,9 @@ TEST_F(Kiosks, AFarewellStopsTheTourAndTheScreenIsAWindowAgain) {
   see(in_hall, {});
   go(7);
   ASSERT_EQ(stage(hall), "farewell");
-  EXPECT_EQ(show->visitors.front().place.tour.state, TourRide::State::none);
-  EXPECT_EQ(show->visitors.front().place.viewpoint, kiosk_viewpoint(*show, "hall"));
+  EXPECT_EQ(show->visits.visitors.front().place.tour.state, TourRide::State::none);
+  EXPECT_EQ(show->visits.visitors.front().place.viewpoint,
+            kiosk_viewpoint(show->stage, show->cast, "hall"));
 }
 
 TEST_F(Kiosks, WhoComesBackIsNotGreetedAgain) {
@@ -180,7 +182,7 @@ TEST_F(Kiosks, OfTwoOneLeavesAndTheOtherIsToldOn) {
   see(in_hall, {near_screen});
   go(20);
   EXPECT_EQ(stage(hall), "engaged");
-  EXPECT_EQ(show->teller.voice.story, "tale");
+  EXPECT_EQ(show->cast.teller.voice.story, "tale");
   EXPECT_EQ(show->totals.farewells, 0u);
 }
 
@@ -226,18 +228,18 @@ TEST_F(Kiosks, SheRemembersWhatAGuestHasHeardAndForgetsItWithThem) {
   say(R"({"type":"storyteller","action":"stop"})", hall);
   see(in_hall, {near_screen}, "swipe_left");
   go(0.3);
-  EXPECT_EQ(show->teller.voice.story, "other") << "the one that is new to them";
+  EXPECT_EQ(show->cast.teller.voice.story, "other") << "the one that is new to them";
   EXPECT_EQ(heard(hall)["heard"], json({"tale", "other"}));
-  EXPECT_FALSE(find_kiosk(*show, "hall")->visit == KioskVisit{});
+  EXPECT_FALSE(find_kiosk(show->kiosks, "hall")->visit == KioskVisit{});
   see(in_hall, {});
   go(30);
   EXPECT_EQ(heard(hall)["heard"], json::array());
-  const Kiosk& kiosk = *find_kiosk(*show, "hall");
+  const Kiosk& kiosk = *find_kiosk(show->kiosks, "hall");
   EXPECT_EQ(kiosk.visit, KioskVisit{});
   EXPECT_TRUE(kiosk.gestures.empty());
   EXPECT_TRUE(kiosk.audience.guests.empty());
   EXPECT_TRUE(kiosk.audience.known.empty());
-  EXPECT_TRUE(show->teller.mind.behaviour.people.empty());
+  EXPECT_TRUE(show->cast.teller.mind.behaviour.people.empty());
   see(in_hall, {near_screen});
   go(1);
   EXPECT_EQ(show->totals.greetings, 2u) << "somebody new";
@@ -256,12 +258,12 @@ TEST_F(Kiosks, GesturesTurnThePagesOfABook) {
     see(in_hall, {near_screen});
     go(0.4);
   }
-  EXPECT_EQ(show->teller.voice.story, "");
+  EXPECT_EQ(show->cast.teller.voice.story, "");
   does(hall, "museum");
   EXPECT_FALSE(heard(hall).contains("gesture"));
   see(in_hall, {near_screen}, "swipe_left");
   go(0.4);
-  EXPECT_EQ(show->teller.voice.story, "tale");
+  EXPECT_EQ(show->cast.teller.voice.story, "tale");
 }
 
 TEST_F(Kiosks, CamerasAreToldWhatIsNeeded) {
@@ -309,12 +311,12 @@ TEST_F(Kiosks, WithoutANameOneBelongsToTheOnlyOne) {
 TEST_F(Kiosks, OfNoExhibitLiveAsLongAsSomebodyIsConnected) {
   page("hall");
   camera("attic");
-  EXPECT_EQ(show->kiosks.size(), 2u);
+  EXPECT_EQ(show->kiosks.all.size(), 2u);
   cameras[0].on = false;
   cameras[0].link->mark_closed();
   browsers[0].link->mark_closed();
   go(0.3);
-  EXPECT_TRUE(show->kiosks.empty());
+  EXPECT_TRUE(show->kiosks.all.empty());
 }
 
 TEST_F(Kiosks, AreAsTheExhibitSays) {
@@ -327,7 +329,7 @@ TEST_F(Kiosks, AreAsTheExhibitSays) {
   const size_t hall = page("");
   EXPECT_EQ(heard(hall)["kiosk"], "hall");
   EXPECT_NEAR(heard(hall)["volume"].get<double>(), 0.4, 1e-6);
-  EXPECT_EQ(show->visitors.front().place.viewpoint, 1);
+  EXPECT_EQ(show->visits.visitors.front().place.viewpoint, 1);
   does(hall, "well");
   go(4.5);
   EXPECT_EQ(stage(hall), "person");

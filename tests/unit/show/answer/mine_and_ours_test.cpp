@@ -31,7 +31,7 @@ struct MineAndOurs : testing::Test, ShowStage {
   void begin(bool shared) {
     browsers.clear();
     tick_seconds = 0.04;
-    ShowStage::begin(make_shared_room(shared), settings_for("direct", false, 25));
+    ShowStage::begin(make_shared_room(shared), settings_for("direct", 25));
     for (int i = 0; i < 2; i++) join(32, 32);
     run(0.5);
   }
@@ -121,7 +121,7 @@ TEST_F(MineAndOurs, EachHasTheirOwnStorytellerWhoTellsThemAlone) {
 TEST_F(MineAndOurs, WhoHidesHerHidesHerFromThemselves) {
   begin(false);
   for (size_t i : {0, 1}) {
-    Visitor& visitor = *std::next(show->visitors.begin(), long(i));
+    Visitor& visitor = *std::next(show->visits.visitors.begin(), long(i));
     visitor.place.view.position = {-2, 0.3, 2};
     visitor.place.view.yaw = visitor.place.view.pitch = 0;
   }
@@ -155,7 +155,7 @@ TEST_F(MineAndOurs, WhatTheExhibitSharesIsEverybodys) {
   order(R"({"type":"lamp","name":"ceiling","on":false})", 0);
   run(0.6);
   EXPECT_EQ(last("state", 1)["lamps"]["ceiling"], false);
-  for (const Visitor& visitor : show->visitors) EXPECT_EQ(visitor.own_teller, nullptr);
+  for (const Visitor& visitor : show->visits.visitors) EXPECT_EQ(visitor.own_teller, nullptr);
 }
 
 // A kiosk's guests have the house's storyteller: nobody far away takes it from them, nor do they

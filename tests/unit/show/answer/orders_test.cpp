@@ -9,6 +9,7 @@
 
 #include "show/exhibit/exhibit_lights.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
@@ -27,17 +28,17 @@ Exhibit make_room() {
 }
 
 struct Orders : testing::Test, ShowStage {
-  void SetUp() override { begin(false); }
-  void begin(bool background) {
+  void SetUp() override { begin(); }
+  void begin() {
     browsers.clear();
-    ShowStage::begin(make_room(), settings_for("direct", background, 25));
+    ShowStage::begin(make_room(), settings_for("direct", 25));
     for (int i = 0; i < 2; i++) join(32, 32);
     run(0.5);
   }
   std::string input(double yaw) {
     return json{{"type", "input"}, {"seq", ++seq}, {"look", {yaw, 0}}}.dump();
   }
-  Visitor& other() { return show->visitors.back(); }
+  Visitor& other() { return show->visits.visitors.back(); }
 };
 
 TEST_F(Orders, OfOneKindTheNewestIsCarriedOutATick) {
@@ -91,7 +92,7 @@ TEST_F(Orders, TurnsAddUpAndEverySeqIsAnswered) {
     say(input(0.25));
   }
   step();
-  const Viewpoint& corner = show->exhibit.viewpoints[1].view;
+  const Viewpoint& corner = show->stage.exhibit.viewpoints[1].view;
   EXPECT_EQ(visitor().place.view.position, corner.position);
   EXPECT_NEAR(visitor().place.view.yaw, corner.yaw + 0.25, 1e-5);
   EXPECT_EQ(visitor().place.seq, seq);
@@ -168,14 +169,14 @@ TEST_F(Orders, WhoeverOrdersTooMuchDoesNotKeepOthersFromBeingDrawn) {
       },
   };
   for (const auto& storm : storms) {
-    begin(true);
-    const double began = other().picture.drawn_at;
+    begin();
+    const double began = other().picture->drawn_at;
     int drawn = 0, ticks = 0;
     for (double last = began; drawn < 10 && ticks < 20000; ticks++) {
       for (int i = 0; i < 6; i++) say(storm(6 * ticks + i).dump());
       turn(0.02, 0, 1);
       step_on();
-      if (other().picture.drawn_at > last) last = other().picture.drawn_at, drawn++;
+      if (other().picture->drawn_at > last) last = other().picture->drawn_at, drawn++;
     }
     EXPECT_EQ(drawn, 10) << storm(0) << " in " << ticks << " ticks";
   }

@@ -14,7 +14,7 @@ struct PictureSize : testing::Test, ShowStage {
       std::make_shared<Capacity>(CapacitySettings{.cores = 64, .memory = 4 * visitor_bytes(0)});
 
   void SetUp() override {
-    begin(make_tiny_exhibit(), settings_for("direct", false));
+    begin(make_tiny_exhibit(), settings_for("direct"));
     for (int i = 0; i < 2; i++) {
       browsers.push_back({std::make_shared<Link>(i + 1, LinkKind::visit, "test")});
       arrivals.put(browsers.back().link, capacity->find_seat(32 * 32));

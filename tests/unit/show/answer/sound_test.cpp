@@ -95,11 +95,11 @@ struct SoundTest : testing::Test, ShowStage {
     exhibit.storytellers[1].voice.variant = "m2";
     tick_seconds = 0.04;
     exhibit.shared_storyteller = true;
-    begin(std::move(exhibit), settings_for("direct", false));
-    show->speech.find = [this](const SpeechRequest& r) {
+    begin(std::move(exhibit), settings_for("direct"));
+    show->cast.speech.find = [this](const SpeechRequest& r) {
       return kept.contains(r.text) ? kept[r.text] : nullptr;
     };
-    show->speech.speak = [this](const SpeechRequest& r) {
+    show->cast.speech.speak = [this](const SpeechRequest& r) {
       spoken++;
       asked.push_back(r);
       kept[r.text] = make_speech(r.text, r.lang, 2);
@@ -201,7 +201,7 @@ TEST_F(SoundTest, NothingIsMadeForThoseWhoDoNotListenAndALateListenerHearsTheRes
   EXPECT_EQ(subtitles(a).size(), 2u);
   EXPECT_TRUE(sounds(a).empty() && speech(a).empty());
   EXPECT_EQ(show->totals.sounds, 0u);
-  EXPECT_TRUE(heard(show->teller.voice)) << "the mouth follows what was prepared all the same";
+  EXPECT_TRUE(heard(show->cast.teller.voice)) << "the mouth follows what was prepared all the same";
   say(R"({"type":"settings","sound":true})", a);
   run(0.1);
   ASSERT_FALSE(sounds(a).empty());
@@ -310,7 +310,7 @@ TEST_F(SoundTest, AnybodyMayStopWhatAnotherAskedForAndBothAreTold) {
   EXPECT_EQ(speech(b).at(0)["text"], "One.") << "who is there listens in";
   say(R"({"type":"storyteller","action":"stop"})", b);
   run(0.2);
-  EXPECT_EQ(show->teller.voice.story, "");
+  EXPECT_EQ(show->cast.teller.voice.story, "");
   for (size_t peer : {a, b}) {
     EXPECT_EQ(speech(peer).back()["action"], "stop");
     EXPECT_EQ(subtitles(peer).back()["text"], "");
@@ -327,18 +327,18 @@ TEST_F(SoundTest, AStoryGoesOnWithoutWhoAskedUnlessItWasPaused) {
     run(0.2);
     say(R"({"type":"bye"})", a);
     run(0.2);
-    EXPECT_EQ(show->teller.voice.story, paused ? "" : "tale");
+    EXPECT_EQ(show->cast.teller.voice.story, paused ? "" : "tale");
     say(R"({"type":"bye"})", b);
     run(0.2);
-    EXPECT_EQ(show->teller.voice.story, "") << "nobody is left to hear it";
-    EXPECT_TRUE(show->teller.voice.queue.empty());
+    EXPECT_EQ(show->cast.teller.voice.story, "") << "nobody is left to hear it";
+    EXPECT_TRUE(show->cast.teller.voice.queue.empty());
   }
 }
 
 TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
   size_t a = join("en"), b = join("en");
   run(0.2);
-  show->visitors.front().kiosk = true;
+  show->visits.visitors.front().kiosk = true;
   say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.4);
   uint64_t refused = show->totals.refused_messages;
@@ -348,20 +348,20 @@ TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
     run(0.08);
   }
   EXPECT_EQ(show->totals.refused_messages, refused + 5);
-  EXPECT_EQ(show->teller.voice.story, "tale");
-  EXPECT_EQ(show->teller.voice.asked_by, browsers[a].link->id);
-  EXPECT_TRUE(show->teller.visible);
-  EXPECT_EQ(show->teller.index, 0u);
-  EXPECT_FALSE(show->teller.voice.paused);
+  EXPECT_EQ(show->cast.teller.voice.story, "tale");
+  EXPECT_EQ(show->cast.teller.voice.asked_by, browsers[a].link->id);
+  EXPECT_TRUE(show->cast.teller.visible);
+  EXPECT_EQ(show->cast.teller.index, 0u);
+  EXPECT_FALSE(show->cast.teller.voice.paused);
   // The kiosk may, and afterwards everybody may again.
   say(R"({"type":"storyteller","action":"stop"})", a);
   run(0.1);
   say(R"({"type":"storyteller","story":"tale"})", b);
   run(0.1);
-  EXPECT_EQ(show->teller.voice.asked_by, browsers[b].link->id);
+  EXPECT_EQ(show->cast.teller.voice.asked_by, browsers[b].link->id);
   say(R"({"type":"storyteller","action":"stop"})", a);
   run(0.1);
-  EXPECT_EQ(show->teller.voice.story, "") << "who stands before it comes first";
+  EXPECT_EQ(show->cast.teller.voice.story, "") << "who stands before it comes first";
 }
 
 // ---- the narrator of a tour ----
@@ -402,7 +402,7 @@ TEST_F(SoundTest, ATourIsHeardByItsVisitorAloneAndEverywhere) {
 }
 
 TEST_F(SoundTest, WhoHasTheirOwnStorytellerHearsHerAlone) {
-  show->exhibit.shared_storyteller = false;
+  show->stage.exhibit.shared_storyteller = false;
   size_t a = join("en"), b = join("de");
   run(0.2);
   say(R"({"type":"storyteller","story":"tale"})", a);
@@ -427,10 +427,10 @@ TEST_F(SoundTest, AFarewellCutsTheStoryShort) {
   run(0.2);
   say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.4);
-  EXPECT_EQ(show->teller.voice.story, "tale");
-  wellspring::show::say(show->teller.voice, plain_line({{"en", "Goodbye."}}), true);
+  EXPECT_EQ(show->cast.teller.voice.story, "tale");
+  wellspring::show::say(show->cast.teller.voice, plain_line({{"en", "Goodbye."}}), true);
   run(0.4);
-  EXPECT_EQ(show->teller.voice.story, "");
+  EXPECT_EQ(show->cast.teller.voice.story, "");
   ASSERT_GE(speech(a).size(), 3u);
   EXPECT_EQ(speech(a)[1]["action"], "stop");
   EXPECT_EQ(speech(a)[2]["text"], "Goodbye.");

@@ -15,7 +15,7 @@ const std::string any = "a token for any kiosk", hall = "the token of the hall";
 
 struct Trust : testing::Test, ShowStage {
   void SetUp() override {
-    ShowSettings settings = settings_for("direct", false);
+    ShowSettings settings = settings_for("direct");
     settings.kiosk_tokens = {{"", any}, {"hall", hall}};
     begin(make_tiny_exhibit(), settings);
   }
@@ -33,7 +33,7 @@ struct Trust : testing::Test, ShowStage {
   // The last visitor's: "kiosk NAME", or what it was told instead.
   std::string outcome(const std::string& token, const std::string& kiosk, bool local = false) {
     const size_t page = claim(token, kiosk, local);
-    const Visitor& visitor = show->visitors.back();
+    const Visitor& visitor = show->visits.visitors.back();
     if (visitor.welcomed) return (visitor.kiosk ? "kiosk " : "visitor ") + visitor.name;
     return last("error", page).value("code", "");
   }
@@ -55,16 +55,16 @@ TEST_F(Trust, AKioskOnAnotherMachineHasAToken) {
 
 TEST_F(Trust, WhoIsNotBelievedChangesNothing) {
   for (int i = 0; i < 3; i++) claim("", "invented " + std::to_string(i));
-  EXPECT_TRUE(show->kiosks.empty());
+  EXPECT_TRUE(show->kiosks.all.empty());
   say(nlohmann::json{{"type", "kiosk"}, {"showing", "book"}, {"touched", true}}.dump(), 0);
   step();
   EXPECT_EQ(last("error", 0)["code"], "hello_first");
-  EXPECT_TRUE(show->kiosks.empty());
+  EXPECT_TRUE(show->kiosks.all.empty());
   // The same page, once it has its token.
   say(nlohmann::json{{"type", "hello"}, {"role", "kiosk"}, {"token", hall}}.dump(), 0);
   step();
-  ASSERT_EQ(show->kiosks.size(), 1u);
-  EXPECT_EQ(show->kiosks[0].settings.name, "hall");
+  ASSERT_EQ(show->kiosks.all.size(), 1u);
+  EXPECT_EQ(show->kiosks.all[0].settings.name, "hall");
 }
 
 TEST_F(Trust, VisitorsNeedNone) {
@@ -72,7 +72,7 @@ TEST_F(Trust, VisitorsNeedNone) {
   browsers[visitor].link->local = false;
   say(R"({"type":"hello","width":32,"height":32})", visitor);
   step();
-  EXPECT_TRUE(show->visitors.back().welcomed);
+  EXPECT_TRUE(show->visits.visitors.back().welcomed);
 }
 
 }  // namespace

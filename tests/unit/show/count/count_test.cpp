@@ -10,7 +10,7 @@ namespace {
 struct Counts : KioskHouse {
   void SetUp() override {
     KioskHouse::SetUp();
-    show->local_time.day = 20000;
+    show->house.local_time.day = 20000;
   }
   double sum(const char* what, const std::string& key, int64_t day = 20000) const {
     auto found = show->sums.find({day, what, key});
@@ -46,7 +46,7 @@ TEST_F(Counts, LanguagesThatTheExhibitDoesNotSpeakAreOne) {
 TEST_F(Counts, MidnightBeginsADay) {
   join(32, 32);
   go(0.1);
-  show->local_time.day = 20001;
+  show->house.local_time.day = 20001;
   join(32, 32);
   join(32, 32);
   go(0.1);
@@ -77,13 +77,13 @@ TEST_F(Counts, NobodyIsThereWhoHasNotMovedForLong) {
 
 TEST_F(Counts, StoriesBegunAndHeardToTheEnd) {
   const size_t visitor = join(32, 32);
-  tells(visitor, show->exhibit.stories[0].id);
-  const std::string key = "tiny/" + show->exhibit.stories[0].id;
+  tells(visitor, show->stage.exhibit.stories[0].id);
+  const std::string key = "tiny/" + show->stage.exhibit.stories[0].id;
   EXPECT_EQ(sum("stories_begun", key), 1);
   say(R"({"type":"storyteller","action":"stop"})", visitor);
   go(1);
   EXPECT_EQ(sum("stories_heard", key), 0) << "broken off";
-  tells(visitor, show->exhibit.stories[0].id);
+  tells(visitor, show->stage.exhibit.stories[0].id);
   for (int i = 0; i < 400; i++) step(0.5);
   EXPECT_EQ(sum("stories_begun", key), 2);
   EXPECT_EQ(sum("stories_heard", key), 1);

@@ -45,11 +45,11 @@ class BusyMachine {
 TEST(BusyMachine, PicturesCostNoMoreThanTheProcessorTimeOfAll) {
   constexpr int width = 480, height = 270, pictures = 40, guessed = 30;
   ShowStage stage;
-  stage.begin(make_tiny_exhibit(), settings_for("direct", false));
+  stage.begin(make_tiny_exhibit(), settings_for("direct"));
   stage.join(width, height);
   stage.step();
   const auto known = stage.show->totals.drawn;
-  const double before = stage.show->capacity->standing().cost.drawn;
+  const double before = stage.show->visits.capacity->standing().cost.drawn;
   const double began = process_seconds_now();
   {
     const BusyMachine busy;
@@ -63,7 +63,7 @@ TEST(BusyMachine, PicturesCostNoMoreThanTheProcessorTimeOfAll) {
   // Capacity's mean of so many pictures, back to their sum.
   const double pixels = weighed_pixels(width * height);
   const auto first = double(known + guessed);
-  const double after = stage.show->capacity->standing().cost.drawn;
+  const double after = stage.show->visits.capacity->standing().cost.drawn;
   const double sum = pixels * (after * (first + pictures) - before * first);
   EXPECT_GT(sum, 0.05 * had);
   EXPECT_LE(sum, 1.001 * had);

@@ -15,7 +15,7 @@ namespace wellspring::test {
 void PrintTo(const Decision& one, std::ostream* out) {
   static const char* names[] = {"nothing", "moving", "skin", "go_on", "samples", "pass", "picture"};
   *out << names[int(one.what)] << " of " << one.visitor << (one.hurry ? ", in a hurry" : "")
-       << ", purpose " << int(one.purpose);
+       << ", kind " << int(one.kind);
 }
 
 void PrintTo(const Demand& one, std::ostream* out) {
@@ -97,12 +97,6 @@ const std::vector<Row> rows = {
        renderer.idle = false;
      },
      {}},
-    {"without a background the tick draws all by itself",
-     [](States& all, RendererState& renderer) {
-       all = {due(walker())};
-       renderer.background = false;
-     },
-     {}},
     {"who has not been welcomed gets no picture",
      [](States& all, RendererState&) {
        all = {due(walker())};
@@ -139,7 +133,7 @@ const std::vector<Row> rows = {
        all = {stander()};
        all[0].new_place = all[0].unshown = true;
      },
-     {Drawing::picture, 0}},
+     {Drawing::picture, 0, false, PictureKind::still}},
     {"who stands is shown one picture before the next is drawn",
      [](States& all, RendererState&) {
        all = {due(stander())};
@@ -157,7 +151,7 @@ const std::vector<Row> rows = {
        all = {stander()};
        all[0].other_light = true;
      },
-     {Drawing::picture, 0}},
+     {Drawing::picture, 0, false, PictureKind::still}},
     {"a walker sees switched lamps in its next picture",
      [](States& all, RendererState&) {
        all = {walker()};
@@ -169,7 +163,7 @@ const std::vector<Row> rows = {
        all = {stander()};
        all[0].sees_moving = true;
      },
-     {Drawing::picture, 0}},
+     {Drawing::picture, 0, false, PictureKind::still}},
     {"who has waited longest comes first",
      [](States& all, RendererState&) {
        all = {due(walker(), 2), due(walker(), 4), due(walker(), 3)};
@@ -196,13 +190,13 @@ const std::vector<Row> rows = {
        all = {due(walker(), 4), due(walker(), 2), due(walker(), 3)};
        all[0].served = 0.3, all[1].served = 0.1, all[2].served = 0.2;
      },
-     {Drawing::picture, 1, false, Purpose::shown, 0.1}},
+     {Drawing::picture, 1, false, PictureKind::moving, 0.1}},
     {"who wanted no pictures for a while has saved up no time",
      [](States& all, RendererState& renderer) {
        all = {due(walker(), 2), due(walker(), 4)};
        all[0].served = 0.1, all[1].served = renderer.served = 0.5;
      },
-     {Drawing::picture, 1, false, Purpose::shown, 0.5}},
+     {Drawing::picture, 1, false, PictureKind::moving, 0.5}},
     {"a walker who was shown none for half a second comes first, and keeps back nobody else",
      [](States& all, RendererState&) {
        all = {due(walker(), 0.7), due(walker(), 0.6), due(walker(), 2)};
@@ -210,7 +204,7 @@ const std::vector<Row> rows = {
        all[0].shown_at = now - 0.55, all[1].shown_at = now - 0.4, all[2].shown_at = now - 0.2;
        for (VisitorDrawState& one : all) one.picture_rate = 60;
      },
-     {Drawing::picture, 0, false, Purpose::shown, 0.1}},
+     {Drawing::picture, 0, false, PictureKind::moving, 0.1}},
     {"not one whose picture at rest is only to become better",
      [](States& all, RendererState&) {
        all = {due(stander(), 9), due(walker(), 2)};
@@ -347,7 +341,7 @@ const std::vector<Row> rows = {
        all[0].rest.samples = 0.25;
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::reconstruction}},
+     {Drawing::picture, 0, false, PictureKind::reconstruction}},
     {"not sooner",
      [](States& all, RendererState& renderer) {
        all = {due(stander())};
@@ -355,14 +349,14 @@ const std::vector<Row> rows = {
        all[0].rest.samples = 1;
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::shown}},
+     {Drawing::picture, 0, false, PictureKind::still}},
     {"not of fewer samples than a quarter a pixel",
      [](States& all, RendererState& renderer) {
        all = {due(stander())};
        all[0].rest.samples = 0.24;
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::shown}},
+     {Drawing::picture, 0, false, PictureKind::still}},
     {"not where what moves would be in it",
      [](States& all, RendererState& renderer) {
        all = {due(listener())};
@@ -370,26 +364,26 @@ const std::vector<Row> rows = {
        all[0].rest.samples = 1;
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::shown}},
+     {Drawing::picture, 0, false, PictureKind::still}},
     {"not where there is no network",
      [](States& all, RendererState&) {
        all = {due(stander())};
        all[0].rest.samples = 1;
      },
-     {Drawing::picture, 0, false, Purpose::shown}},
+     {Drawing::picture, 0, false, PictureKind::still}},
     {"who has a reconstruction gets samples alone",
      [](States& all, RendererState& renderer) {
        all = {due(reconstructed())};
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::samples}},
+     {Drawing::picture, 0, false, PictureKind::samples}},
     {"the next one begins at 1.4 times as many samples",
      [](States& all, RendererState& renderer) {
        all = {due(reconstructed())};
        all[0].rest.samples = 1.4 * 4;
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::reconstruction}},
+     {Drawing::picture, 0, false, PictureKind::reconstruction}},
     {"passes take a third of the time at most",
      [](States& all, RendererState& renderer) {
        all = {due(reconstructed())};
@@ -397,7 +391,7 @@ const std::vector<Row> rows = {
        all[0].rest.passed_at = now - 1.8;
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::samples}},
+     {Drawing::picture, 0, false, PictureKind::samples}},
     {"the last one has all samples that are kept",
      [](States& all, RendererState& renderer) {
        all = {due(reconstructed())};
@@ -405,7 +399,7 @@ const std::vector<Row> rows = {
        all[0].rest.passed_samples = 0.9 * most_rest_samples;
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::reconstruction}},
+     {Drawing::picture, 0, false, PictureKind::reconstruction}},
     {"of a reconstruction in other light a drawn picture is made",
      [](States& all, RendererState& renderer) {
        all = {due(reconstructed())};
@@ -413,7 +407,7 @@ const std::vector<Row> rows = {
        all[0].rest.samples = 4;
        renderer.can_reconstruct = true;
      },
-     {Drawing::picture, 0, false, Purpose::shown}},
+     {Drawing::picture, 0, false, PictureKind::still}},
     {"where others wait, who only gains by samples does without",
      [](States& all, RendererState& renderer) {
        all = {due(reconstructed(), 9), due(walker())};

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "light/technique/technique.h"
+#include "show/state/drawing.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 
@@ -23,8 +25,8 @@ ChangingLight torch() {
 
 struct DynamicPictures : testing::Test, ShowStage {
   test::Folder folder;
-  void begin_with(std::vector<ChangingLight> lights, bool background = true) {
-    begin_with(std::move(lights), settings_for("direct", background, 50));
+  void begin_with(std::vector<ChangingLight> lights) {
+    begin_with(std::move(lights), settings_for("direct", 50));
   }
   void begin_with(std::vector<ChangingLight> lights, const ShowSettings& settings) {
     Exhibit exhibit = make_tiny_exhibit();
@@ -38,8 +40,9 @@ struct DynamicPictures : testing::Test, ShowStage {
     StillSettings settings;
     settings.spp = 64;
     settings.transport = show->settings.transport;
-    Frame sum = render_still(*show->still_technique, *show->world, show->lights, view, settings);
-    Scene scene = show->exhibit.scene;
+    Frame sum = render_still(*show->stage.still_technique, *show->stage.world, show->stage.lights,
+                             view, settings);
+    Scene scene = show->stage.exhibit.scene;
     for (Material& material : scene.materials) material.emission = vec3(0);
     for (const DynamicLight& one : dynamic_lights_of(*show, visitor(), time))
       scene.lights.push_back(one.light);
@@ -49,7 +52,7 @@ struct DynamicPictures : testing::Test, ShowStage {
         render_still(*find_technique("path"), world, make_lights(world), view, settings);
     for (size_t i = 0; i < sum.color.size(); i++) sum.color[i] += added.color[i];
     Image8 picture;
-    tonemap(sum, Tonemap{show->exhibit.exposure}, picture);
+    tonemap(sum, Tonemap{show->stage.exhibit.exposure}, picture);
     return picture;
   }
   Image8 dark_truth() { return truth(visitor().place.last_view, 64); }
@@ -64,11 +67,11 @@ TEST_F(DynamicPictures, AreLitAtRest) {
   begin_with({torch()});
   run(6);
   EXPECT_TRUE(last_header().flags & packet_still);
-  EXPECT_TRUE(visitor().picture.backdrop);
+  EXPECT_TRUE(visitor().picture->backdrop);
   expect_lit(4);
   // The picture that stays does not know it.
   Image8 still;
-  const Keyframe& keyframe = visitor().picture.keyframe;
+  const Keyframe& keyframe = visitor().picture->keyframe;
   still.width = keyframe.view.width, still.height = keyframe.view.height;
   for (int i = 0; i < still.width * still.height; i++)
     for (int c : {0, 8, 16}) still.rgb.push_back(uint8_t(keyframe.color[size_t(i)] >> c));
@@ -92,14 +95,14 @@ TEST_F(DynamicPictures, GatherTheBounceOfALightThatStays) {
   stays.track.clear();
   begin_with({stays});
   run(5);
-  const int passes = visitor().picture.settled.passes;
+  const int passes = visitor().picture->settled.passes;
   EXPECT_GT(passes, 3);
   run(6);
-  EXPECT_GT(visitor().picture.settled.passes, passes);
+  EXPECT_GT(visitor().picture->settled.passes, passes);
   expect_lit(4);
   begin_with({torch()});
   run(5);
-  EXPECT_EQ(visitor().picture.settled.passes, 0) << "it never stays";
+  EXPECT_EQ(visitor().picture->settled.passes, 0) << "it never stays";
 }
 
 TEST_F(DynamicPictures, AreLitOnTheWay) {
@@ -111,22 +114,16 @@ TEST_F(DynamicPictures, AreLitOnTheWay) {
 
 // The maps' own light, found at the start, is off by some codes.
 TEST_F(DynamicPictures, AreLitOverIlluminationMaps) {
-  ShowSettings settings = settings_for("gather", true, 50);
+  ShowSettings settings = settings_for("gather", 50);
   settings.cache = folder.path.string();
   begin_with({torch()}, settings);
-  ASSERT_TRUE(show->lights.maps);
+  ASSERT_TRUE(show->stage.lights.maps);
   for (int i = 0; i < 100; i++) turn(0.01), step();
   EXPECT_FALSE(last_header().flags & packet_still);
   expect_lit(9);
   run(6);
   EXPECT_TRUE(last_header().flags & packet_still);
   expect_lit(9);
-}
-
-TEST_F(DynamicPictures, AreLitWithoutBackground) {
-  begin_with({torch()}, false);
-  run(3);
-  expect_lit(6);
 }
 
 // When it goes out the picture is again what stands still.
@@ -160,7 +157,7 @@ TEST_F(DynamicPictures, PayNothingForLightOutOfReach) {
   begin_with({behind});
   run(3);
   EXPECT_TRUE(visitor().dynamic.empty());
-  EXPECT_EQ(memory_bytes(show->renderer.work.dynamic), 0u);
+  EXPECT_EQ(memory_bytes(show->drawing->renderer.work.dynamic), 0u);
 }
 
 // Without such lights nothing of them is computed, and no memory is held for them.
@@ -168,10 +165,10 @@ TEST_F(DynamicPictures, CostNothingWhereThereAreNone) {
   begin_with({});
   run(1);
   for (int i = 0; i < 20; i++) turn(0.01), step();
-  EXPECT_EQ(memory_bytes(show->renderer.work.dynamic), 0u);
+  EXPECT_EQ(memory_bytes(show->drawing->renderer.work.dynamic), 0u);
   begin_with({torch()});
   run(1);
-  EXPECT_GT(memory_bytes(show->renderer.work.dynamic), 0u);
+  EXPECT_GT(memory_bytes(show->drawing->renderer.work.dynamic), 0u);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 #include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"
 #include "show/draw/picture.h"
+#include "show/state/drawing.h"
+#include "show/state/visitor_picture.h"
 #include "show/tick.h"
 #include "unit/show/show_stage.h"
 
@@ -21,23 +23,23 @@ struct LatePictures : testing::Test, ShowStage {
   std::promise<void> held;
 
   void begin(int visitors = 1) {
-    ShowStage::begin(make_tiny_exhibit(), settings_for("direct", true, 50));
+    ShowStage::begin(make_tiny_exhibit(), settings_for("direct", 50));
     for (int i = 0; i < visitors; i++) join(96, 64);
   }
   // Makes the renderer busy from now on, as if a picture took long.
   void hold_renderer() {
     step();
     step();
-    while (!show->renderer.idle()) step();
-    show->renderer.worker.run([wait = held.get_future().share()] { wait.wait(); });
+    while (!show->drawing->renderer.idle()) step();
+    show->drawing->renderer.worker.run([wait = held.get_future().share()] { wait.wait(); });
   }
   void release_renderer() {
     held.set_value();
     held = {};
-    show->renderer.worker.wait();
+    show->drawing->renderer.worker.wait();
   }
   ~LatePictures() override {
-    if (show && !show->renderer.idle()) held.set_value();
+    if (show && !show->drawing->renderer.idle()) held.set_value();
   }
   using ShowStage::truth;
   Image8 truth() { return truth(visitor().place.last_view, 64); }
@@ -70,7 +72,7 @@ TEST_F(LatePictures, StandingStillIsShownAsDrawn) {
   for (int i = 0; i < 20; i++) turn(0.01), step();
   steps(200);
   EXPECT_TRUE(last_header().flags & packet_still);
-  EXPECT_EQ(visitor().picture.keyframe.view, visitor().place.last_view);
+  EXPECT_EQ(visitor().picture->keyframe.view, visitor().place.last_view);
   EXPECT_LT(mean_difference(last_image(), truth()), 4);
 }
 
@@ -111,14 +113,14 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   EXPECT_EQ(show->totals.surroundings, 1u);
   for (int i = 0; i < 30; i++) turn(0.3), step(0.08);  // a slow machine
   EXPECT_GT(show->totals.surroundings, 2u);
-  ASSERT_FALSE(visitor().picture.around.keyframe.empty());
-  const View& around = visitor().picture.around.keyframe.view;
-  const View& keyframe = visitor().picture.keyframe.view;
+  ASSERT_FALSE(visitor().picture->around.keyframe.empty());
+  const View& around = visitor().picture->around.keyframe.view;
+  const View& keyframe = visitor().picture->keyframe.view;
   EXPECT_LE(around.width * around.height, keyframe.width * keyframe.height / 7);
   size_t memory = picture_memory(visitor());
-  Keyframe kept = std::exchange(visitor().picture.around.keyframe, {});
+  Keyframe kept = std::exchange(visitor().picture->around.keyframe, {});
   EXPECT_GE(memory, picture_memory(visitor()) + kept.color.size() * 8);  // colours and disparities
-  visitor().picture.around.keyframe = std::move(kept);
+  visitor().picture->around.keyframe = std::move(kept);
 
   // Farther than the keyframe shows while nothing can be drawn, so that it alone would not do.
   hold_renderer();
@@ -126,7 +128,7 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   Image8 alone, with;
   float unknown = 0;
   // The keyframe may be of a view yet to come, and what lies around of an earlier one.
-  const VisitorPicture& picture = visitor().picture;
+  const VisitorPicture& picture = *visitor().picture;
   bool to_the_left = dot(picture.around.keyframe.view.forward, picture.keyframe.view.right) < 0;
   const View& seen = visitor().place.last_view;
   auto is_beyond = [&] {  // on the side of what lies around
@@ -148,7 +150,7 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   turn(0);
   steps(160);
   uint64_t drawn = show->totals.surroundings;
-  EXPECT_TRUE(visitor().picture.around.keyframe.empty());
+  EXPECT_TRUE(visitor().picture->around.keyframe.empty());
   steps(20);
   EXPECT_EQ(show->totals.surroundings, drawn);
 }
@@ -156,29 +158,30 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
 TEST_F(LatePictures, NothingAroundTheOldPlaceAfterACameraCut) {
   begin();
   for (int i = 0; i < 60; i++) turn(0.3), step(0.08);  // a slow machine
-  ASSERT_FALSE(visitor().picture.around.keyframe.empty());
+  ASSERT_FALSE(visitor().picture->around.keyframe.empty());
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   for (int i = 0; i < 6; i++) {
     step();
-    const Surroundings& around = visitor().picture.around;
-    if (visitor().picture.job.camera_cuts == visitor().place.camera_cuts) {
+    const Surroundings& around = visitor().picture->around;
+    if (visitor().picture->job.camera_cuts == visitor().place.camera_cuts) {
       EXPECT_TRUE(around.keyframe.empty() || around.camera_cuts == visitor().place.camera_cuts);
     }
   }
-  EXPECT_EQ(visitor().picture.job.camera_cuts, visitor().place.camera_cuts);
+  EXPECT_EQ(visitor().picture->job.camera_cuts, visitor().place.camera_cuts);
 }
 
 // Time counts so that all who walk get as many keyframes; who stands waits for them.
 TEST_F(LatePictures, WhoseKeyframesAreDearIsChargedLess) {
   begin(3);
   for (int i = 0; i < 30; i++) turn(0.05, 0.5, 0), turn(0.05, 0.5, 1), step();
-  auto visitors = show->visitors.begin();
+  auto visitors = show->visits.visitors.begin();
   Visitor &cheap = *visitors++, &dear = *visitors++, &standing = *visitors;
   cheap.times.whole = 20, dear.times.whole = 40;
-  EXPECT_NEAR(20 * charge_weight(*show, cheap), 40 * charge_weight(*show, dear), 1e-3);
-  EXPECT_GT(charge_weight(*show, standing), 2);
+  EXPECT_NEAR(20 * charge_weight(show->visits, show->time, cheap),
+              40 * charge_weight(show->visits, show->time, dear), 1e-3);
+  EXPECT_GT(charge_weight(show->visits, show->time, standing), 2);
   dear.times.whole = 4000;
-  EXPECT_GT(charge_weight(*show, dear), 0.3);  // within bounds
+  EXPECT_GT(charge_weight(show->visits, show->time, dear), 0.3);  // within bounds
 }
 
 // A still picture waits for samples, which a visitor who moves on needs no more.
@@ -188,51 +191,51 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   hold_renderer();
   Visitor& one = visitor();
   PictureJob job = make_picture_job(*show, one, 1);
-  ASSERT_TRUE(job.still);
+  ASSERT_TRUE(is_still(job));
   EXPECT_FALSE(is_outdated(*show, job, one));
-  show->renderer.drawn = &one;  // as if the renderer were at work on it
-  show->renderer.job = job;
-  one.picture.at_work = true;
+  show->drawing->renderer.drawn = one.link->id;  // as if the renderer were at work on it
+  show->drawing->renderer.job = job;
+  one.picture->at_work = true;
   step_on();
-  EXPECT_FALSE(show->renderer.given_up);
+  EXPECT_FALSE(show->drawing->renderer.given_up);
   turn(0.02);
   step_on();
   EXPECT_TRUE(is_outdated(*show, job, one));
-  EXPECT_TRUE(show->renderer.given_up);
+  EXPECT_TRUE(show->drawing->renderer.given_up);
   EXPECT_EQ(last_header().seq, seq);  // meanwhile warped
 
-  Keyframe keyframe = one.picture.keyframe;
+  Keyframe keyframe = one.picture->keyframe;
   uint64_t drawn = show->totals.drawn;
   release_renderer();
-  draw_picture(*show, job, one);
-  EXPECT_TRUE(one.picture.costs.given_up);
-  EXPECT_EQ(one.picture.costs.samples, 0u);
+  draw_all(job, one);
+  EXPECT_TRUE(one.picture->costs.given_up);
+  EXPECT_EQ(one.picture->costs.samples, 0u);
   turn(0.02);
   step();
   EXPECT_EQ(show->totals.given_up, 1u);
   EXPECT_EQ(show->totals.drawn, drawn);
-  EXPECT_EQ(one.picture.keyframe.color, keyframe.color);
+  EXPECT_EQ(one.picture->keyframe.color, keyframe.color);
   EXPECT_EQ(last_header().seq, seq);
   steps(2);
   EXPECT_EQ(show->totals.drawn, drawn + 1);  // the next, after what lies around the visitor now
-  EXPECT_FALSE(one.picture.job.still);
-  EXPECT_FALSE(one.picture.costs.given_up);
+  EXPECT_FALSE(is_still(one.picture->job));
+  EXPECT_FALSE(one.picture->costs.given_up);
 }
 
 TEST_F(LatePictures, AreOutdatedByCameraCutsAndByMotionAfterRest) {
   begin();
   Visitor unseen;
   PictureJob job;
-  job.still = true;
+  job.kind = PictureKind::still;
   job.expected = unseen.place.last_view;
   unseen.place.last_view.position.x += 1;
   EXPECT_FALSE(is_outdated(*show, job, unseen));  // there is nothing else to show
   unseen.place.camera_cuts++;
   EXPECT_TRUE(is_outdated(*show, job, unseen));
-  unseen.picture.job.camera_cuts = job.camera_cuts = unseen.place.camera_cuts;
-  unseen.picture.drawn_at = 1;
+  unseen.picture->job.camera_cuts = job.camera_cuts = unseen.place.camera_cuts;
+  unseen.picture->drawn_at = 1;
   EXPECT_TRUE(is_outdated(*show, job, unseen));
-  job.still = false;  // pictures of who moves are for views to come
+  job.kind = PictureKind::moving;  // pictures of who moves are for views to come
   EXPECT_FALSE(is_outdated(*show, job, unseen));
   unseen.left = true;
   EXPECT_TRUE(is_outdated(*show, job, unseen));
@@ -269,7 +272,7 @@ TEST_F(LatePictures, ACameraCutWhileDrawingDiscardsThatPicture) {
   begin();
   turn(0, 1);
   steps(20);
-  while (!show->renderer.drawn) step_on();  // not only its samples are traced
+  while (!show->drawing->renderer.drawn) step_on();  // not only its samples are traced
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   size_t before = pictures().size();
   steps(6);
@@ -303,9 +306,9 @@ TEST_F(LatePictures, VisitorsLeaveWhileTheirsIsDrawn) {
     else say(R"({"type":"bye"})", size_t(i));
     step_on();
     steps(3);
-    EXPECT_EQ(show->visitors.size(), size_t(i));
+    EXPECT_EQ(show->visits.visitors.size(), size_t(i));
   }
-  EXPECT_EQ(show->renderer.drawn, nullptr);
+  EXPECT_EQ(show->drawing->renderer.drawn, 0u);
 }
 
 // Whenever a picture or its samples are finished, also in the midst of a tick, somebody gets the
@@ -319,9 +322,10 @@ TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
     for (int k = 0; k < 100; k++) turn(0.001);  // much to hear, which takes most of the tick
     tick(*show, arrivals, now += 0.02);
     take_sent();
-    auto at_work = std::count_if(show->visitors.begin(), show->visitors.end(),
-                                 [](auto& one) { return one.picture.at_work; });
-    ASSERT_EQ(size_t(at_work), show->renderer.brokers.size() + (show->renderer.drawn ? 1 : 0))
+    auto at_work = std::count_if(show->visits.visitors.begin(), show->visits.visitors.end(),
+                                 [](auto& one) { return one.picture->at_work; });
+    ASSERT_EQ(size_t(at_work),
+              show->drawing->renderer.asking.size() + (show->drawing->renderer.drawn ? 1 : 0))
         << "tick " << i;
   }
   step();
@@ -334,7 +338,7 @@ TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
   std::vector<int> drawn(3, 0);
   for (int i = 0; i < 120; i++) {
     step();
-    if (show->renderer.drawn) drawn[size_t(show->renderer.drawn->link->id - 1)]++;
+    if (show->drawing->renderer.drawn) drawn[size_t(show->drawing->renderer.drawn - 1)]++;
   }
   // The renderer's time is shared, not pictures: what one costs differs with the machine's load.
   for (int count : drawn) EXPECT_GT(count, 10);
@@ -345,7 +349,7 @@ TEST_F(LatePictures, TheShowEndsWhileOneIsDrawn) {
   for (int i = 0; i < 2; i++)
     say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})", size_t(i));
   for (int i = 0; i < 20; i++) step_on();
-  while (!show->renderer.drawn) step_on();
+  while (!show->drawing->renderer.drawn) step_on();
   show.reset();
 }
 

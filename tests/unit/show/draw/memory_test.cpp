@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "show/http/answer.h"
+#include "show/state/drawing.h"
+#include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {
@@ -26,17 +28,17 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
       for (size_t visitor : {0, 1}) stage.turn(walks ? 0.4 : 0, walks ? 0.3 : 0, visitor);
     // Keyframes of full resolution, however slow the machine is.
     if (walks)
-      for (Visitor& visitor : stage.show->visitors) visitor.times = {};
+      for (Visitor& visitor : stage.show->visits.visitors) visitor.times = {};
     stage.step();
     for (Browser& browser : stage.browsers) browser.pictures.clear();  // else they pile up
     size_t k = 0;
-    for (Visitor& visitor : stage.show->visitors) {
-      const VisitorPicture& picture = visitor.picture;
+    for (Visitor& visitor : stage.show->visits.visitors) {
+      const VisitorPicture& picture = *visitor.picture;
       most[k] = std::max(most[k], picture.memory_bytes);
-      if (k == 0 && !picture.job.still) walking = std::max(walking, picture.memory_bytes);
+      if (k == 0 && !is_still(picture.job)) walking = std::max(walking, picture.memory_bytes);
       if (k == 0) widest = std::max(widest, picture.keyframe.view.width);
       still[k] = pictures[k] >= 8;
-      if (!picture.job.passing && picture.job.tick != last[k]) pictures[k]++;
+      if (is_still(picture.job) && picture.job.tick != last[k]) pictures[k]++;
       last[k] = picture.job.tick;
       k++;
     }
@@ -48,7 +50,7 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
   EXPECT_GE(most[0], 50'000'000u);       // all of it is counted
   EXPECT_LE(most[1], (size_t(64) << 20) * 9 / 4);
   EXPECT_GE(double(most[1]), 2.0 * double(most[0]));
-  EXPECT_GT(stage.show->renderer.work_bytes, size_t(40) << 20);
+  EXPECT_GT(stage.show->drawing->renderer.work_bytes, size_t(40) << 20);
 
   std::string told = write_metrics(make_report(*stage.show));
   EXPECT_NE(told.find("wellspring_visitor_memory_bytes{visitor=\"1\""), std::string::npos);

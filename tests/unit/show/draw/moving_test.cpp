@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "show/draw/picture.h"
+#include "show/state/drawing.h"
+#include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {
@@ -32,11 +34,13 @@ struct Moving : testing::Test, ShowStage {
   }
   // A picture of the rest is begun, and not finished.
   bool is_between_steps() {
-    return step_until(
-        [&] { return show->renderer.drawn && show->renderer.step != DrawingStep::done; });
+    return step_until([&] {
+      return show->drawing->renderer.drawn && show->drawing->renderer.step != DrawingStep::done;
+    });
   }
   bool rested() {
-    return step_until([&] { return !show->visitors.empty() && visitor().picture.backdrop; }) &&
+    return step_until(
+               [&] { return !show->visits.visitors.empty() && visitor().picture->backdrop; }) &&
            step_until([&] { return show->totals.posed > 20; });
   }
   // Red over green about where the place falls: the room is grey.
@@ -63,9 +67,9 @@ TEST_F(Moving, IsDrawnMoreOftenThanTheRest) {
   EXPECT_GE(show->totals.drawn, drawn + 2);
   EXPECT_GT(show->totals.posed - posed, 2 * (show->totals.drawn - drawn));
   EXPECT_NEAR(double(pictures().size() - sent), double(show->totals.posed - posed), 2);
-  EXPECT_TRUE(visitor().picture.backdrop);
-  EXPECT_FALSE(visitor().picture.moving.empty());
-  const PictureWindow& window = visitor().picture.moving.window;
+  EXPECT_TRUE(visitor().picture->backdrop);
+  EXPECT_FALSE(visitor().picture->moving.empty());
+  const PictureWindow& window = visitor().picture->moving.window;
   EXPECT_LT(2 * window.width * window.height, 192 * 128);
 }
 
@@ -78,7 +82,7 @@ TEST_F(Moving, ShowsWhereItIs) {
   ASSERT_TRUE(is_between_steps());
   uint64_t drawn = show->totals.drawn, posed = show->totals.posed;
   Image8 before = last_image();
-  show->teller.storyteller.placement[3].x += 1;
+  show->cast.teller.storyteller.placement[3].x += 1;
   ASSERT_TRUE(step_until([&] { return show->totals.posed > posed; }));
   size_t sent = pictures().size();
   ASSERT_TRUE(step_until([&] { return pictures().size() > sent; }));
@@ -94,8 +98,8 @@ TEST_F(Moving, ShowsWhereItIs) {
 TEST_F(Moving, IsInWhatIsWarped) {
   ASSERT_TRUE(rested());
   steps(200);
-  ASSERT_TRUE(
-      step_until([&] { return visitor().picture.backdrop && !visitor().picture.moving.empty(); }));
+  ASSERT_TRUE(step_until(
+      [&] { return visitor().picture->backdrop && !visitor().picture->moving.empty(); }));
   vec3 here(-2, 1, 0.5f);
   double shown = red_at(last_image(), here);
   turn(0.02);
@@ -106,23 +110,23 @@ TEST_F(Moving, IsInWhatIsWarped) {
   EXPECT_LE(show->totals.drawn, drawn + 2);
   step();
   EXPECT_NEAR(red_at(last_image(), here), shown, 8);
-  EXPECT_FALSE(visitor().picture.backdrop);
-  EXPECT_TRUE(visitor().picture.moving.empty());
+  EXPECT_FALSE(visitor().picture->backdrop);
+  EXPECT_TRUE(visitor().picture->moving.empty());
 }
 
 // A visitor who waits for a picture does not wait for more light of another's.
 TEST_F(Moving, OthersNeedNotWaitForLight) {
   ASSERT_TRUE(rested());
   ASSERT_TRUE(step_until([&] {
-    show->samples_per_second = 50000;  // so few that they are traced in several steps
-    return show->renderer.drawn && show->renderer.step == DrawingStep::trace;
+    show->drawing->samples_per_second = 50000;  // so few that they are traced in several steps
+    return show->drawing->renderer.drawn && show->drawing->renderer.step == DrawingStep::trace;
   }));
-  size_t traced = show->renderer.work.traced;
-  ASSERT_LT(traced, show->renderer.work.requests.size());
+  size_t traced = show->drawing->renderer.work.traced;
+  ASSERT_LT(traced, show->drawing->renderer.work.requests.size());
   join(64, 64);
-  ASSERT_TRUE(step_until([&] { return show->renderer.drawn != &visitor(); }, 8));
-  EXPECT_EQ(visitor().picture.costs.samples, traced);
-  EXPECT_TRUE(step_until([&] { return show->visitors.back().picture.drawn_at > 0; }, 8));
+  ASSERT_TRUE(step_until([&] { return show->drawing->renderer.drawn != visitor().link->id; }, 8));
+  EXPECT_EQ(visitor().picture->costs.samples, traced);
+  EXPECT_TRUE(step_until([&] { return show->visits.visitors.back().picture->drawn_at > 0; }, 8));
 }
 
 // Between the steps of a picture the visitor may go, and the storyteller too.
@@ -130,29 +134,29 @@ TEST_F(Moving, WhoLeavesBetweenStepsIsForgotten) {
   ASSERT_TRUE(rested());
   ASSERT_TRUE(is_between_steps());
   browsers[0].link->mark_closed();
-  EXPECT_TRUE(step_until([&] { return show->visitors.empty(); }, 50));
-  EXPECT_EQ(show->renderer.drawn, nullptr);
+  EXPECT_TRUE(step_until([&] { return show->visits.visitors.empty(); }, 50));
+  EXPECT_EQ(show->drawing->renderer.drawn, 0u);
 }
 TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   ASSERT_TRUE(rested());
   steps(200);
   vec3 here(-2, 1, 0.5f);
   EXPECT_GT(red_at(last_image(), here), 40);
-  show->teller.visible = false;
-  ASSERT_TRUE(step_until([&] { return !visitor().picture.job.moving; }));
+  show->cast.teller.visible = false;
+  ASSERT_TRUE(step_until([&] { return !visitor().picture->job.sees_moving; }));
   steps(30);
   EXPECT_LT(red_at(last_image(), here), 20);
-  EXPECT_FALSE(visitor().picture.backdrop);
+  EXPECT_FALSE(visitor().picture->backdrop);
 }
 
 // The next picture shows the wall as though the storyteller had never stood there.
 TEST_F(Moving, NoGhostStaysWhereSheStood) {
   ASSERT_TRUE(rested());
   steps(200);
-  show->teller.visible = false;
+  show->cast.teller.visible = false;
   const uint64_t drawn = show->totals.drawn;
   ASSERT_TRUE(
-      step_until([&] { return show->totals.drawn > drawn && !visitor().picture.job.moving; }));
+      step_until([&] { return show->totals.drawn > drawn && !visitor().picture->job.sees_moving; }));
   const size_t sent = pictures().size();
   ASSERT_TRUE(step_until([&] { return pictures().size() > sent; }));
   const Image8 after = last_image();

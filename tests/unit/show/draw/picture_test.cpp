@@ -34,11 +34,11 @@ TEST(Picture, IsRightForAnEyeInSolidGlassToo) {
   for (bool glass : {true, false}) {
     ShowStage stage;  // a visitor of the first viewpoint, after two seconds
     stage.tick_seconds = 0.05;
-    stage.begin(make_cubed(glass), settings_for("direct", false));
+    stage.begin(make_cubed(glass), settings_for("direct"));
     stage.join(160, 90);
     stage.run(2);
     const View& view = stage.visitor().place.last_view;
-    EXPECT_EQ(stage.show->visibility->rasterises(view), !glass);
+    EXPECT_EQ(stage.show->stage.visibility->rasterises(view), !glass);
     Image8 truth = stage.truth(view, 64), shown = stage.last_image();
     ASSERT_EQ(shown.rgb.size(), truth.rgb.size());
     double light = 0, shown_light = 0;

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "show/state/drawing.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {
@@ -46,21 +47,21 @@ struct SkinSamples : testing::Test, ShowStage {
     join(192, 128);
     for (int i = 0; i < 200; i++) {
       step();
-      most = std::max(most, show->renderer.skin.traced);
+      most = std::max(most, show->drawing->renderer.skin.traced);
     }
   }
 };
 
 TEST_F(SkinSamples, SomeWhereSheIsSeen) {
   run_with_teller({-2, 0, 0.5});
-  EXPECT_GT(show->renderer.skin.turn, 0u);
+  EXPECT_GT(show->drawing->renderer.skin.turn, 0u);
   EXPECT_GT(most, 0u);
 }
 
 // The storyteller is in the cone of the visitor's view, and the wall across the room before it.
 TEST_F(SkinSamples, NoneBehindAWall) {
   run_with_teller({-2, 0, -1.5});
-  EXPECT_GT(show->renderer.skin.turn, 3u);
+  EXPECT_GT(show->drawing->renderer.skin.turn, 3u);
   EXPECT_EQ(most, 0u);
 }
 

@@ -12,6 +12,8 @@
 #include "cache/point_image.h"
 #include "show/http/answer.h"
 #include "show/draw/pace.h"
+#include "show/state/drawing.h"
+#include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {
@@ -45,8 +47,8 @@ Exhibit make_cubes() {
 }
 
 struct Steering : testing::Test, ShowStage {
-  void begin(bool background = false, int width = 160, int height = 90) {
-    ShowSettings settings = settings_for("direct", background);
+  void begin(int width = 160, int height = 90) {
+    ShowSettings settings = settings_for("direct");
     settings.late_samples = false;
     browsers.clear(), seq = 0, now = 0;
     ShowStage::begin(make_cubes(), settings);
@@ -56,7 +58,7 @@ struct Steering : testing::Test, ShowStage {
   // 0 to 1, of the picture.
   vec2 place_of(uint32_t object) {
     const View& view = visitor().place.last_view;
-    for (const PointOfInterest& point : show->exhibit.points)
+    for (const PointOfInterest& point : show->stage.exhibit.points)
       if (point.objects.front() == object) {
         Projected at = project_point(view, vec3(point.place));
         return {at.x / float(view.width), at.y / float(view.height)};
@@ -79,8 +81,8 @@ struct Steering : testing::Test, ShowStage {
     double count = 0;
     for (int i = 0; i < pictures; i++) {
       step();
-      const RenderCache& cache = visitor().picture.cache;
-      for (const Request& request : show->renderer.work.requests) {
+      const RenderCache& cache = visitor().picture->cache;
+      for (const Request& request : show->drawing->renderer.work.requests) {
         if (request.pixel >= cache.image().point.size()) continue;
         uint32_t point = cache.image().point[request.pixel];
         count += point != no_point && cache.points().color[point].object == object;
@@ -142,7 +144,7 @@ TEST_F(Steering, OnlyWhereAttentionIsWanted) {
 }
 
 TEST_F(Steering, RestsWhenThereIsNothingLeftToLearn) {
-  begin(false, 64, 48);
+  begin(64, 48);
   // Nothing but a wall.
   say(json{{"type", "camera"}, {"seq", 1}, {"position", {-2.5, 1.6, 2}}, {"yaw", pi / 2}}.dump());
   ASSERT_TRUE(step_until([&] { return rests(*show, visitor()); }, 4000));
@@ -163,8 +165,8 @@ TEST_F(Steering, RestsWhenThereIsNothingLeftToLearn) {
 }
 
 TEST_F(Steering, GoesOnBesideDrawing) {
-  begin(true);
-  ASSERT_TRUE(step_until([&] { return visitor().picture.job.weights != nullptr; }));
+  begin();
+  ASSERT_TRUE(step_until([&] { return visitor().picture->job.weights != nullptr; }));
   EXPECT_GT(show->totals.attention_analyses, 0u);
   point_at(right);
   ASSERT_TRUE(step_until([&] { return !visitor().looks.cause.hints.empty(); }));
@@ -195,8 +197,8 @@ TEST_F(Steering, AHeadBeforeAKioskTellsWhereItsEyesAre) {
   person.confidence = 1;
   auto hints_of = [&](float yaw, float pitch) {
     person.rotation = vec3(yaw, pitch, 0);
-    show->eyes.clear();
-    Eye& eye = show->eyes.emplace_back();
+    show->kiosks.eyes.clear();
+    Eye& eye = show->kiosks.eyes.emplace_back();
     eye.seen.state = Presence::person;
     eye.seen.people = {person};
     eye.received = show->time;
@@ -212,21 +214,21 @@ TEST_F(Steering, AHeadBeforeAKioskTellsWhereItsEyesAre) {
   EXPECT_LT(hints_of(0, 0.2f)[0].place.y, middle.y - 5);
   person.confidence = NAN;
   EXPECT_TRUE(hints_of(0, 0).empty());
-  show->eyes.clear();
+  show->kiosks.eyes.clear();
 }
 
 TEST_F(Steering, WhatIsToldOfIsLookedAt) {
   begin();
   steps(10);
   const SeenPicture& seen = *visitor().looks.seen;
-  show->teller.voice.queue.emplace_back();
+  show->cast.teller.voice.queue.emplace_back();
   EXPECT_TRUE(find_hints(*show, visitor(), seen).empty());
-  show->teller.voice.held.point = "right";
+  show->cast.teller.voice.held.point = "right";
   std::vector<AttentionHint> hints = find_hints(*show, visitor(), seen);
   ASSERT_EQ(hints.size(), 1u);
   EXPECT_NEAR(hints[0].place.x / float(seen.picture.width), place_of(right).x, 0.02);
   EXPECT_NEAR(hints[0].place.y / float(seen.picture.height), place_of(right).y, 0.02);
-  show->teller.voice.queue.clear();
+  show->cast.teller.voice.queue.clear();
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "show/draw/late_samples.h"
+#include "show/state/drawing.h"
+#include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {
@@ -12,7 +14,7 @@ namespace {
 
 struct WholePass : testing::Test, ShowStage {
   void open() {
-    ShowSettings settings = settings_for("instant_radiosity", false);
+    ShowSettings settings = settings_for("instant_radiosity");
     begin(make_tiny_exhibit(), settings);
     join(96, 64);
     steps(3);
@@ -23,7 +25,7 @@ struct WholePass : testing::Test, ShowStage {
 TEST_F(WholePass, IsFilteredAsAWhole) {
   open();
   turn(0.05, 0.1), step();
-  DrawingWork& work = show->renderer.work;
+  DrawingWork& work = show->drawing->renderer.work;
   const size_t pixels = size_t(work.pass.width) * size_t(work.pass.height);
   ASSERT_GT(pixels, 200u);
   ASSERT_EQ(work.samples.size(), pixels);
@@ -34,7 +36,7 @@ TEST_F(WholePass, IsFilteredAsAWhole) {
   std::vector<Sample> plain(pixels);
   TransportSettings transport = show->settings.transport;
   transport.clamp = show->settings.moving_clamp;
-  trace(*show->technique, *show->world, show->lights, transport, requests, plain);
+  trace(*show->stage.technique, *show->stage.world, show->stage.lights, transport, requests, plain);
   auto roughness = [&](const std::vector<Sample>& samples) {
     double sum = 0;
     for (size_t i = 1; i < pixels; i++)
@@ -48,7 +50,7 @@ TEST_F(WholePass, IsFilteredAsAWhole) {
 TEST_F(WholePass, ItsSamplesAreOfPixelsOfThePicturesLight) {
   open();
   turn(0.05, 0.1), step();
-  const DrawingWork& work = show->renderer.work;
+  const DrawingWork& work = show->drawing->renderer.work;
   std::vector<uint32_t> named;
   for (const Request& request : work.requests)
     if (request.pixel != no_pixel) named.push_back(request.pixel);
@@ -56,12 +58,12 @@ TEST_F(WholePass, ItsSamplesAreOfPixelsOfThePicturesLight) {
   EXPECT_GT(named.size(), work.requests.size() * 9 / 10);
   auto distinct = std::unique(named.begin(), named.end()) - named.begin();
   EXPECT_GT(size_t(distinct), named.size() * 8 / 10) << "spread over the picture";
-  EXPECT_GT(visitor().picture.cache.stats().points, int(named.size() / 2));
+  EXPECT_GT(visitor().picture->cache.stats().points, int(named.size() / 2));
 }
 
 // At rest its pictures go to what the same technique renders.
 TEST_F(WholePass, PicturesAtRestGetNearToTheTruth) {
-  ShowSettings settings = settings_for("instant_radiosity", false);
+  ShowSettings settings = settings_for("instant_radiosity");
   settings.still_technique = "instant_radiosity";
   begin(make_tiny_exhibit(), settings);
   join(96, 64);

@@ -14,7 +14,7 @@ namespace wellspring::test {
 namespace {
 
 struct StillDeskTest : testing::Test {
-  std::unique_ptr<Show> show = make_show(make_tiny_exhibit(), settings_for("direct", false));
+  std::unique_ptr<Show> show = make_show(make_tiny_exhibit(), settings_for("direct"));
   StillRoom room{*show};
   std::mutex mutex;
   std::vector<std::pair<int, StillOutcome>> told;  // number of the question, in order

@@ -72,7 +72,7 @@ TEST(StillQuestion, NoNumberOfSamplesIsTooManyAndTimeIsASettingOfItsOwn) {
 
 // On a clock that a sample a pixel takes a second of.
 TEST(StillRoom, HasAsManySamplesAsFitIntoItsTimeAndSaysSo) {
-  std::unique_ptr<Show> show = make_show(make_tiny_exhibit(), settings_for("direct", false));
+  std::unique_ptr<Show> show = make_show(make_tiny_exhibit(), settings_for("direct"));
   double now = 0;
   StillRoom room(*show, [&] { return now++; });
   const auto samples = [&](double seconds, int spp, double denoise_seconds = 0) {
@@ -93,7 +93,7 @@ TEST(StillRoom, HasAsManySamplesAsFitIntoItsTimeAndSaysSo) {
 }
 
 TEST(StillRoom, SaysWhereItIsNotDenoisedForWantOfWeights) {
-  ShowSettings settings = settings_for("direct", false);
+  ShowSettings settings = settings_for("direct");
   settings.weights = "";
   std::unique_ptr<Show> show = make_show(make_tiny_exhibit(), settings);
   StillRoom room(*show);
@@ -106,7 +106,7 @@ TEST(StillRoom, SaysWhereItIsNotDenoisedForWantOfWeights) {
 TEST(StillQuestion, AViewInNumbersIsThePictureFromThere) {
   Exhibit exhibit = make_tiny_exhibit();
   const Viewpoint first = exhibit.viewpoints[0].view;
-  std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct", false));
+  std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct"));
   StillRoom room(*show);
   StillJob job{.width = 64, .height = 48, .seconds = 60, .spp = 1, .denoise = false};
   const std::string there = room.make(job).jpeg;

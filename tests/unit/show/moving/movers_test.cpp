@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "show/exhibit/exhibit_objects.h"
+#include "show/state/drawing.h"
 #include "show/state/in_view.h"
 #include "show/state/visitor_world.h"
 #include "unit/show/exhibit/room_package.h"
@@ -122,7 +123,7 @@ struct MovingThings : testing::Test, ShowStage {
   // Red over green where the place falls in the visitor's last picture: only the door is red.
   double red_at(vec3 place, size_t visitor = 0) {
     const Image8 image = last_image(visitor);
-    const Projected at = project_point(show->visitors.front().place.last_view, place);
+    const Projected at = project_point(show->visits.visitors.front().place.last_view, place);
     double sum = 0;
     for (int dy = -2; dy <= 2; dy++)
       for (int dx = -2; dx <= 2; dx++) {
@@ -198,11 +199,11 @@ TEST_F(MovingThings, WhoSeesNothingMovePaysNothing) {
   start();
   visitor().place.view.yaw += pi;  // towards the door it came in by
   run(6);
-  const uint64_t posed = show->totals.posed, turns = show->renderer.skin.turn;
+  const uint64_t posed = show->totals.posed, turns = show->drawing->renderer.skin.turn;
   const size_t sent = pictures().size();
   run(3);
   EXPECT_EQ(show->totals.posed, posed);
-  EXPECT_EQ(show->renderer.skin.turn, turns);
+  EXPECT_EQ(show->drawing->renderer.skin.turn, turns);
   EXPECT_LE(pictures().size() - sent, 24u) << "as of a scene where nothing moves";
 }
 
@@ -210,15 +211,15 @@ TEST_F(MovingThings, ASceneWithoutAnimationsPaysNothing) {
   package.manifest.erase("animations");
   start();
   run(3);
-  EXPECT_TRUE(show->movers.empty());
-  EXPECT_TRUE(show->skin.places.empty());
+  EXPECT_TRUE(show->cast.movers.empty());
+  EXPECT_TRUE(show->stage.skin.places.empty());
   EXPECT_EQ(show->totals.posed, 0u);
-  EXPECT_EQ(show->pose_number, 1u);
+  EXPECT_EQ(show->cast.pose_number, 1u);
 }
 
 TEST_F(MovingThings, ThePlanSaysWhatMoves) {
   start();
-  EXPECT_NE(explain(show->lights.tables->plan).find("moving triangles are lit afresh"),
+  EXPECT_NE(explain(show->stage.lights.tables->plan).find("moving triangles are lit afresh"),
             std::string::npos);
 }
 

@@ -29,12 +29,12 @@ struct DynamicLightsOfAShow : testing::Test, ShowStage {
     add_lamp({"hearth", {}, {}}, exhibit.scene);
     exhibit.lamps = {{"hearth", {{"en", "Hearth"}}}};
     exhibit.lights = std::move(lights);
-    begin(std::move(exhibit), settings_for("direct", false));
+    begin(std::move(exhibit), settings_for("direct"));
     join(64, 48), join(64, 48);
     run(0.5);
   }
   DynamicLights of(size_t visitor, double time) {
-    return dynamic_lights_of(*show, *std::next(show->visitors.begin(), long(visitor)), time);
+    return dynamic_lights_of(*show, *std::next(show->visits.visitors.begin(), long(visitor)), time);
   }
 };
 
@@ -53,7 +53,8 @@ TEST_F(DynamicLightsOfAShow, AreAsTheyAreAtThatTimeAndKeepTheirNumbers) {
     for (size_t i : {0, 1}) {
       const size_t entry = 2 * i;
       EXPECT_EQ(lights[i].id, first_changing_light + entry);
-      EXPECT_EQ(lights[i].light.intensity, eval_light(show->exhibit.lights[entry], time).intensity);
+      EXPECT_EQ(lights[i].light.intensity,
+                eval_light(show->stage.exhibit.lights[entry], time).intensity);
     }
     EXPECT_NE(lights[0].light.intensity, lights[1].light.intensity);
   }

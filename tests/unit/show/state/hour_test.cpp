@@ -19,7 +19,7 @@ struct Hour : testing::Test, ShowStage {
     browsers.clear();
     Exhibit exhibit = make_tiny_exhibit();
     add_day(exhibit);
-    ShowSettings settings = settings_for(technique, false, 50);
+    ShowSettings settings = settings_for(technique, 50);
     settings.cache = folder.path;
     settings.bakes = false;
     ShowStage::begin(std::move(exhibit), settings);
@@ -29,7 +29,7 @@ struct Hour : testing::Test, ShowStage {
   void hour(const json& value, size_t visitor = 0) {
     say(json{{"type", "hour"}, {"value", value}}.dump(), visitor);
   }
-  Visitor& of(size_t visitor) { return *std::next(show->visitors.begin(), long(visitor)); }
+  Visitor& of(size_t visitor) { return *std::next(show->visits.visitors.begin(), long(visitor)); }
   DynamicLights lights(size_t visitor) { return dynamic_lights_of(*show, of(visitor), show->time); }
   double level(size_t visitor) {
     Image8 shown = last_image(visitor);
@@ -44,12 +44,12 @@ TEST_F(Hour, IsTheExhibitsOwnAtFirstAndNothingMoves) {
   EXPECT_EQ(last("welcome")["day"], json::parse(R"({"from":5.0,"to":22.0,"at":12.0,"hour":12.0})"));
   EXPECT_EQ(last("state")["hour"], 12);
   EXPECT_TRUE(lights(0).empty());
-  EXPECT_EQ(show->world->lamp_levels(), (LampLevels{lamp_full, lamp_full}));
+  EXPECT_EQ(show->stage.world->lamp_levels(), (LampLevels{lamp_full, lamp_full}));
 }
 
 TEST_F(Hour, DimsTheSkyAndMovesTheSunForWhoChoseIt) {
   begin(2, "gather");
-  ASSERT_TRUE(show->lights.maps);
+  ASSERT_TRUE(show->stage.lights.maps);
   run(1);
   const double noon[2] = {level(0), level(1)};
   hour(16, 0);
@@ -58,7 +58,7 @@ TEST_F(Hour, DimsTheSkyAndMovesTheSunForWhoChoseIt) {
   EXPECT_EQ(last("state", 1)["hour"], 12);
   ASSERT_EQ(lights(0).size(), 1u);
   EXPECT_EQ(lights(0)[0].id, sun_of_the_day);
-  const PunctualLight sun = eval_sun(*show->exhibit.day, 16);
+  const PunctualLight sun = eval_sun(*show->stage.exhibit.day, 16);
   EXPECT_EQ(lights(0)[0].light.direction, sun.direction);
   EXPECT_EQ(lights(0)[0].light.intensity, sun.intensity);
   EXPECT_TRUE(lights(1).empty());
@@ -135,7 +135,7 @@ TEST_F(Hour, GoesOnWithTheVisit) {
 }
 
 TEST_F(Hour, IsRefusedWhereThereIsNoDay) {
-  ShowStage::begin(make_tiny_exhibit(), settings_for("direct", false, 50));
+  ShowStage::begin(make_tiny_exhibit(), settings_for("direct", 50));
   join(64, 48);
   hour(9);
   run(0.2);

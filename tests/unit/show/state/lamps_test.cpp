@@ -13,6 +13,7 @@
 #include "show/exhibit/exhibit_load.h"
 #include "show/http/answer.h"
 #include "show/state/in_view.h"
+#include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
@@ -35,9 +36,8 @@ Exhibit make_lit_exhibit(bool on_at_first = true) {
 }
 
 struct Lamps : testing::Test, ShowStage {
-  void begin(Exhibit exhibit, int visitors, const std::string& technique = "gather",
-             bool background = false) {
-    ShowStage::begin(std::move(exhibit), settings_for(technique, background, 50));
+  void begin(Exhibit exhibit, int visitors, const std::string& technique = "gather") {
+    ShowStage::begin(std::move(exhibit), settings_for(technique, 50));
     for (int i = 0; i < visitors; i++) join(96, 64, i ? "de" : "en", i ? "kiosk" : "visitor");
   }
   void lamp(size_t visitor, const char* name, bool on) {
@@ -52,27 +52,24 @@ struct Lamps : testing::Test, ShowStage {
 };
 
 TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
-  for (bool background : {false, true}) {
-    browsers.clear();
-    begin(make_lit_exhibit(), 2, "gather", background);
-    run(1.5);
-    EXPECT_EQ(last("welcome")["lamps"],
-              json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true,"shared":true}])"));
-    EXPECT_EQ(last("welcome", 1)["lamps"][0]["title"], "Decke");
-    double lit[2] = {level(0), level(1)};
-    lamp(1, "ceiling", false);
-    step();
-    step();
-    for (size_t i : {0, 1})
-      EXPECT_EQ(last("state", i)["lamps"], json::parse(R"({"ceiling":false})")) << i;
-    run(0.5);
-    double dark[2] = {level(0), level(1)};
-    for (size_t i : {0, 1}) EXPECT_LT(dark[i], 0.6 * lit[i]) << i;
-    lamp(0, "ceiling", true);
-    run(1);
-    for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
-    EXPECT_EQ(make_report(*show).totals.lamps_switched, 2u);
-  }
+  begin(make_lit_exhibit(), 2);
+  run(1.5);
+  EXPECT_EQ(last("welcome")["lamps"],
+            json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true,"shared":true}])"));
+  EXPECT_EQ(last("welcome", 1)["lamps"][0]["title"], "Decke");
+  double lit[2] = {level(0), level(1)};
+  lamp(1, "ceiling", false);
+  step();
+  step();
+  for (size_t i : {0, 1})
+    EXPECT_EQ(last("state", i)["lamps"], json::parse(R"({"ceiling":false})")) << i;
+  run(0.5);
+  double dark[2] = {level(0), level(1)};
+  for (size_t i : {0, 1}) EXPECT_LT(dark[i], 0.6 * lit[i]) << i;
+  lamp(0, "ceiling", true);
+  run(1);
+  for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+  EXPECT_EQ(make_report(*show).totals.lamps_switched, 2u);
 }
 
 // The change of light is computed once for all caches that knew the same lamps, and kept until the
@@ -84,12 +81,12 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   begin(std::move(exhibit), 4);
   run(1);
   lamp(0, "ceiling", false);
-  std::vector<LightStep>& steps = show->switches.steps;
+  std::vector<LightStep>& steps = show->stage.switches.steps;
   ASSERT_TRUE(steps.empty());
   for (int i = 0; i < 50 && steps.empty(); i++) step();  // all are drawn in the same tick
   ASSERT_EQ(steps.size(), 1u);
   const LampLevels lit{0, lamp_full};
-  for (const Visitor& visitor : show->visitors) EXPECT_EQ(visitor.picture.lamps, lit);
+  for (const Visitor& visitor : show->visits.visitors) EXPECT_EQ(visitor.picture->lamps, lit);
   step();
   EXPECT_TRUE(steps.empty());
 
@@ -97,44 +94,41 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   constexpr LampLevel full = lamp_full;
   const LampLevels known[] = {{full, full}, {full, 0}, {full, full}, {full, 0}};
   size_t i = 0;
-  for (Visitor& visitor : show->visitors) visitor.picture.lamps = known[i++];
-  for (Visitor& visitor : show->visitors) follow_lamps(*show, visitor);
+  for (Visitor& visitor : show->visits.visitors) visitor.picture->lamps = known[i++];
+  for (Visitor& visitor : show->visits.visitors) follow_lamps(show->stage, visitor);
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_EQ(steps[0].before, known[0]);
   EXPECT_EQ(steps[1].before, known[1]);
-  show->visitors.front().picture.lamps = known[1];  // as if it had yet to follow
-  forget_lights(*show);
+  show->visits.visitors.front().picture->lamps = known[1];  // as if it had yet to follow
+  forget_lights(show->stage, show->visits);
   ASSERT_EQ(steps.size(), 1u);
   EXPECT_EQ(steps[0].before, known[1]);
 }
 
 // Each sees the room in their own light, in one world that is lit for one after the other.
 TEST_F(Lamps, WhatIsNotSharedIsSwitchedForOneselfAlone) {
-  for (bool background : {false, true}) {
-    browsers.clear();
-    Exhibit exhibit = make_lit_exhibit();
-    exhibit.lamps[0].shared = false;
-    begin(std::move(exhibit), 3, "gather", background);
-    run(1.5);
-    EXPECT_EQ(last("welcome")["lamps"][0]["shared"], false);
-    double lit[3] = {level(0), level(1), level(2)};
-    lamp(1, "ceiling", false);
-    run(1);
-    EXPECT_EQ(last("state", 0)["lamps"]["ceiling"], true);
-    EXPECT_EQ(last("state", 1)["lamps"]["ceiling"], false);
-    EXPECT_LT(level(1), 0.6 * lit[1]);
-    for (size_t i : {0, 2}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
-    EXPECT_EQ(show->switches.others.size(), 1u);
-    lamp(2, "ceiling", false);
-    lamp(1, "ceiling", true);
-    run(1);
-    EXPECT_LT(level(2), 0.6 * lit[2]);
-    for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
-    lamp(2, "ceiling", true);
-    run(1);
-    EXPECT_TRUE(show->switches.others.empty()) << "nobody sees it any more";
-    EXPECT_TRUE(show->switches.steps.empty());
-  }
+  Exhibit exhibit = make_lit_exhibit();
+  exhibit.lamps[0].shared = false;
+  begin(std::move(exhibit), 3);
+  run(1.5);
+  EXPECT_EQ(last("welcome")["lamps"][0]["shared"], false);
+  double lit[3] = {level(0), level(1), level(2)};
+  lamp(1, "ceiling", false);
+  run(1);
+  EXPECT_EQ(last("state", 0)["lamps"]["ceiling"], true);
+  EXPECT_EQ(last("state", 1)["lamps"]["ceiling"], false);
+  EXPECT_LT(level(1), 0.6 * lit[1]);
+  for (size_t i : {0, 2}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+  EXPECT_EQ(show->stage.switches.others.size(), 1u);
+  lamp(2, "ceiling", false);
+  lamp(1, "ceiling", true);
+  run(1);
+  EXPECT_LT(level(2), 0.6 * lit[2]);
+  for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+  lamp(2, "ceiling", true);
+  run(1);
+  EXPECT_TRUE(show->stage.switches.others.empty()) << "nobody sees it any more";
+  EXPECT_TRUE(show->stage.switches.steps.empty());
 }
 
 TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {
@@ -143,7 +137,7 @@ TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {
   lamp(0, "moon", false);
   run(0.1);
   EXPECT_EQ(last("error")["code"], "unknown_lamp");
-  EXPECT_EQ(show->world->lamp_levels()[0], lamp_full);
+  EXPECT_EQ(show->stage.world->lamp_levels()[0], lamp_full);
   lamp(0, "ceiling", true);  // it is
   run(0.1);
   EXPECT_EQ(show->totals.lamps_switched, 0u);
@@ -153,7 +147,7 @@ TEST_F(Lamps, WhatIsOffAtFirstIsOffForStillsAndForWhoComes) {
   begin(make_lit_exhibit(false), 1, "path");
   run(0.2);
   EXPECT_EQ(last("welcome")["lamps"][0]["on"], false);
-  EXPECT_EQ(show->world->lamp_levels()[0], 0);
+  EXPECT_EQ(show->stage.world->lamp_levels()[0], 0);
   run(0.5);
   double dark = level(0);
   lamp(0, "ceiling", true);
@@ -168,34 +162,34 @@ TEST_F(Lamps, TheLightChangesAFewTimesASecondAtMost) {
   run(1);
   int changes = 0;
   for (int i = 0; i < 50; i++) {
-    const LampLevel before = show->world->lamp_levels()[0];
+    const LampLevel before = show->stage.world->lamp_levels()[0];
     lamp(0, "ceiling", i % 2 == 1);
     step();
-    changes += before != show->world->lamp_levels()[0];
+    changes += before != show->stage.world->lamp_levels()[0];
   }
   EXPECT_LE(changes, 6);
   EXPECT_GE(changes, 1);
   run(0.4);
-  EXPECT_EQ(show->world->lamp_levels()[0], lamp_full);
+  EXPECT_EQ(show->stage.world->lamp_levels()[0], lamp_full);
 }
 
 // Requests of the old light are out, and some are answered, when the lamp is switched.
 TEST_F(Lamps, AnswersOfTheOldLightAreNotTaken) {
   begin(make_lit_exhibit(), 1, "path");
   run(0.5);
-  Visitor& visitor = show->visitors.front();
+  Visitor& visitor = show->visits.visitors.front();
   View view = view_of(*show, visitor);
   std::vector<Request> requests(64);
   for (size_t i = 0; i < requests.size(); i++) requests[i] = pixel_request(view, 5, int(i), 20, 0);
-  visitor.picture.broker.ask(view, {show->technique, show->settings.transport}, requests);
-  std::optional<Piece> piece = visitor.picture.broker.take();
+  visitor.picture->broker.ask(view, {show->stage.technique, show->settings.transport}, requests);
+  std::optional<Piece> piece = visitor.picture->broker.take();
   ASSERT_TRUE(piece);
-  Answer old{*piece, show->pose_number, std::vector<Sample>(piece->requests.size())};
+  Answer old{*piece, show->cast.pose_number, std::vector<Sample>(piece->requests.size())};
   lamp(0, "ceiling", false);
   run(0.2);
-  EXPECT_EQ(visitor.picture.lamps, LampLevels{0});
-  EXPECT_FALSE(visitor.picture.broker.answer(old));
-  EXPECT_TRUE(visitor.picture.broker.collect().empty());
+  EXPECT_EQ(visitor.picture->lamps, LampLevels{0});
+  EXPECT_FALSE(visitor.picture->broker.answer(old));
+  EXPECT_TRUE(visitor.picture->broker.collect().empty());
 }
 
 struct Package {

@@ -5,6 +5,7 @@
 #include "light/bake/map_file.h"
 #include "show/http/answer.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "unit/folder.h"
 #include "unit/light/bake/bake_cases.h"
 #include "unit/show/show_stage.h"
@@ -37,7 +38,7 @@ struct Maps : testing::Test, ShowStage {
   }
   // Opens a show that draws by paths, which need no preparation.
   void open(Display display = Display::automatic, const std::string& technique = "path") {
-    ShowSettings settings = settings_for(technique, false);
+    ShowSettings settings = settings_for(technique);
     settings.cache = folder.path.string();
     settings.display = display;
     begin(std::move(exhibit), settings);
@@ -51,11 +52,11 @@ TEST_F(Maps, KeptOnesAreUsedFromTheStart) {
   keep_map();
   add_storyteller(exhibit, "guide", {0, 0, 2});  // whose materials and pictures make no difference
   open();
-  ASSERT_TRUE(show->lights.maps);
-  EXPECT_EQ(show->lights.maps->nodes.light, saved->nodes.light);
-  EXPECT_FALSE(show->baker) << "nothing is done in the background";
-  ASSERT_GT(show->mapped.size(), 2u);
-  EXPECT_TRUE(show->mapped[1]);
+  ASSERT_TRUE(show->stage.lights.maps);
+  EXPECT_EQ(show->stage.lights.maps->nodes.light, saved->nodes.light);
+  EXPECT_FALSE(show->stage.baker) << "nothing is baked";
+  ASSERT_GT(show->stage.mapped.size(), 2u);
+  EXPECT_TRUE(show->stage.mapped[1]);
   EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 1\n"));
   EXPECT_TRUE(says("wellspring_display{method=\"points\"} 0\n"));
 }
@@ -74,11 +75,11 @@ TEST_F(Maps, LightTheFirstPicture) {
 }
 
 TEST_F(Maps, WithoutAnyFileCoarseLightIsThereFromTheStart) {
-  begin(std::move(exhibit), settings_for("gather", false));
-  ASSERT_TRUE(show->lights.maps);
-  EXPECT_EQ(show->lights.maps, show->lights.known);
-  EXPECT_EQ(show->lights.maps->error, 1) << "nobody knows how good it is";
-  EXPECT_GT(show->lights.maps->mean, 0.01f);
+  begin(std::move(exhibit), settings_for("gather"));
+  ASSERT_TRUE(show->stage.lights.maps);
+  EXPECT_EQ(show->stage.lights.maps, show->stage.lights.known);
+  EXPECT_EQ(show->stage.lights.maps->error, 1) << "nobody knows how good it is";
+  EXPECT_GT(show->stage.lights.maps->mean, 0.01f);
 }
 
 // Things stand where they stood, only a colour is another: better than nothing.
@@ -86,17 +87,17 @@ TEST_F(Maps, ThoseOfAnotherSceneServeUntilThereAreBetterOnes) {
   keep_map();
   exhibit.scene.materials[0].base_color.x = 0.5f;
   open();
-  ASSERT_TRUE(show->lights.maps);
-  EXPECT_EQ(show->lights.maps->nodes.light, saved->nodes.light);
+  ASSERT_TRUE(show->stage.lights.maps);
+  EXPECT_EQ(show->stage.lights.maps->nodes.light, saved->nodes.light);
 }
 
 TEST_F(Maps, ThePackagesOwnServeWithoutACache) {
   keep_map();
   exhibit.folder = folder.path.string();
   std::filesystem::rename(folder.file("tiny.maps"), shipped_light(exhibit.folder));
-  begin(std::move(exhibit), settings_for("path", false));
-  ASSERT_TRUE(show->lights.maps);
-  EXPECT_EQ(show->lights.maps->nodes.light, saved->nodes.light);
+  begin(std::move(exhibit), settings_for("path"));
+  ASSERT_TRUE(show->stage.lights.maps);
+  EXPECT_EQ(show->stage.lights.maps->nodes.light, saved->nodes.light);
   EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 1\n"));
 }
 
@@ -112,8 +113,8 @@ TEST_F(Maps, OfTwoTheBetterIsShown) {
     std::filesystem::rename(folder.file("tiny.maps"), shipped_light(exhibit.folder));
     ASSERT_TRUE(save_map(world, other, folder.file("tiny.maps"), key));
     open();
-    ASSERT_TRUE(show->lights.maps);
-    EXPECT_EQ(show->lights.maps->nodes.light == saved->nodes.light, cached > 0.01f) << cached;
+    ASSERT_TRUE(show->stage.lights.maps);
+    EXPECT_EQ(show->stage.lights.maps->nodes.light == saved->nodes.light, cached > 0.01f) << cached;
   }
 }
 
@@ -123,22 +124,22 @@ TEST_F(Maps, DamagedOnesAreNotUsed) {
   bytes[bytes.size() / 2] ^= 1;
   folder.write("tiny.maps", bytes);
   open();
-  EXPECT_FALSE(show->lights.maps);
+  EXPECT_FALSE(show->stage.lights.maps);
 }
 
 // The render cache as published, not shapes in its light.
 TEST_F(Maps, WhoWantsPointsGetsThem) {
   keep_map();
   open(Display::points, "gather");
-  EXPECT_FALSE(show->lights.maps);
-  EXPECT_TRUE(show->lights.known) << "on which walks end";
-  EXPECT_FALSE(show->baker);
+  EXPECT_FALSE(show->stage.lights.maps);
+  EXPECT_TRUE(show->stage.lights.known) << "on which walks end";
+  EXPECT_FALSE(show->stage.baker);
   join(96, 64);
   ASSERT_TRUE(step_until([&] { return !pictures().empty(); }));
   Frame points;
-  visitor().picture.cache.reconstruct(visitor().picture.job.view, points);
+  visitor().picture->cache.reconstruct(visitor().picture->job.view, points);
   Image8 wanted, shown = image(pictures().size() - 1);
-  tonemap(points, Tonemap{show->exhibit.exposure}, wanted);
+  tonemap(points, Tonemap{show->stage.exhibit.exposure}, wanted);
   ASSERT_EQ(shown.rgb.size(), wanted.rgb.size());
   double difference = 0, light = 0;
   for (size_t i = 0; i < shown.rgb.size(); i++) {
@@ -152,15 +153,15 @@ TEST_F(Maps, WhoWantsPointsGetsThem) {
 TEST_F(Maps, TechniquesThatKnowNothingOfThemGetNone) {
   keep_map();
   open(Display::maps, "direct");
-  EXPECT_FALSE(show->lights.maps);
+  EXPECT_FALSE(show->stage.lights.maps);
 }
 
 TEST_F(Maps, WithoutACacheThereAreNone) {
   keep_map();
-  ShowSettings settings = settings_for("path", false);
+  ShowSettings settings = settings_for("path");
   begin(std::move(exhibit), settings);
-  EXPECT_FALSE(show->lights.maps);
-  EXPECT_FALSE(show->baker);
+  EXPECT_FALSE(show->stage.lights.maps);
+  EXPECT_FALSE(show->stage.baker);
 }
 
 TEST_F(Maps, FollowTheLampsAtOnce) {
@@ -169,10 +170,10 @@ TEST_F(Maps, FollowTheLampsAtOnce) {
   open();
   join(96, 64);
   run(0.5);
-  ASSERT_TRUE(show->lights.maps);
+  ASSERT_TRUE(show->stage.lights.maps);
   const auto& layers = *saved->layers;
   auto expect = [&](bool lamp) {
-    const std::vector<uint32_t>& light = show->lights.maps->nodes.light;
+    const std::vector<uint32_t>& light = show->stage.lights.maps->nodes.light;
     ASSERT_EQ(light.size(), layers[0].light.size());
     for (size_t i = 0; i < light.size(); i++) {
       vec3 wanted = unpack_rgb9e5(layers[0].light[i]);
@@ -182,12 +183,12 @@ TEST_F(Maps, FollowTheLampsAtOnce) {
   };
   expect(true);
   for (bool on : {false, true}) {
-    light_world(*show, {LampLevel(on ? lamp_full : 0)});
+    light_world(show->stage, {LampLevel(on ? lamp_full : 0)});
     expect(on);
   }
   // A visitor's order switches a lamp, too.
   say(R"({"type":"lamp","name":"ceiling","on":false})");
-  ASSERT_TRUE(step_until([&] { return show->world->lamp_levels()[0] == 0; }));
+  ASSERT_TRUE(step_until([&] { return show->stage.world->lamp_levels()[0] == 0; }));
   expect(false);
 }
 
@@ -195,9 +196,9 @@ TEST_F(Maps, OfLampsThatAreOffAtFirstAreDark) {
   add_switch(false);
   keep_map({daylight, lamplight});
   open();
-  ASSERT_TRUE(show->lights.maps);
+  ASSERT_TRUE(show->stage.lights.maps);
   for (size_t i = 0; i < saved->nodes.light.size(); i++) {
-    vec3 light = unpack_rgb9e5(show->lights.maps->nodes.light[i]);
+    vec3 light = unpack_rgb9e5(show->stage.lights.maps->nodes.light[i]);
     ASSERT_LT(length(light - daylight({})), 0.02f);
   }
 }
@@ -209,14 +210,14 @@ TEST_F(Maps, AreTakenOverWhileItRuns) {
   open();
   join(96, 64);
   run(0.5);
-  ASSERT_FALSE(show->lights.maps);
-  ASSERT_GT(visitor().picture.cache.stats().points, 100);
-  use_maps(*show, saved);
-  EXPECT_EQ(show->lights.maps, saved);
+  ASSERT_FALSE(show->stage.lights.maps);
+  ASSERT_GT(visitor().picture->cache.stats().points, 100);
+  use_maps(show->stage, show->visits, saved);
+  EXPECT_EQ(show->stage.lights.maps, saved);
   EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 1\n"));
   run(0.5);
   EXPECT_EQ(make_report(*show).bad_samples, 0u);
-  EXPECT_GT(visitor().picture.cache.stats().points, 100);
+  EXPECT_GT(visitor().picture->cache.stats().points, 100);
 }
 
 // A visitor who stands still sees better light fade in.
@@ -227,12 +228,12 @@ TEST_F(Maps, BetterOnesFadeIn) {
   settings.bakes = false;
   begin(std::move(exhibit), settings);
   join(96, 64);
-  ASSERT_TRUE(step_until([&] { return !visitor().picture.keyframe.empty(); }));
-  ASSERT_TRUE(step_until([&] { return visitor().picture.fade.from.rgb.empty(); }));
-  World world(show->exhibit.scene);
-  use_better_maps(*show, test::paint_map(world, 0.5f, {lamplight}));
-  EXPECT_EQ(show->lights.known, show->lights.maps);
-  ASSERT_TRUE(step_until([&] { return !visitor().picture.fade.from.rgb.empty(); }));
+  ASSERT_TRUE(step_until([&] { return !visitor().picture->keyframe.empty(); }));
+  ASSERT_TRUE(step_until([&] { return visitor().picture->fade.from.rgb.empty(); }));
+  World world(show->stage.exhibit.scene);
+  use_better_maps(show->stage, show->visits, test::paint_map(world, 0.5f, {lamplight}));
+  EXPECT_EQ(show->stage.lights.known, show->stage.lights.maps);
+  ASSERT_TRUE(step_until([&] { return !visitor().picture->fade.from.rgb.empty(); }));
 }
 
 // A ball of bronze before the visitor of the first viewpoint.
@@ -252,9 +253,9 @@ TEST_F(Maps, WhatShinesIsNotKnown) {
   add_bronze(exhibit);
   keep_map();
   open();
-  ASSERT_EQ(show->known.size(), 4u);
-  EXPECT_EQ(show->known[3], 0);
-  EXPECT_EQ(show->known[1], 1);
+  ASSERT_EQ(show->stage.known.size(), 4u);
+  EXPECT_EQ(show->stage.known[3], 0);
+  EXPECT_EQ(show->stage.known[1], 1);
 }
 
 }  // namespace

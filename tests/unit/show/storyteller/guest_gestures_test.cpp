@@ -13,14 +13,15 @@ struct GuestGestures : testing::Test, ShowStage {
     add_storyteller(exhibit, "anna", {-2, 0, 1});
     exhibit.stories.push_back(exhibit.stories[0]);
     exhibit.stories[1].id = "other";
-    begin(std::move(exhibit), settings_for("direct", false));
-    show->eyes.push_back(Eye{std::make_shared<Link>(99, LinkKind::eye, "test"), {}, -1e9, 0});
+    begin(std::move(exhibit), settings_for("direct"));
+    show->kiosks.eyes.push_back(
+        Eye{std::make_shared<Link>(99, LinkKind::eye, "test"), {}, -1e9, 0});
   }
   // Seen for a second, as the kiosk's program tells it.
   void make(const std::string& gesture, double seconds = 0.4) {
     for (const std::string& now : {gesture, std::string()})
       for (double end = this->now + seconds; this->now < end;) {
-        Eye& eye = show->eyes.front();
+        Eye& eye = show->kiosks.eyes.front();
         eye.seen.state = Presence::person;
         eye.seen.people.assign(1, Person{});
         eye.seen.people[0].id = 1;
@@ -29,7 +30,7 @@ struct GuestGestures : testing::Test, ShowStage {
         step();
       }
   }
-  const std::string& told() const { return show->teller.voice.story; }
+  const std::string& told() const { return show->cast.teller.voice.story; }
 };
 
 TEST_F(GuestGestures, ADigitChoosesAStory) {
@@ -51,11 +52,11 @@ TEST_F(GuestGestures, SwipesTurnThePages) {
   steps(3);
   make("swipe_left", 0.1);
   EXPECT_EQ(told(), "tale");
-  EXPECT_EQ(show->teller.voice.sentence, 0);
+  EXPECT_EQ(show->cast.teller.voice.sentence, 0);
   make("swipe_left", 0.1);
-  EXPECT_EQ(show->teller.voice.sentence, 1);
+  EXPECT_EQ(show->cast.teller.voice.sentence, 1);
   make("swipe_right", 0.1);
-  EXPECT_EQ(show->teller.voice.sentence, 0);
+  EXPECT_EQ(show->cast.teller.voice.sentence, 0);
   make("swipe_down", 0.1);
   make("swipe_left", 0.1);
   EXPECT_EQ(told(), "other") << "the next";

@@ -58,15 +58,15 @@ struct HeldPropTest : testing::Test, ShowStage {
           "<hold name='nothing'/>Then she put it away, and told the rest of it all "
           "without a light, which took her a long while.");
     tick_seconds = 0.1;
-    ShowStage::begin(std::move(exhibit), settings_for("direct", false, 25));
+    ShowStage::begin(std::move(exhibit), settings_for("direct", 25));
   }
   // Somebody new, who looks away, so that their pictures cost little.
   void join() {
     ShowStage::join(32, 32);
     step();
-    show->visitors.back().place.view.yaw = pi;
+    show->visits.visitors.back().place.view.yaw = pi;
   }
-  Visitor& visitor_number(size_t i) { return *std::next(show->visitors.begin(), long(i)); }
+  Visitor& visitor_number(size_t i) { return *std::next(show->visits.visitors.begin(), long(i)); }
   DynamicLights lights(size_t i = 0) {
     return dynamic_lights_of(*show, visitor_number(i), show->time);
   }
@@ -82,12 +82,12 @@ struct HeldPropTest : testing::Test, ShowStage {
   std::vector<vec3> seen(size_t i = 0) {
     begin_world_of(*show, visitor_number(i));
     std::vector<vec3> places;
-    const uint32_t first = uint32_t(show->exhibit.scene.instances.size());
-    for (const PropPart& part : show->props[0].parts) {
+    const uint32_t first = uint32_t(show->stage.exhibit.scene.instances.size());
+    for (const PropPart& part : show->cast.props[0].parts) {
       const uint32_t instance = first + uint32_t(part.moving);
-      if (!show->world->is_visible(instance)) continue;
+      if (!show->stage.world->is_visible(instance)) continue;
       vec3 middle(0);
-      const Mesh& mesh = show->world->mesh_of(instance);
+      const Mesh& mesh = show->stage.world->mesh_of(instance);
       for (const vec3& p : mesh.positions) middle += p / float(mesh.positions.size());
       places.push_back(middle);
     }
@@ -135,7 +135,7 @@ TEST_F(HeldPropTest, LightComesAndGoesSlowlyWhateverEndsTheStory) {
   begin();
   for (const std::string& end : ends) {
     join();
-    const size_t i = show->visitors.size() - 1;
+    const size_t i = show->visits.visitors.size() - 1;
     tell("torch", i);
     std::vector<float> course = {brightness(i)};
     auto watch = [&](auto&& until) {
@@ -152,7 +152,7 @@ TEST_F(HeldPropTest, LightComesAndGoesSlowlyWhateverEndsTheStory) {
     for (size_t k = 1; k < course.size(); k++)
       EXPECT_LE(std::abs(course[k] - course[k - 1]), most) << end << " " << k;
     say(R"({"type":"bye"})", i);
-    ASSERT_TRUE(step_until([&] { return show->visitors.empty(); }));
+    ASSERT_TRUE(step_until([&] { return show->visits.visitors.empty(); }));
     browsers.clear();
   }
 }
@@ -164,7 +164,7 @@ TEST_F(HeldPropTest, ItIsPutAwayWhereTheStorySaysSo) {
   ASSERT_TRUE(step_until([&] { return brightness() == 7; }));
   ASSERT_TRUE(step_until([&] { return seen().empty(); }));
   EXPECT_EQ(brightness(), 0);
-  EXPECT_EQ(show->visitors.front().own_teller->voice.story, "put_away") << "which goes on";
+  EXPECT_EQ(show->visits.visitors.front().own_teller->voice.story, "put_away") << "which goes on";
 }
 
 TEST_F(HeldPropTest, OfTwoVisitorsEachSeesTheirOwn) {

@@ -29,9 +29,9 @@ struct StorytellersTest : testing::Test, ShowStage {
     exhibit.stories[1].id = "bell";
     exhibit.stories[1].storyteller_index = 1;
     tick_seconds = 0.04;
-    begin(std::move(exhibit), settings_for("direct", false));
-    show->speech.find = [](const SpeechRequest&) { return nullptr; };
-    show->speech.speak = [this](const SpeechRequest& request) {
+    begin(std::move(exhibit), settings_for("direct"));
+    show->cast.speech.find = [](const SpeechRequest&) { return nullptr; };
+    show->cast.speech.speak = [this](const SpeechRequest& request) {
       asked.push_back(request);
       std::promise<SpeechAnswer> promise;
       promise.set_value({nullptr, "mute"});
@@ -45,11 +45,11 @@ struct StorytellersTest : testing::Test, ShowStage {
   // Says who is to be seen, by rays from above onto the places where the two stand.
   std::string seen() {
     std::string who;
-    for (const StorytellerPlace& storyteller_place : show->exhibit.storytellers) {
+    for (const StorytellerPlace& storyteller_place : show->stage.exhibit.storytellers) {
       Ray ray;
       ray.origin = vec3(storyteller_place.position) + vec3(0.02f, 2, 0.02f);
       ray.direction = vec3(0, -1, 0);
-      if (std::abs(show->world->intersect(ray).t - 1.5f) < 0.1f) who += storyteller_place.id;
+      if (std::abs(show->stage.world->intersect(ray).t - 1.5f) < 0.1f) who += storyteller_place.id;
     }
     return who;
   }
@@ -82,7 +82,7 @@ TEST(Storytellers, OneIsInFinishedPictures) {
     exhibit.tours.clear();
     exhibit.viewpoints[0].view.position = {0, 1.6, 3.5};  // sees the world's origin, too
     exhibit.viewpoints[0].view.yaw = 0, exhibit.viewpoints[0].view.pitch = -0.3f;
-    std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct", false));
+    std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct"));
     return StillRoom(*show).make({.width = 64, .height = 48, .seconds = 600, .spp = 4}).jpeg;
   };
   const dvec3 in_view(0, 0, 1.5), behind_the_wall(-3, 0, -3);
@@ -108,9 +108,9 @@ TEST_F(StorytellersTest, AStoryBringsItsOwnStorytellerAndVoice) {
 
 TEST_F(StorytellersTest, AKioskStandsBeforeWhoeverIsThereAndIsGreeted) {
   join("kiosk");
-  EXPECT_EQ(show->visitors.front().place.viewpoint, 0);
+  EXPECT_EQ(show->visits.visitors.front().place.viewpoint, 0);
   order(R"({"type":"storyteller","teller":"otto"})");
-  EXPECT_EQ(show->visitors.front().place.viewpoint, 1);
+  EXPECT_EQ(show->visits.visitors.front().place.viewpoint, 1);
   auto eye = std::make_shared<Link>(2, LinkKind::eye, "camera");
   arrivals.put(eye);
   for (int i = 0; i < 50 && asked.empty(); i++) {

@@ -38,19 +38,21 @@ struct TourLips : testing::Test, ShowStage {
     open.displacements = {{0, 0.01f, 0}};
     storyteller_place.character.displacers = {open};
     tick_seconds = 0.04;
-    begin(std::move(exhibit), settings_for("direct", false));
-    show->speech.find = [this](const SpeechRequest& request) {
+    begin(std::move(exhibit), settings_for("direct"));
+    show->cast.speech.find = [this](const SpeechRequest& request) {
       auto& speech = kept[request.text];
       if (!speech) speech = make_vowel(request.text);
       return speech;
     };
-    show->speech.speak = [](const SpeechRequest&) { return std::shared_future<SpeechAnswer>(); };
+    show->cast.speech.speak = [](const SpeechRequest&) {
+      return std::shared_future<SpeechAnswer>();
+    };
   }
   void join() {
     ShowStage::join(32, 32);
     run(0.1);
   }
-  float lips() const { return show->teller.pose.displacers.at(0); }
+  float lips() const { return show->cast.teller.pose.displacers.at(0); }
 };
 
 TEST_F(TourLips, MoveWhileTheTourIsTold) {
@@ -59,7 +61,7 @@ TEST_F(TourLips, MoveWhileTheTourIsTold) {
   EXPECT_LT(lips(), 0.05f);
   order(R"({"type":"tour","action":"play"})");
   run(1.5);
-  ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice));
+  ASSERT_TRUE(heard(show->visits.visitors.front().hearing.narration.voice));
   EXPECT_GT(lips(), 0.5f);
   order(R"({"type":"tour","action":"pause"})");
   run(1);
@@ -70,21 +72,22 @@ TEST_F(TourLips, NothingOfTheFaceRunsBehindTheVisitorsBack) {
   join();
   order(R"({"type":"tour","action":"play"})");
   run(1);
-  StorytellerWork before = show->teller.mind.work;
+  StorytellerWork before = show->cast.teller.mind.work;
   EXPECT_GT(before.visemes, 0u);
   EXPECT_GT(before.blinks, 0u);
   // Half round; the tour goes on.
   order(R"({"type":"input","seq":1,"move":[0,0,0],"look":[3.1416,0]})");
-  ASSERT_FALSE(sees_head(*show, show->teller, view_of(*show, show->visitors.front())));
-  ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice));
-  before = show->teller.mind.work;
+  ASSERT_FALSE(
+      sees_head(show->cast, show->cast.teller, view_of(*show, show->visits.visitors.front())));
+  ASSERT_TRUE(heard(show->visits.visitors.front().hearing.narration.voice));
+  before = show->cast.teller.mind.work;
   run(0.8);
-  EXPECT_GT(show->teller.mind.work.ticks, before.ticks);
-  EXPECT_EQ(show->teller.mind.work.visemes, before.visemes);
-  EXPECT_EQ(show->teller.mind.work.blinks, before.blinks);
-  EXPECT_EQ(show->teller.mind.work.flexes, before.flexes);
-  EXPECT_EQ(show->teller.mind.work.expressions, before.expressions);
-  EXPECT_EQ(show->teller.mind.work.eyes, before.eyes);
+  EXPECT_GT(show->cast.teller.mind.work.ticks, before.ticks);
+  EXPECT_EQ(show->cast.teller.mind.work.visemes, before.visemes);
+  EXPECT_EQ(show->cast.teller.mind.work.blinks, before.blinks);
+  EXPECT_EQ(show->cast.teller.mind.work.flexes, before.flexes);
+  EXPECT_EQ(show->cast.teller.mind.work.expressions, before.expressions);
+  EXPECT_EQ(show->cast.teller.mind.work.eyes, before.eyes);
   EXPECT_EQ(lips(), 0);
 }
 
@@ -102,7 +105,7 @@ TEST_F(TourLips, HerOwnWordsComeFirst) {
   EXPECT_GT(lips(), 0.5f);
   order(R"({"type":"storyteller","story":"tale"})", 1);
   run(1);
-  ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice)) << "the tour goes on";
+  ASSERT_TRUE(heard(show->visits.visitors.front().hearing.narration.voice)) << "the tour goes on";
   EXPECT_LT(lips(), 0.05f);
 }
 
@@ -110,16 +113,16 @@ TEST_F(TourLips, OfTwoToursTheNearerOneInViewCounts) {
   join();
   join();
   for (size_t i = 0; i < 2; i++) order(R"({"type":"tour","action":"play"})", i);
-  Visitor &far = show->visitors.front(), &near = show->visitors.back();
+  Visitor &far = show->visits.visitors.front(), &near = show->visits.visitors.back();
   far.place.view.position = {-2, 1.6, 3.5};
   near.place.view.position = {-2, 1.6, 2.5};
   far.place.view.yaw = near.place.view.yaw = 0;
-  EXPECT_EQ(heard_on_tour(*show, show->teller), &near);
+  EXPECT_EQ(heard_on_tour(*show, show->cast.teller), &near);
   near.place.view.yaw = 3.1f;
-  EXPECT_EQ(heard_on_tour(*show, show->teller), &far);
-  EXPECT_NEAR(viewer_distance(*show, show->teller), 2.5f, 0.15f);
-  show->teller.visible = false;
-  EXPECT_EQ(heard_on_tour(*show, show->teller), nullptr);
+  EXPECT_EQ(heard_on_tour(*show, show->cast.teller), &far);
+  EXPECT_NEAR(viewer_distance(*show, show->cast.teller), 2.5f, 0.15f);
+  show->cast.teller.visible = false;
+  EXPECT_EQ(heard_on_tour(*show, show->cast.teller), nullptr);
 }
 
 // A guest before a kiosk sees the storyteller from there, not from where the picture's camera is.
@@ -128,15 +131,15 @@ TEST_F(TourLips, ThePersonBeforeAKioskIsTheViewer) {
   run(0.1);
   visitor().place.view.position = {-2, 1.6, 2.5};
   visitor().place.view.yaw = 0;
-  Audience& audience = show->kiosks.at(0).audience;
+  Audience& audience = show->kiosks.all.at(0).audience;
   audience.guests.clear();
-  const float camera = viewer_distance(*show, show->teller);
+  const float camera = viewer_distance(*show, show->cast.teller);
   const View view = view_of(*show, visitor());
   for (float away : {0.6f, 1.6f, 4.6f}) {
     Person person;
     person.position = {0, 0, away};
     audience.guests = {place_person(person, view, 0)};
-    EXPECT_NEAR(viewer_distance(*show, show->teller), camera + away - viewing_distance, 0.1f);
+    EXPECT_NEAR(viewer_distance(*show, show->cast.teller), camera + away - viewing_distance, 0.1f);
   }
 }
 

@@ -58,7 +58,7 @@ TEST_F(CancelledShow, Bake) {
 }
 
 TEST_F(CancelledShow, AllOfIt) {
-  expect_ends([&] { make_show(make_tiny_exhibit(), settings_for("direct", false)); });
+  expect_ends([&] { make_show(make_tiny_exhibit(), settings_for("direct")); });
 }
 
 TEST_F(CancelledShow, IsGivenUpWhenItsRehearsalEnds) {

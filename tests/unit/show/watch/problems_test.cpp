@@ -18,16 +18,18 @@ namespace wellspring::test {
 namespace {
 
 struct Problems : testing::Test, ShowStage {
-  void SetUp() override { begin(make_tiny_exhibit(), settings_for("direct", false)); }
+  void SetUp() override { begin(make_tiny_exhibit(), settings_for("direct")); }
 };
 
 TEST_F(Problems, AreToldToAllAndTakenBack) {
   const size_t first = join(32, 32);
-  set_problems(*show, {});
+  set_problems(show->stage, show->visits, {});
   run(0.1);
   EXPECT_EQ(told("problems", first).size(), 0u) << "nothing was ever wrong";
-  set_problems(*show, {{"exhibit.json", "/start", "there is no viewpoint 'dor'"}});
-  set_problems(*show, {{"exhibit.json", "/start", "there is no viewpoint 'dor'"}});
+  set_problems(show->stage, show->visits,
+               {{"exhibit.json", "/start", "there is no viewpoint 'dor'"}});
+  set_problems(show->stage, show->visits,
+               {{"exhibit.json", "/start", "there is no viewpoint 'dor'"}});
   run(0.1);
   ASSERT_EQ(told("problems", first).size(), 1u);
   EXPECT_EQ(
@@ -38,7 +40,7 @@ TEST_F(Problems, AreToldToAllAndTakenBack) {
   run(0.1);
   EXPECT_EQ(last("problems", second)["list"].size(), 1u);
   EXPECT_EQ(make_report(*show).exhibit_problems, 1u);
-  set_problems(*show, {});
+  set_problems(show->stage, show->visits, {});
   run(0.1);
   EXPECT_EQ(last("problems", first)["list"].size(), 0u);
   EXPECT_EQ(make_report(*show).exhibit_problems, 0u);
