@@ -90,9 +90,7 @@ TEST(Relight, NineOfTenAffectedPixelsAreAsRightAsEverInHalfASecond) {
 Scene make_box(bool spot) {
   Scene scene = scenes::make_cornell_box();
   for (Material& material : scene.materials) material.emission = vec3(0);
-  PunctualLight lamp;
-  lamp.position = {0.02f, 0.45f, 0.05f};
-  lamp.intensity = {0.15f, 0.15f, 0.17f};
+  PunctualLight lamp{.position = {0.02f, 0.45f, 0.05f}, .intensity = {0.15f, 0.15f, 0.17f}};
   scene.lights.push_back(lamp);
   lamp.type = PunctualType::spot;
   lamp.position = {-0.2f, 0.5f, 0.1f};

@@ -222,9 +222,7 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
 TEST_F(LatePictures, AreOutdatedByCameraCutsAndByMotionAfterRest) {
   begin();
   Visitor unseen;
-  PictureJob job;
-  job.still = true;
-  job.expected = unseen.place.last_view;
+  PictureJob job{.expected = unseen.place.last_view, .still = true};
   unseen.place.last_view.position.x += 1;
   EXPECT_FALSE(is_outdated(*show, job, unseen));  // there is nothing else to show
   unseen.place.camera_cuts++;

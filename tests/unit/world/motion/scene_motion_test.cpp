@@ -13,11 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SceneLoadOptions moving_options() {
-  SceneLoadOptions options;
-  options.motion = true;
-  return options;
-}
+SceneLoadOptions moving_options() { return SceneLoadOptions{.motion = true}; }
 
 std::vector<double> only(const SceneMotion& motion, size_t clip, double time) {
   std::vector<double> times(motion.clips.size(), -1);
@@ -170,8 +166,7 @@ TEST(SceneMotion, RealFilesMoveAsTheyDoWhenTheyAreLoadedAtThatTime) {
     ASSERT_FALSE(rest.motions.empty());
     const double end = gltf::length_of(rest.motions[0].of->clips[0]);
     for (double time : {0.13 * end, 0.5 * end, 0.91 * end}) {
-      SceneLoadOptions options;
-      options.time = time;
+      SceneLoadOptions options{.time = time};
       const Scene whole = load_scene(path, options);
       ASSERT_EQ(whole.instances.size(), rest.instances.size());
       for (size_t m = 0; m < rest.motions[0].of->movers.size(); m++) {
