@@ -70,8 +70,8 @@ Switched switch_spot(bool told, bool on, int mismatch) {
 }
 
 // Not all can be right: stripes finer than a pixel take more samples than these. So what counts is
-// how many are after a long rest.
-TEST(Relight, NineOfTenAffectedPixelsAreAsRightAsEverInHalfASecond) {
+// how many are after a long rest: nine tenths as many if the cache is told, half if it finds out.
+TEST(Relight, HalfASecondMakesUpNineTenthsIfToldAndHalfIfFound) {
   for (bool on : {true, false}) {
     Switched told = switch_spot(true, on, 16);
     EXPECT_GT(told.before, 0.85f);

@@ -3,7 +3,10 @@
 // a hand on the renderer.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <future>
+#include <thread>
 #include <utility>
 
 #include "base/rng.h"
@@ -344,7 +347,21 @@ TEST_F(LatePictures, TheShowEndsWhileOneIsDrawn) {
     say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})", size_t(i));
   for (int i = 0; i < 20; i++) step_on();
   while (!show->renderer.drawn) step_on();
+  show.reset();  // sanitizers tell whether the drawing reads what is gone
+}
+
+TEST_F(LatePictures, TheShowEndsAfterWhatTheRendererIsAtWorkOn) {
+  begin();
+  hold_renderer();
+  std::atomic<bool> released = false;
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    released = true;
+    held.set_value();
+  });
   show.reset();
+  EXPECT_TRUE(released);
+  later.join();
 }
 
 TEST_F(LatePictures, ReportSaysWhatWasDrawnAndWarped) {
