@@ -60,7 +60,7 @@ function(wellspring_unit_test folder)
     math(EXPR index "${shard} - 1")
     add_test(NAME unit.${folder}.${shard} COMMAND unit_${folder} --gtest_brief=1)
     set_tests_properties(unit.${folder}.${shard} PROPERTIES TIMEOUT ${limit} LABELS unit
-      ENVIRONMENT "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${index}")
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${index};WELLSPRING_WEIGHTS=${PROJECT_SOURCE_DIR}/build/weights")
     wellspring_sanitizer_options(unit.${folder}.${shard} "")
   endforeach()
 endfunction()

@@ -150,6 +150,7 @@ TEST(SceneMotion, RealFilesMoveAsTheyDoWhenTheyAreLoadedAtThatTime) {
   const fs::path data = fs::path(WELLSPRING_DATA) / "1_gltf";
   if (!fs::exists(data)) GTEST_SKIP() << "no corpus at " << data;
   int compared = 0;
+  std::string missing;
   for (const char* name :
        {"khronos/BoxAnimated/glTF-Binary/BoxAnimated.glb",
         "khronos/CesiumMilkTruck/glTF-Binary/CesiumMilkTruck.glb",
@@ -161,7 +162,10 @@ TEST(SceneMotion, RealFilesMoveAsTheyDoWhenTheyAreLoadedAtThatTime) {
         "khronos/AnimatedTriangle/glTF/AnimatedTriangle.gltf", "ozz/interpolation_test.gltf"}) {
     SCOPED_TRACE(name);
     const std::string path = (data / name).string();
-    if (!fs::exists(path)) continue;
+    if (!fs::exists(path)) {
+      missing += std::string(" ") + name;
+      continue;
+    }
     const Scene rest = load_scene(path, moving_options());
     ASSERT_FALSE(rest.motions.empty());
     const double end = gltf::length_of(rest.motions[0].of->clips[0]);
@@ -187,6 +191,7 @@ TEST(SceneMotion, RealFilesMoveAsTheyDoWhenTheyAreLoadedAtThatTime) {
     }
   }
   EXPECT_GT(compared, 20);
+  if (!missing.empty()) GTEST_SKIP() << "not all files are here:" << missing;
 }
 
 }  // namespace
