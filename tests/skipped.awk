@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Reads the log of ctest and prints which single tests of GoogleTest and of Node were skipped, by reason.
+# Reads the log of ctest and prints which single tests of GoogleTest and of Node, and which whole scripts,
+# were skipped, by reason.
 function note(name, why) {
   count++
   names[why] = names[why] (names[why] ? ", " : "") name
@@ -10,6 +11,11 @@ function note(name, why) {
   sub(/:$/, "", place)
   getline why
   note(place, why)
+}
+/^Command: / { script = $NF; sub(/.*\//, "", script); sub(/"$/, "", script) }
+/^The package .* of npm is not installed, so this script is skipped\.$/ {
+  sub(/, so this.*/, "")
+  note("all of " script, $0)
 }
 / # SKIP/ {
   why = name = $0

@@ -37,7 +37,8 @@ function(wellspring_unit_test folder)
   add_executable(unit_${folder} ${sources})
   target_link_libraries(unit_${folder} PRIVATE ${ARG_UNPARSED_ARGUMENTS} GTest::gtest_main)
   target_include_directories(unit_${folder} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(unit_${folder} PRIVATE ${WELLSPRING_LITTLE})  # what they test is compiled as ever
+  # What they test is compiled as ever. Fields that a test does not name have their defaults.
+  target_compile_options(unit_${folder} PRIVATE ${WELLSPRING_LITTLE} -Wno-missing-field-initializers)
   wellspring_precompile(unit_${folder} test)
   if(ARG_TOGETHER)
     wellspring_together(unit_${folder} tests/unit/${folder})
@@ -59,7 +60,7 @@ function(wellspring_unit_test folder)
     math(EXPR index "${shard} - 1")
     add_test(NAME unit.${folder}.${shard} COMMAND unit_${folder} --gtest_brief=1)
     set_tests_properties(unit.${folder}.${shard} PROPERTIES TIMEOUT ${limit} LABELS unit
-      ENVIRONMENT "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${index}")
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${index};WELLSPRING_WEIGHTS=${PROJECT_SOURCE_DIR}/build/weights")
     wellspring_sanitizer_options(unit.${folder}.${shard} "")
   endforeach()
 endfunction()

@@ -56,6 +56,22 @@ inline int add_material(Scene& scene, Material material) {
   return int(scene.materials.size()) - 1;
 }
 
+// Functions that ask for a material take one that is to be added, or the number of one that is
+// there.
+inline int number_of(Scene& scene, const Material& material) {
+  return add_material(scene, material);
+}
+inline int number_of(Scene&, int material) { return material; }
+
+// Returns the number of a new texture, which shows the image.
+inline int add_texture(Scene& scene, Image image, bool nearest = false) {
+  scene.images.push_back(std::move(image));
+  scene.textures.push_back({.image = int(scene.images.size()) - 1, .nearest = nearest});
+  return int(scene.textures.size()) - 1;
+}
+
+inline mat4 at(vec3 position) { return glm::translate(mat4(1), position); }
+
 // Returns the index of the new instance.
 inline int add_mesh(Scene& scene, Mesh mesh, const char* object, mat4 to_world = mat4(1)) {
   scene.meshes.push_back(std::move(mesh));
@@ -78,12 +94,18 @@ inline void append_quad(Mesh& mesh, vec3 a, vec3 u, vec3 v) {
   mesh.triangles.push_back({first, first + 1, first + 2});
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
-inline int add_quad(Scene& scene, int material, vec3 a, vec3 u, vec3 v,
+inline int add_quad(Scene& scene, const auto& material, vec3 a, vec3 u, vec3 v,
                     const char* object = "quad") {
   Mesh mesh;
-  mesh.material = material;
+  mesh.material = number_of(scene, material);
   append_quad(mesh, a, u, v);
   return add_mesh(scene, std::move(mesh), object);
+}
+
+// An upright square that faces +Z, `half` to each side of (0, 0, z).
+inline int add_wall(Scene& scene, const auto& material, float z, float half = 9,
+                    const char* object = "wall") {
+  return add_quad(scene, material, {-half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0}, object);
 }
 
 // A box of full extents `size` about the origin; `inward`: its fronts face the inside.
@@ -125,6 +147,18 @@ inline Mesh sphere_mesh(int material, float radius, int rings = 32) {
     }
   return mesh;
 }
-inline mat4 at(vec3 position) { return glm::translate(mat4(1), position); }
+
+inline int add_box(Scene& scene, const auto& material, vec3 size, const char* object,
+                   mat4 to_world = mat4(1)) {
+  return add_mesh(scene, box_mesh(number_of(scene, material), size), object, to_world);
+}
+inline int add_room(Scene& scene, const auto& material, vec3 size, const char* object,
+                    mat4 to_world = mat4(1)) {
+  return add_mesh(scene, box_mesh(number_of(scene, material), size, true), object, to_world);
+}
+inline int add_sphere(Scene& scene, const auto& material, float radius, const char* object,
+                      mat4 to_world = mat4(1), int rings = 32) {
+  return add_mesh(scene, sphere_mesh(number_of(scene, material), radius, rings), object, to_world);
+}
 
 }  // namespace wellspring::scenes

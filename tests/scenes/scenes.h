@@ -52,6 +52,23 @@ inline double rect_light_irradiance(dvec3 p, double radiance) {
   return std::abs(sum) * radiance / 2;
 }
 
+// A glowing ball over a floor of albedo 0.5.
+inline Scene make_lamp_over_floor(vec3 radiance) {
+  Scene scene = empty_scene();
+  add_floor(scene, 0.5f);
+  add_sphere(scene, emitter(radiance), 0.3f, "ball", at({0, 0.8f, 0}));
+  return scene;
+}
+
+// Balls in a row on a glossy floor under a blue sky, 1 m from one to the next, the first at x.
+inline Scene make_row_of_balls(const std::vector<Material>& balls, float x) {
+  Scene scene = empty_scene();
+  scene.environment.radiance = {0.2f, 0.3f, 0.5f};
+  add_quad(scene, plastic({0.6f, 0.5f, 0.4f}, 0.1f), {-3, -1, 3}, {6, 0, 0}, {0, 0, -6}, "floor");
+  for (const Material& ball : balls) add_sphere(scene, ball, 0.45f, "ball", at({x++, 0, -1}));
+  return scene;
+}
+
 inline Scene make_plane_with_punctual(PunctualLight light, float albedo = 0.5f) {
   Scene scene = empty_scene();
   add_floor(scene, albedo);

@@ -69,7 +69,7 @@ test('the last picture after a movement arrives over a slow line', async () => {
     await turn(visitor, 1);
     const last = visitor.picture(({ seq }) => seq === 5000);
     visitor.send({ type: 'input', seq: 5000, move: [0, 0, 0], look: [0.3, 0] });
-    assert.equal((await last).seq, 5000);
+    await last;  // fails if it does not come in time
   } finally {
     await visitor.close();
     shaped.close();

@@ -64,11 +64,15 @@ no pictures of the reference tool
 ok 1 - pages are read # SKIP there is no Chromium here
 ﹣ pages are heard (0.2ms) # SKIP there is no Chromium here
 # skipped 2
+Command: "/usr/bin/node" "--test" "/somewhere/tests/browser/page.test.mjs"
+The package ws of npm is not installed, so this script is skipped.
 `);
   const { stdout } = spawnSync('awk', ['-f', join(source, 'tests/skipped.awk'), log],
       { encoding: 'utf8' });
   const [head, ...reasons] = stdout.trim().split('\n');
-  assert.equal(head, '3 tests were skipped:');
-  assert.deepEqual(reasons.sort(), ['  no pictures of the reference tool: flip_test.cpp:155',
+  assert.equal(head, '4 tests were skipped:');
+  assert.deepEqual(reasons.sort(), [
+    '  The package ws of npm is not installed: all of page.test.mjs',
+    '  no pictures of the reference tool: flip_test.cpp:155',
     '  there is no Chromium here: pages are read, pages are heard']);
 });

@@ -3,6 +3,7 @@
 // samples. Pure functions of the show.
 #pragma once
 #include "show/draw/decide.h"
+#include "show/state/renderer.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {

@@ -7,6 +7,7 @@
 // goes to samples alone, and the next pass comes when there are so many more of them that it pays
 // (show/draw/decide.h).
 #pragma once
+#include "show/state/drawing.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {

@@ -9,10 +9,7 @@
 
 #include "base/rng.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 std::vector<int> order_of(const std::vector<float>& attention, int shares) {
@@ -28,8 +25,6 @@ std::vector<SeenObject> two_objects() {
   seen[1].saliency = 0.2f, seen[1].importance = 0.9f, seen[1].pixels = 300;
   return seen;
 }
-
-}  // namespace
 
 TEST(Attended, TheSliderGoesFromPictureToTask) {
   std::vector<float> attention;
@@ -134,3 +129,6 @@ TEST(Attended, WeightsAreSharperThanShares) {
   eval_weights({}, {}, weights);
   EXPECT_TRUE(weights.empty());
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -9,10 +9,7 @@
 
 #include "base/rng.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 Plane noise(int width, int height) {
@@ -27,8 +24,6 @@ Plane reduced(const Plane& fine) {
   reduce(fine, narrow, coarse);
   return coarse;
 }
-
-}  // namespace
 
 TEST(Pyramid, FiltersByHand) {
   EXPECT_EQ(reduced({8, 1, {0, 0, 0, 32, 0, 0, 0, 0}}).value, (std::vector<float>{1, 10, 5, 0}));
@@ -81,3 +76,6 @@ TEST(Pyramid, CoarserPlacesAreThoseOfItsPixels) {
       EXPECT_NEAR(coarser_place(coarse.value[size_t(i)], size), float(i), 1e-5f) << size;
   }
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -12,10 +12,7 @@
 #include "unit/attention/bars.h"
 #include "unit/attention/saliency_at.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 Image8 noise(int width, int height, uint64_t seed) {
@@ -64,8 +61,6 @@ void expect_pop_out(Color8 ground, Color8 bar, Color8 target) {
 
 constexpr Color8 grey{110, 110, 110}, black{0, 0, 0}, red{200, 40, 40}, green{40, 200, 40},
     blue{40, 40, 200}, yellow{200, 200, 40};
-
-}  // namespace
 
 TEST(Saliency, ARedBarPopsOutAmongGreenOnes) { expect_pop_out(grey, green, red); }
 TEST(Saliency, AGreenBarPopsOutAmongRedOnes) { expect_pop_out(grey, red, green); }
@@ -216,3 +211,6 @@ TEST(Saliency, ContrastThatIsNoiseIsNotPromoted) {
   promote_peaks(faint);
   EXPECT_NEAR(faint.value[2], 0.001f, 1e-6f);  // 0.1 of the least range, times 0.1^2
 }
+
+}  // namespace
+}  // namespace wellspring::test

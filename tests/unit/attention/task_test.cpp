@@ -11,10 +11,7 @@
 #include "base/rng.h"
 #include "unit/attention/saliency_at.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 // A view's objects, and what is found in it.
@@ -50,8 +47,6 @@ View three_objects() {
   view.put(9, {260, 40}, {20, 20});
   return view;
 }
-
-}  // namespace
 
 TEST(Task, MeasuresByHand) {
   View view{40, 30};
@@ -185,3 +180,6 @@ TEST(Task, NothingOfAnEarlierViewIsLeft) {
   EXPECT_EQ(found[0].pixels, 4);
   EXPECT_EQ(found[0].saliency, 0);  // there is no map
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -5,13 +5,10 @@
 
 #include <vector>
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
 const std::vector<std::string> known = {"hall", "crown", "point_far", "Lamp Crown", "well", ""};
-}
 
 TEST(NearName, NamesWhatWasProbablyMeant) {
   EXPECT_EQ(did_you_mean("crwon", known), "; did you mean 'crown'?");
@@ -34,3 +31,6 @@ TEST(NearName, ListsHaveAnEnd) {
   EXPECT_EQ(list_names(std::vector<std::string>{"a", "b"}), "a, b");
   EXPECT_EQ(list_names({}), "");
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -12,10 +12,7 @@
 
 #include "unit/folder.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 // The manager's end.
@@ -40,8 +37,6 @@ struct Manager {
 };
 
 using Lines = std::vector<std::string>;
-
-}  // namespace
 
 TEST(ServiceManager, SaysWhatItIsToldInDatagrams) {
   Manager manager;
@@ -79,3 +74,6 @@ TEST(ServiceManager, IsSilentForAnotherProcessAndWithoutAManager) {
   unsetenv("NOTIFY_SOCKET");
   ServiceManager().say("READY=1");
 }
+
+}  // namespace
+}  // namespace wellspring::test

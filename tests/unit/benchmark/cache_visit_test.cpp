@@ -19,9 +19,7 @@ namespace wellspring::test {
 namespace {
 
 VisitTrace make_trace() {
-  VisitTrace trace;
-  trace.name = "there";
-  trace.exhibit = "castle";
+  VisitTrace trace{.name = "there", .exhibit = "castle"};
   trace.samples = {
       {0, {1, 2, 3}, 3.0f, 0, 1}, {0.5, {2, 2, 3}, 3.5f, 0.1f, 1}, {1, {2, 4, 3}, 4, 0, 2}};
   trace.lamps = {{0.25, false}, {0.75, true}};
@@ -77,10 +75,9 @@ TEST(VisitTrace, SurvivesTheDiskAndRefusesNonsense) {
 }
 
 TEST(VisitTrace, MisspeltNamesAreRefusedBeforeAnythingIsMeasured) {
-  VisitSettings settings;
-  settings.exhibit = "no exhibit is loaded";
-  settings.traces = WELLSPRING_SOURCE "/tests/benchmark/traces";
-  settings.only = "strol";
+  VisitSettings settings{.exhibit = "no exhibit is loaded",
+                         .traces = WELLSPRING_SOURCE "/tests/benchmark/traces",
+                         .only = "strol"};
   EXPECT_THROW(simulate_visits(settings), LoadError);
   settings.only = "stroll";
   settings.methods = {"cach"};
@@ -152,8 +149,7 @@ TEST(VisitJudge, WrongSurfaceLooksAtThePixelAndItsCorners) {
 
 // A wall across the view at z = -2, seen from z = 0.
 TrueView see_wall(const View& view) {
-  TrueView seen;
-  seen.view = view;
+  TrueView seen{.view = view};
   size_t pixels = size_t(view.width) * size_t(view.height);
   seen.object.assign(pixels, 5);
   seen.hit.assign(pixels, 1);
@@ -167,9 +163,7 @@ TrueView see_wall(const View& view) {
 }
 
 TEST(VisitJudge, MotionFollowsTheCameraAndComparesNothingElse) {
-  View before;
-  before.width = 16;
-  before.height = 8;
+  View before{.width = 16, .height = 8};
   before.tan_half_fov = 1;  // a pixel is half a metre on the wall
   View now = before;
   now.position.x = 1;  // two pixels to the right: what is seen was two pixels further right
@@ -244,11 +238,10 @@ struct Box {
   World world{scene};
   Lights lights = make_lights(world);
   VisitMoment moment(int frame, bool changed, float aside = 0) const {
-    VisitMoment m;
-    m.world = &world;
-    m.lights = &lights;
-    m.technique = find_technique("direct");
-    m.view = scenes::cornell_view(scene, 32, 24);
+    VisitMoment m{.world = &world,
+                  .lights = &lights,
+                  .technique = find_technique("direct"),
+                  .view = scenes::cornell_view(scene, 32, 24)};
     m.view.position.x += aside;
     m.changed = changed;
     m.frame = frame;
@@ -266,8 +259,7 @@ double mean_difference(const Frame& a, const Frame& b) {
 
 TEST(VisitMethod, EveryMethodComesToRestAtTheRightPicture) {
   Box box;
-  StillSettings still;
-  still.spp = 256;
+  StillSettings still{.spp = 256};
   Frame wanted = render_still(*find_technique("direct"), box.world, box.lights,
                               box.moment(0, true).view, still);
   // Returns how far pictures of as many samples a pixel are from the truth.

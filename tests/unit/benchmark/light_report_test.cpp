@@ -8,12 +8,9 @@
 #include "benchmark/light_reference.h"
 #include "benchmark/plot.h"
 #include "benchmark/tessellate.h"
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 size_t count_of(const std::string& text, const std::string& part) {
@@ -40,8 +37,6 @@ std::vector<CurvePoint> falling(double first, int count) {
     curve.push_back({1 << i, double(1 << i), first * std::pow(0.5, 0.5 * i), 0, 0, 0});
   return curve;
 }
-
-}  // namespace
 
 TEST(Plot, PowersLieOnStraightLines) {
   Plot plot{"a < b & c", "", "x", "y", {{"one", {}}, {"none", {}}}, 0.1, "level"};
@@ -81,17 +76,13 @@ TEST(Curve, TimeToAnErrorIsReadFromTheLogarithms) {
 
 // The reference's estimate of its own noise agrees with a far better picture.
 TEST(ReferencePicture, KnowsItsNoise) {
-  Scene scene = scenes::make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = scenes::LitWorld(scenes::make_cornell_box());
   // Below the lamp, whose edges would decide alone.
   View view = make_view_towards(scene, {0, 0.2, 0.3}, {0, 0.1, -0.3}, {0, 1, 0}, 0.5f, 24, 24);
   Reference quick = make_reference(world, lights, view, {}, 0);  // two pieces of eight
   EXPECT_EQ(quick.spp, 16);
-  StillSettings settings;
-  settings.spp = 1024;
-  settings.seed = 99;
-  Frame truth = render_still(*find_technique("path"), world, lights, view, settings);
+  Frame truth =
+      render_still(*find_technique("path"), world, lights, view, {.spp = 1024, .seed = 99});
   // Pixels are independent: their squared errors tell how exact their mean is, and the reference's
   // own estimate of it is as exact. Two-sided, 1 in 10,000.
   double sum = 0, squares = 0, n = double(truth.color.size());
@@ -127,3 +118,6 @@ TEST(Tessellate, SameSurfacesInMoreTriangles) {
     if (scene.materials[size_t(scene.meshes[i].material)].emission != vec3(0)) lamp = i;
   EXPECT_EQ(fine.meshes[lamp].triangles.size(), 2u);
 }
+
+}  // namespace
+}  // namespace wellspring::test

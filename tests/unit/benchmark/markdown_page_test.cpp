@@ -10,12 +10,10 @@
 
 #include "benchmark/reports.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using nlohmann::json;
-
+namespace wellspring::test {
 namespace {
+
+using nlohmann::json;
 
 bool has_line(const std::string& page, const std::string& line) {
   return ("\n" + page).find("\n" + line + "\n") != std::string::npos;
@@ -61,8 +59,6 @@ const ReportPage warp_page = {
     {{.caption = "All of it",
       .rows = {{"trace", "visit"}, {"age_ms", "age, ms"}},
       .columns = {{"flip", "FLIP"}, {"held", "held", 100, "%"}, {"never", "not there"}}}}};
-
-}  // namespace
 
 TEST(MarkdownPage, FiguresStandInTheirRowAndColumn) {
   std::string page = make_page(warp_page, warp_report());
@@ -270,3 +266,6 @@ TEST(MarkdownPage, PagesAreWrittenFromFiles) {
                std::runtime_error);
   fs::remove_all(folder);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -6,17 +6,12 @@
 #include <cmath>
 #include <random>
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 // Radiance 1 with Gaussian noise, brighter by `step` in the left half.
 Frame noisy(uint32_t seed, float sigma, float step = 0) {
-  Frame frame;
-  frame.width = 160;
-  frame.height = 80;
+  Frame frame{.width = 160, .height = 80};
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(0, sigma);
   for (int i = 0; i < 160 * 80; i++)
@@ -26,8 +21,6 @@ Frame noisy(uint32_t seed, float sigma, float step = 0) {
 PicturePair pair_of(uint32_t seed, float sigma, float step = 0) {
   return {noisy(seed, sigma, step), noisy(seed + 1, sigma, step), 0};
 }
-
-}  // namespace
 
 TEST(PicturePair, KnowsItsOwnNoise) {
   EXPECT_NEAR(noise(pair_of(1, 0.25f)), 0.25, 0.01);
@@ -49,3 +42,6 @@ TEST(PicturePair, FindsABrighterHalf) {
   EXPECT_GT(a.block_z, 2);
   EXPECT_GT(a.correlation, 0.5);
 }
+
+}  // namespace
+}  // namespace wellspring::test

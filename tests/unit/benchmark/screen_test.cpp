@@ -16,8 +16,7 @@ Image8 plain(int width, int height, uint8_t value) {
 
 Packet complete(const Image8& image) {
   Packet packet(packet_header_bytes);
-  PacketHeader header;
-  header.width = uint16_t(image.width), header.height = uint16_t(image.height);
+  PacketHeader header{.width = uint16_t(image.width), .height = uint16_t(image.height)};
   write_packet_header(header, packet);
   encode_jpeg(image, 95, true, packet, packet_header_bytes);
   return packet;
@@ -45,9 +44,7 @@ TEST(Screen, PutsPartsWhereTheyBelong) {
   screen.receive(complete(plain(32, 32, 50)));
   std::vector<uint8_t> jpeg;
   encode_jpeg(plain(16, 16, 220), 95, true, jpeg);
-  PacketHeader header;
-  header.width = header.height = 32;
-  header.flags = 0;
+  PacketHeader header{.width = 32, .height = 32, .flags = 0};
   const PicturePart part{16, 0, 16, 16, uint32_t(jpeg.size())};
   Packet packet(parts_header_bytes(1));
   write_packet_header(header, std::span(&part, 1), packet);

@@ -18,10 +18,7 @@ Image8 noise(int width, int height) {
 }
 
 TEST(Window, ItsRaysAreThoseOfTheWholeView) {
-  View whole;
-  whole.width = 64, whole.height = 36;
-  whole.tan_half_fov = 0.4f;
-  whole.position = {1, 2, 3};
+  View whole{.position = {1, 2, 3}, .tan_half_fov = 0.4f, .width = 64, .height = 36};
   const Window window{40, 3, 16, 9};
   const View view = window_view(whole, window);
   for (const vec2 at : {vec2(0.5f, 0.5f), vec2(15.5f, 0.5f), vec2(7, 8.5f)}) {

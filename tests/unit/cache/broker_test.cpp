@@ -260,10 +260,9 @@ TEST(BrokeredVisit, AWorkerThatNeverAnswersCostsItsShareOnly) {
 Sample trace_figure(const World& world, const Request& request) {
   Hit hit = world.intersect(request.ray);
   vec3 d = request.ray.direction;
-  Sample sample;
-  sample.position = d * (hit.valid() ? hit.t : 5 / -d.z);
-  sample.normal = vec3(0, 0, 1);
-  sample.object = hit.valid() ? 7 : 1;
+  Sample sample{.position = d * (hit.valid() ? hit.t : 5 / -d.z),
+                .normal = vec3(0, 0, 1),
+                .object = hit.valid() ? 7u : 1u};
   sample.albedo = sample.smooth = vec3(0.5f);
   sample.flags = sample_hit;
   if (!hit.valid()) return sample;
@@ -282,10 +281,9 @@ bool is_near(const std::vector<uint8_t>& mask, int x, int y) {
 }
 
 TEST(BrokeredVisit, AnswersAboutAFigureThatHasMovedOnLandOnItsSkin) {
-  Mesh mesh;
-  mesh.positions = {vec3(-1, -1, -3), vec3(1, -1, -3), vec3(0, 1, -3)};
-  mesh.normals = {vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)};
-  mesh.triangles = {uvec3(0, 1, 2)};
+  Mesh mesh{.positions = {vec3(-1, -1, -3), vec3(1, -1, -3), vec3(0, 1, -3)},
+            .normals = {vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)},
+            .triangles = {uvec3(0, 1, 2)}};
   Scene scene;
   scene.materials.resize(1);
   scene.objects = {"", "figure"};
@@ -296,9 +294,8 @@ TEST(BrokeredVisit, AnswersAboutAFigureThatHasMovedOnLandOnItsSkin) {
   Frame frame;
   std::vector<Request> requests;
   for (uint32_t pixel = 0; pixel < 64 * 48; pixel++) {
-    Request request;
-    request.pixel = pixel;
-    request.ray = view_ray(view, float(pixel % 64) + 0.5f, float(pixel / 64) + 0.5f);
+    Request request{.ray = view_ray(view, float(pixel % 64) + 0.5f, float(pixel / 64) + 0.5f),
+                    .pixel = pixel};
     requests.push_back(request);
   }
   auto trace = [&](const Request& request) { return trace_figure(world, request); };

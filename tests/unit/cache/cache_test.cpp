@@ -306,10 +306,9 @@ TEST(Cache, ALongVisitNeitherDriftsNorGrows) {
 }
 
 TEST(Cache, MovingPointsFollowTheirTriangle) {
-  Mesh mesh;
-  mesh.positions = {vec3(-1, -1, -3), vec3(1, -1, -3), vec3(0, 1, -3)};
-  mesh.normals = {vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)};
-  mesh.triangles = {uvec3(0, 1, 2)};
+  Mesh mesh{.positions = {vec3(-1, -1, -3), vec3(1, -1, -3), vec3(0, 1, -3)},
+            .normals = {vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)},
+            .triangles = {uvec3(0, 1, 2)}};
   Scene scene;
   scene.materials.resize(1);
   scene.objects = {"", "figure"};

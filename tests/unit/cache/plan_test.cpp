@@ -146,8 +146,7 @@ TEST(Attention, EmptyBeforeOldBeforeFresh) {
   EXPECT_GT(at(30, 10), at(50, 10));
   EXPECT_GT(at(50, 10), at(10, 10));
   EXPECT_GT(at(10, 10), 0);
-  CacheSettings even;
-  even.attention = false;
+  CacheSettings even{.attention = false};
   prioritise(p.points, even, p.image);
   EXPECT_EQ(at(10, 10), at(100, 50));
 }

@@ -44,15 +44,13 @@ struct Stage {
 };
 
 Sample sample_at(vec3 p, vec3 n, uint32_t object, vec3 smooth = vec3(1)) {
-  Sample s;
-  s.position = p;
-  s.normal = n;
-  s.distance = length(p);
-  s.object = object;
-  s.albedo = vec3(0.5f);
-  s.smooth = smooth;
-  s.flags = sample_hit;
-  return s;
+  return Sample{.position = p,
+                .normal = n,
+                .distance = length(p),
+                .object = object,
+                .albedo = vec3(0.5f),
+                .smooth = smooth,
+                .flags = sample_hit};
 }
 
 TEST(Packing, ColoursKeepTheirValue) {

@@ -70,8 +70,8 @@ Switched switch_spot(bool told, bool on, int mismatch) {
 }
 
 // Not all can be right: stripes finer than a pixel take more samples than these. So what counts is
-// how many are after a long rest.
-TEST(Relight, NineOfTenAffectedPixelsAreAsRightAsEverInHalfASecond) {
+// how many are after a long rest: nine tenths as many if the cache is told, half if it finds out.
+TEST(Relight, HalfASecondMakesUpNineTenthsIfToldAndHalfIfFound) {
   for (bool on : {true, false}) {
     Switched told = switch_spot(true, on, 16);
     EXPECT_GT(told.before, 0.85f);
@@ -90,9 +90,7 @@ TEST(Relight, NineOfTenAffectedPixelsAreAsRightAsEverInHalfASecond) {
 Scene make_box(bool spot) {
   Scene scene = scenes::make_cornell_box();
   for (Material& material : scene.materials) material.emission = vec3(0);
-  PunctualLight lamp;
-  lamp.position = {0.02f, 0.45f, 0.05f};
-  lamp.intensity = {0.15f, 0.15f, 0.17f};
+  PunctualLight lamp{.position = {0.02f, 0.45f, 0.05f}, .intensity = {0.15f, 0.15f, 0.17f}};
   scene.lights.push_back(lamp);
   lamp.type = PunctualType::spot;
   lamp.position = {-0.2f, 0.5f, 0.1f};

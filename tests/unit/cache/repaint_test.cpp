@@ -17,16 +17,12 @@ struct Wall {
   std::vector<Mesh> moving;
   Wall() {
     scene.objects = {"", "wall", "figure"};
-    Material painted;
-    painted.base_color = vec4(0.2f, 0.2f, 0.2f, 1);
-    painted.metallic = 0;
-    painted.specular = 0;
-    painted.repaints = true;
+    Material painted{
+        .base_color = vec4(0.2f, 0.2f, 0.2f, 1), .metallic = 0, .specular = 0, .repaints = true};
     scene.materials = {painted, painted, painted};
     auto square = [](vec3 low, float size, int material) {
-      Mesh mesh;
-      mesh.positions = {low, low + vec3(size, 0, 0), low + vec3(size, size, 0),
-                        low + vec3(0, size, 0)};
+      Mesh mesh{.positions = {low, low + vec3(size, 0, 0), low + vec3(size, size, 0),
+                              low + vec3(0, size, 0)}};
       mesh.normals.assign(4, vec3(0, 0, 1));
       mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
       mesh.material = material;
@@ -41,7 +37,6 @@ struct Wall {
 TEST(Repaint, PointsOfTheRepaintedInstancesTakeTheirReflectance) {
   Wall wall;
   World world(wall.scene, wall.moving, {2, 2});
-  world.commit();
   PointCache points;
   resize_points(points, 8);
   for (uint32_t i = 0; i < 8; i++) {
@@ -74,7 +69,6 @@ Shares brighten(bool told) {
   constexpr int width = 120, height = 80, pixels = width * height;
   Wall wall;
   World world(wall.scene, wall.moving, {2, 2});
-  world.commit();
   View view = look_at(vec3(0, 0, 3), vec3(0), 60, width, height);
   RenderCache cache;
   std::vector<Request> requests;
@@ -92,17 +86,17 @@ Shares brighten(bool told) {
     for (const Request& request : requests) {
       Hit hit = world.intersect(request.ray);
       bool moves = world.is_moving(hit.instance);
-      Sample sample;
-      sample.position = request.ray.origin + hit.t * request.ray.direction;
-      sample.normal = vec3(0, 0, 1);
-      sample.distance = hit.t;
-      sample.object = world.object_of(hit.instance);
-      sample.instance = hit.instance, sample.triangle = hit.triangle,
-      sample.barycentric = hit.barycentric;
-      sample.albedo =
-          vec3(world.material_of(hit.instance).base_color) + (hit.instance == 1 ? untold : 0);
-      sample.smooth = vec3(1);
-      sample.flags = uint8_t(sample_hit | (moves ? sample_moving : 0));
+      Sample sample{.position = request.ray.origin + hit.t * request.ray.direction,
+                    .normal = vec3(0, 0, 1),
+                    .distance = hit.t,
+                    .object = world.object_of(hit.instance),
+                    .instance = hit.instance,
+                    .triangle = hit.triangle,
+                    .barycentric = hit.barycentric,
+                    .albedo = vec3(world.material_of(hit.instance).base_color) +
+                              (hit.instance == 1 ? untold : 0),
+                    .smooth = vec3(1),
+                    .flags = uint8_t(sample_hit | (moves ? sample_moving : 0))};
       samples.push_back(sample);
     }
     cache.remember(view, requests, samples);

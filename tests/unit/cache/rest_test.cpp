@@ -52,10 +52,9 @@ TEST(Rest, LateAnswersShowInTheNextPicture) {
 }
 
 TEST(Rest, WhatMovesBeforeAStillCameraLeavesItsPlace) {
-  Mesh mesh;
-  mesh.positions = {vec3(-1, -1, -3), vec3(1, -1, -3), vec3(0, 1, -3)};
-  mesh.normals = {vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)};
-  mesh.triangles = {uvec3(0, 1, 2)};
+  Mesh mesh{.positions = {vec3(-1, -1, -3), vec3(1, -1, -3), vec3(0, 1, -3)},
+            .normals = {vec3(0, 0, 1), vec3(0, 0, 1), vec3(0, 0, 1)},
+            .triangles = {uvec3(0, 1, 2)}};
   Scene scene;
   scene.materials.resize(1);
   scene.objects = {"", "figure"};
@@ -67,15 +66,13 @@ TEST(Rest, WhatMovesBeforeAStillCameraLeavesItsPlace) {
   std::vector<Request> requests;
   std::vector<Sample> samples;
   for (uint32_t pixel = 0; pixel < 64 * 48; pixel++) {
-    Request request;
-    request.pixel = pixel;
-    request.ray = view_ray(view, float(pixel % 64) + 0.5f, float(pixel / 64) + 0.5f);
+    Request request{.ray = view_ray(view, float(pixel % 64) + 0.5f, float(pixel / 64) + 0.5f),
+                    .pixel = pixel};
     vec3 d = request.ray.direction;
     bool figure = pixel % 64 >= 30 && pixel % 64 < 34 && pixel / 64 >= 22 && pixel / 64 < 26;
-    Sample sample;
-    sample.position = d * ((figure ? 3.0f : 5.0f) / -d.z);
-    sample.normal = vec3(0, 0, 1);
-    sample.object = figure ? 7 : 1;
+    Sample sample{.position = d * ((figure ? 3.0f : 5.0f) / -d.z),
+                  .normal = vec3(0, 0, 1),
+                  .object = figure ? 7u : 1u};
     sample.albedo = sample.smooth = vec3(0.5f);
     sample.flags = sample_hit;
     if (figure) {

@@ -190,9 +190,7 @@ void trace_room(const Room& room, std::span<const Request> requests, std::vector
 }
 
 Frame render_room(const Room& room, const View& view, int spp, uint64_t seed) {
-  Frame frame;
-  frame.width = view.width;
-  frame.height = view.height;
+  Frame frame{.width = view.width, .height = view.height};
   size_t pixels = size_t(view.width) * size_t(view.height);
   frame.color.assign(pixels, vec3(0));
   frame.depth.assign(pixels, 0);
@@ -201,8 +199,7 @@ Frame render_room(const Room& room, const View& view, int spp, uint64_t seed) {
     for (int x = 0; x < view.width; x++) {
       size_t at = size_t(y) * size_t(view.width) + size_t(x);
       for (int i = 0; i < spp; i++) {
-        Request request;
-        request.seed = sample_seed(seed, uint32_t(x), uint32_t(y), uint32_t(i));
+        Request request{.seed = sample_seed(seed, uint32_t(x), uint32_t(y), uint32_t(i))};
         Rng rng(request.seed ^ 0x1234567);
         float u = rng.uniform(), v = rng.uniform();
         request.ray = view_ray(view, float(x) + u, float(y) + v);
@@ -218,9 +215,7 @@ Frame render_room(const Room& room, const View& view, int spp, uint64_t seed) {
 }
 
 View look_at(vec3 eye, vec3 target, float fov_degrees, int width, int height) {
-  View view;
-  view.position = eye;
-  view.forward = normalize(target - eye);
+  View view{.position = eye, .forward = normalize(target - eye)};
   view.right = normalize(cross(view.forward, vec3(0, 1, 0)));
   view.up = cross(view.right, view.forward);
   view.tan_half_fov = std::tan(fov_degrees * pi / 360);
@@ -233,9 +228,7 @@ namespace {
 
 // Paints the wall from `a` along u and v, in metres: its reflectances are a picture.
 Material paint_wall(Scene& scene, uint32_t object, vec3 a, vec3 u, vec3 v, int columns, int rows) {
-  Image image;
-  image.width = columns, image.height = rows;
-  image.srgb = true;
+  Image image{.width = columns, .height = rows, .srgb = true};
   for (int y = 0; y < rows; y++)
     for (int x = 0; x < columns; x++) {
       vec3 p = a + u * ((float(x) + 0.5f) / float(columns)) + v * ((float(y) + 0.5f) / float(rows));
@@ -247,13 +240,8 @@ Material paint_wall(Scene& scene, uint32_t object, vec3 a, vec3 u, vec3 v, int c
       }
       image.texels8.push_back(255);
     }
-  scene.images.push_back(std::move(image));
-  Texture texture;
-  texture.image = int(scene.images.size()) - 1;
-  texture.nearest = true;
-  scene.textures.push_back(texture);
   Material material = scenes::diffuse(vec3(1));
-  material.base_color_texture.texture = int(scene.textures.size()) - 1;
+  material.base_color_texture.texture = scenes::add_texture(scene, image, true);
   return material;
 }
 
@@ -268,23 +256,18 @@ Scene make_room_scene(const Room& room) {
     return add_material(scene, diffuse(wall_albedo(object, vec3(0))));
   };
   const vec3 front = low + z, back = low + x;
-  add_quad(scene, add_material(scene, paint_wall(scene, 1, front, x, -z, 512, 640)), front, x, -z,
-           "floor");
+  add_quad(scene, paint_wall(scene, 1, front, x, -z, 512, 640), front, x, -z, "floor");
   add_quad(scene, plain(2), low + y, x, z, "ceiling");
   add_quad(scene, plain(3), front, -z, y, "left");
   add_quad(scene, plain(4), back, z, y, "right");
-  add_quad(scene, add_material(scene, paint_wall(scene, 5, low, x, y, 1024, 384)), low, x, y,
-           "back");
-  add_quad(scene, add_material(scene, paint_wall(scene, 6, high - y, -x, y, 1024, 384)), high - y,
-           -x, y, "front");
+  add_quad(scene, paint_wall(scene, 5, low, x, y, 1024, 384), low, x, y, "back");
+  add_quad(scene, paint_wall(scene, 6, high - y, -x, y, 1024, 384), high - y, -x, y, "front");
   if (room.lamp)
-    add_quad(scene, add_material(scene, emitter(lamp_radiance)),
-             {-lamp_half, high.y - 1e-3f, -lamp_half}, {2 * lamp_half, 0, 0}, {0, 0, 2 * lamp_half},
-             "lamp");
+    add_quad(scene, emitter(lamp_radiance), {-lamp_half, high.y - 1e-3f, -lamp_half},
+             {2 * lamp_half, 0, 0}, {0, 0, 2 * lamp_half}, "lamp");
   else scene.objects.push_back("lamp");
   for (const Ball& ball : balls)
-    add_mesh(scene, sphere_mesh(add_material(scene, diffuse(ball.albedo)), ball.radius, 64), "ball",
-             at(ball.center));
+    add_sphere(scene, diffuse(ball.albedo), ball.radius, "ball", at(ball.center), 64);
   return scene;
 }
 

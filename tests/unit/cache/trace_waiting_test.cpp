@@ -16,14 +16,11 @@ namespace {
 std::vector<uint64_t> traced;  // seeds, in order; one thread only
 
 Technique writing_down() {
-  Technique technique;
-  technique.name = "writes down what it is asked";
+  Technique technique{.name = "writes down what it is asked"};
   technique.trace = [](const World&, const Lights&, const TransportSettings&,
                        const Request& request) {
     traced.push_back(request.seed);
-    Sample sample;
-    sample.distance = float(request.seed);
-    return sample;
+    return Sample{.distance = float(request.seed)};
   };
   return technique;
 }
@@ -80,9 +77,7 @@ TEST(TraceWaiting, OtherWorkersMayHelp) {
   Bench bench;
   bench.technique.trace = [](const World&, const Lights&, const TransportSettings&,
                              const Request& request) {
-    Sample sample;
-    sample.distance = float(request.seed);
-    return sample;
+    return Sample{.distance = float(request.seed)};
   };
   Broker broker({.piece = 8});
   broker.ask({}, {&bench.technique, {}}, seeded(0, 8000));

@@ -7,12 +7,10 @@
 #include "base/layers.h"
 #include "unit/folder.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using wellspring::test::Folder;
-
+namespace wellspring::test {
 namespace {
+
+using wellspring::test::Folder;
 
 // A program with an option of every kind.
 struct Program {
@@ -54,8 +52,6 @@ struct Program {
 };
 
 using Lines = std::vector<std::string>;
-
-}  // namespace
 
 TEST(ConfigFile, SetsOptionsOfEveryKind) {
   Program p;
@@ -130,3 +126,6 @@ TEST(ConfigFile, WhatIsWrittenIsReadAsItWas) {
   again.run(text);
   EXPECT_EQ(write_config(again.app), text);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -15,12 +15,10 @@
 #include "image/image.h"
 #include "unit/frame/tonemap_color.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-namespace fs = std::filesystem;
-
+namespace wellspring::test {
 namespace {
+
+namespace fs = std::filesystem;
 
 // A folder of its own for each test, removed afterwards.
 struct PictureFile : testing::Test {
@@ -31,9 +29,7 @@ struct PictureFile : testing::Test {
 };
 
 Frame make_frame() {
-  Frame frame;
-  frame.width = 5;
-  frame.height = 3;
+  Frame frame{.width = 5, .height = 3};
   for (int i = 0; i < 15; i++) {
     frame.color.push_back(vec3(float(i) * 0.1f, 1e-6f * float(i), 1e4f + float(i)));
     frame.depth.push_back(float(i));
@@ -49,8 +45,6 @@ std::string bytes_of(const std::string& path) {
 void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
-
-}  // namespace
 
 TEST_F(PictureFile, LinearFormatsKeepEveryBit) {
   Frame frame = make_frame();
@@ -213,3 +207,6 @@ TEST(PictureCorpus, MitsubaReferencesAreRead) {
   }
   EXPECT_GT(count, 0);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -8,18 +8,11 @@
 
 #include "unit/frame/tonemap_color.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 Frame row_of(std::vector<vec3> colors) {
-  Frame frame;
-  frame.width = int(colors.size());
-  frame.height = 1;
-  frame.color = std::move(colors);
-  return frame;
+  return Frame{.width = int(colors.size()), .height = 1, .color = std::move(colors)};
 }
 
 vec3 shown(vec3 color, float exposure = 1) {
@@ -29,8 +22,6 @@ vec3 shown(vec3 color, float exposure = 1) {
 }
 
 double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
-
-}  // namespace
 
 TEST(Tonemap, BelowTheShoulderIsPlainSrgb) {
   std::vector<vec3> ramp;
@@ -101,9 +92,7 @@ TEST(Tonemap, WhatIsNoRadianceIsBlackAndInfinityIsWhite) {
 }
 
 TEST(Tonemap, EveryPixelOfAnOddSizeIsWritten) {
-  Frame frame;
-  frame.width = 131;
-  frame.height = 37;
+  Frame frame{.width = 131, .height = 37};
   for (int i = 0; i < frame.width * frame.height; i++)
     frame.color.push_back(vec3(float(i % 97) / 97));
   Image8 image;
@@ -147,3 +136,6 @@ TEST(Tonemap, LightComesBackFromCodesAndPeaks) {
           << x << ": " << again[c];
   }
 }
+
+}  // namespace
+}  // namespace wellspring::test

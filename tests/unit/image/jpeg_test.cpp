@@ -9,10 +9,7 @@
 
 #include "base/load_error.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 Image8 gradient(int width, int height) {
@@ -32,8 +29,6 @@ int largest_difference(const Image8& a, const Image8& b) {
     largest = std::max(largest, std::abs(a.rgb[i] - b.rgb[i]));
   return largest;
 }
-
-}  // namespace
 
 TEST(Jpeg, RoundTripIsCloseAndTheRightWayUp) {
   Image8 image = gradient(123, 77);
@@ -124,3 +119,6 @@ TEST(Jpeg, WhatIsNoJpegIsRefusedByName) {
   EXPECT_THROW(encode_jpeg(Image8{}, 80, false, bytes), std::invalid_argument);
   EXPECT_THROW(encode_jpeg(Image8{10, 10, {1, 2, 3}}, 80, false, bytes), std::invalid_argument);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -5,19 +5,14 @@
 
 #include <stdexcept>
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
 Frame flat(int width, int height, vec3 color) {
-  Frame frame;
-  frame.width = width;
-  frame.height = height;
+  Frame frame{.width = width, .height = height};
   frame.color.assign(size_t(width * height), color);
   return frame;
 }
-}  // namespace
 
 TEST(Compare, KnownDifferences) {
   Frame reference = flat(2, 2, vec3(1)), test = reference;
@@ -38,3 +33,6 @@ TEST(Compare, DifferentSizesAreAnError) {
   EXPECT_THROW(rmse(flat(2, 3, vec3(0)), flat(3, 2, vec3(0))), std::invalid_argument);
   EXPECT_THROW(relative_mse(Frame{}, Frame{}), std::invalid_argument);
 }
+
+}  // namespace
+}  // namespace wellspring::test

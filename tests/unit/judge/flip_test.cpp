@@ -18,10 +18,7 @@
 
 #include "base/rng.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 Image8 flat(int width, int height, int r, int g, int b) {
@@ -54,8 +51,6 @@ Image8 load_png(const std::filesystem::path& path) {
   stbi_image_free(texels);
   return image;
 }
-
-}  // namespace
 
 TEST(Flip, APictureDoesNotDifferFromItself) {
   Image8 picture = noise(61, 43, 1);
@@ -188,3 +183,6 @@ TEST(Flip, AgreesWithTheReferenceToolPixelByPixel) {
   // Each index is off by at most half a step; together they hardly are.
   EXPECT_NEAR(map.mean, mean / 255 / double(map.error.size()), 2e-4);
 }
+
+}  // namespace
+}  // namespace wellspring::test

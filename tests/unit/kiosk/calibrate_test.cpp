@@ -21,10 +21,7 @@ TEST(Calibrate, FindsHowTheCameraSits) {
   for (float fov : {45.0f, 60.0f, 90.0f})
     for (float pitch : {-20.0f, 0.0f, 12.0f})
       for (float eyes : {-0.3f, 0.25f}) {
-        Mount truth;
-        truth.fov = fov * degree;
-        truth.pitch = pitch * degree;
-        truth.offset = {0.1f, 0.4f, 0.05f};
+        Mount truth{.fov = fov * degree, .offset = {0.1f, 0.4f, 0.05f}, .pitch = pitch * degree};
         Mount solved = solve_mount({}, seem(truth, {}, {0, eyes, near_mark}),
                                    seem(truth, {}, {0, eyes, far_mark}), eyes);
         EXPECT_NEAR(solved.fov / degree, fov, 0.05f);
@@ -56,8 +53,7 @@ struct Standing : testing::Test {
   bool stand(vec3 place, double seconds, float tremble = 0, size_t people = 1) {
     bool done = false;
     for (double end = time + seconds; time < end; time += 0.1) {
-      Observation seen;
-      seen.time = time;
+      Observation seen{.time = time};
       seen.people.resize(people);
       for (Person& person : seen.people)
         person.position = place + vec3(tremble * float(std::sin(7 * time)), 0, 0);

@@ -19,9 +19,7 @@ namespace wellspring::test {
 namespace {
 
 std::unique_ptr<Camera> open(const std::string& source, bool loop = false) {
-  CameraSettings settings;
-  settings.source = source;
-  settings.loop = loop;
+  CameraSettings settings{.source = source, .loop = loop};
   return make_camera(settings);
 }
 
@@ -66,9 +64,7 @@ TEST_F(PictureFolder, PlaysInTheOrderOfNamesAtTheRateAndPassesOverWhatIsBroken) 
   put("a.jpeg", 60);
   put_text("aa.png");
   put_text("notes.txt");
-  CameraSettings settings;
-  settings.source = folder.path.string();
-  settings.rate = 8;
+  CameraSettings settings{.source = folder.path.string(), .rate = 8};
   for (int rounds : {1, 3}) {
     settings.loop = rounds > 1;
     auto camera = make_camera(settings);
@@ -116,11 +112,7 @@ TEST(Camera, a_device_that_is_not_there_is_lost_and_stays_patient) {
 }
 
 TEST(Camera, the_synthetic_one_repeats_itself_exactly_and_ends_on_demand) {
-  CameraSettings settings;
-  settings.source = "synthetic";
-  settings.width = 160;
-  settings.rate = 4;
-  settings.synthetic_ends = true;
+  CameraSettings settings{.source = "synthetic", .width = 160, .rate = 4, .synthetic_ends = true};
   auto a = make_camera(settings), b = make_camera(settings);
   GrayFrame x, y;
   int frames = 0;
@@ -134,11 +126,8 @@ TEST(Camera, the_synthetic_one_repeats_itself_exactly_and_ends_on_demand) {
 }
 
 TEST(Camera, the_synthetic_one_can_be_as_live_as_a_device) {
-  CameraSettings settings;
-  settings.source = "synthetic-live";
-  settings.width = 160;
-  settings.rate = 50;
-  settings.synthetic_ends = true;
+  CameraSettings settings{
+      .source = "synthetic-live", .width = 160, .rate = 50, .synthetic_ends = true};
   auto camera = make_camera(settings);
   EXPECT_TRUE(camera->live());
   auto now = [] {
@@ -157,9 +146,7 @@ TEST(Camera, the_synthetic_one_can_be_as_live_as_a_device) {
 }
 
 TEST(Camera, a_mirrored_mount_draws_the_mirror_image) {
-  FigurePose pose;
-  pose.visible = true;
-  pose.position = {0.2f, 0, 0.8f};
+  FigurePose pose{.visible = true, .position = {0.2f, 0, 0.8f}};
   Mount plain, mirrored;
   mirrored.mirrored = true;
   GrayFrame a = draw_figure({320, 240, 1, 0, 1}, plain, pose, 0);

@@ -16,9 +16,7 @@ struct Watched : testing::Test {
   CameraState show(double seconds, int level, int noise, double rate = 30) {
     CameraState state = CameraState::good;
     for (int i = 0; i < int(seconds * rate); i++) {
-      GrayFrame frame;
-      frame.time = time += 1 / rate;
-      frame.width = 64, frame.height = 48;
+      GrayFrame frame{.time = time += 1 / rate, .width = 64, .height = 48};
       frame.pixels.assign(64 * 48, uint8_t(level));
       Rng rng(++frames);
       if (noise > 0)

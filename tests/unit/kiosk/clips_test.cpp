@@ -16,8 +16,7 @@ namespace {
 const std::filesystem::path faces = std::filesystem::path(WELLSPRING_DATA) / "5_faces";
 
 std::vector<Observation> watch(const std::filesystem::path& file, double until) {
-  CameraSettings settings;
-  settings.source = file.string();
+  CameraSettings settings{.source = file.string()};
   auto camera = make_camera(settings);
   Observer observer;
   std::vector<Observation> seen;

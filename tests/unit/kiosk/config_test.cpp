@@ -98,8 +98,7 @@ TEST_F(ConfigFile, ListsCamerasThatDifferFromWhatTheyHaveInCommon) {
             "line 1, /cameras/0/mount/pitch: is not a number from -80 to 80");
   // The mount that is found out is that of one of them.
   std::ofstream(file) << text;
-  Mount mount;
-  mount.pitch = 0.1f;
+  Mount mount{.pitch = 0.1f};
   save_mount(file, "1", mount);
   config = {};
   load_config(file, config);
@@ -109,10 +108,7 @@ TEST_F(ConfigFile, ListsCamerasThatDifferFromWhatTheyHaveInCommon) {
 
 TEST_F(ConfigFile, KeepsTheRestWhenTheMountIsWritten) {
   std::ofstream(file) << R"({"presence": {"wake_after": 2}, "mount": {"pitch": 5}})";
-  Mount mount;
-  mount.pitch = -0.25f;
-  mount.fov = 1.2f;
-  mount.offset = {0.1f, -0.2f, 0.05f};
+  Mount mount{.fov = 1.2f, .offset = {0.1f, -0.2f, 0.05f}, .pitch = -0.25f};
   for (const std::string& name : {file, folder.file("new.json")}) {
     save_mount(name, "0", mount);
     config = {};

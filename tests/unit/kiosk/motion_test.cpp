@@ -14,9 +14,7 @@ constexpr double rate = 15;
 
 GrayFrame room(double time, float light = 1, float noise = 2.5f, bool visitor = false,
                float x = 0) {
-  FigurePose pose;
-  pose.visible = visitor;
-  pose.position = {x, 0.03f, 0.9f};
+  FigurePose pose{.visible = visitor, .position = {x, 0.03f, 0.9f}};
   return draw_figure({320, 240, light, noise, 5}, {}, pose, time);
 }
 

@@ -20,15 +20,13 @@ constexpr double frame_rate = 10;
 
 std::vector<Observation> watch_round(const Mount& mount, double until = figure_round,
                                      const std::string& weights = "/nowhere") {
-  CameraSettings settings;
-  settings.source = "synthetic";
-  settings.width = 320;
-  settings.rate = frame_rate;
-  settings.synthetic_ends = true;
-  settings.mount = mount;
+  CameraSettings settings{.source = "synthetic",
+                          .width = 320,
+                          .rate = frame_rate,
+                          .synthetic_ends = true,
+                          .mount = mount};
   auto camera = make_camera(settings);
-  ObserverSettings eye;
-  eye.mount = mount;
+  ObserverSettings eye{.mount = mount};
   eye.face.weights = weights;
   Observer observer(eye);
   std::vector<Observation> seen;
@@ -120,10 +118,7 @@ TEST(Observe, networks_that_are_missing_are_told) {
 }
 
 TEST(Observe, a_camera_above_the_screen_that_looks_down_gives_the_same_place) {
-  Mount mount;
-  mount.fov = 75 * pi / 180;
-  mount.offset = {0.1f, 0.35f, 0};
-  mount.pitch = -0.35f;
+  Mount mount{.fov = 75 * pi / 180, .offset = {0.1f, 0.35f, 0}, .pitch = -0.35f};
   double worst[3] = {};
   int frames = 0;
   for (const Observation& o : watch_round(mount, 9)) {
@@ -142,8 +137,7 @@ TEST(Observe, a_face_that_never_stirs_is_a_picture) {
   ObserverSettings settings;
   settings.people.still = 3;
   Observer observer(settings);
-  FigurePose pose;
-  pose.visible = true;
+  FigurePose pose{.visible = true};
   bool person_early = false;
   for (int i = 0; i < 8 * 10; i++) {
     const double time = 0.1 * i;
@@ -158,8 +152,7 @@ TEST(Observe, a_face_that_never_stirs_is_a_picture) {
 
 TEST(Observe, a_blind_camera_lets_everything_run_out) {
   Observer observer;
-  FigurePose pose;
-  pose.visible = true;
+  FigurePose pose{.visible = true};
   Observation o;
   for (int i = 0; i < 25; i++) {
     pose.position.x = 0.02f * std::sin(float(i));
@@ -178,10 +171,7 @@ TEST(Observe, a_blind_camera_lets_everything_run_out) {
 TEST(Observe, a_tilted_head_is_found_when_its_tilt_is_known) {
   const auto finder = make_cascade_finder();
   for (float roll : {-0.6f, 0.6f}) {
-    FigurePose pose;
-    pose.visible = true;
-    pose.position = {0.05f, 0, 0.7f};
-    pose.rotation = {0, 0, roll};
+    FigurePose pose{.visible = true, .position = {0.05f, 0, 0.7f}, .rotation = {0, 0, roll}};
     GrayFrame frame = draw_figure({640, 480, 1, 1, 2}, {}, pose, 0);
     const float focal = focal_length({}, 640), side = focal * face_box_metres / 0.7f;
     const float u = 320 - 0.05f / 0.7f * focal, v = 240;

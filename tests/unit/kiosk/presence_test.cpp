@@ -128,16 +128,14 @@ TEST(Presence, a_person_lost_for_less_than_the_hold_stays) {
 }
 
 TEST(Presence, ten_hertz_noise_never_wakes_nor_confirms) {
-  Script s;
-  s.rate = 40;
+  Script s{.rate = 40};
   auto flicker = [](double t) { return std::fmod(t, 0.1) < 0.05 - 1e-9; };
   s.play(30, flicker, flicker);
   EXPECT_TRUE(s.changes.empty());
 }
 
 TEST(Presence, ten_hertz_noise_on_the_way_out_changes_nothing_twice) {
-  Script s;
-  s.rate = 40;
+  Script s{.rate = 40};
   auto flicker = [](double t) { return std::fmod(t, 0.1) < 0.05 - 1e-9; };
   s.run(3, true, true);
   s.play(20, flicker, flicker);  // half of the time seen: still there

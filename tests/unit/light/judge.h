@@ -51,11 +51,10 @@ inline Estimate estimate_prepared(const Technique& technique, const World& world
                                   const TransportSettings& transport, const Effort& effort) {
   std::vector<double> replicates(size_t(effort.replicates));
   parallel_for(effort.replicates, [&](int i) {
-    StillSettings settings;
-    settings.spp = effort.spp;
-    settings.seed = mix64(effort.seed * 1000003 + uint64_t(i));
-    settings.transport = transport;
-    Frame frame = render_still(technique, world, lights, view, settings);
+    Frame frame = render_still(technique, world, lights, view,
+                               {.spp = effort.spp,
+                                .seed = mix64(effort.seed * 1000003 + uint64_t(i)),
+                                .transport = transport});
     double sum = 0;
     for (vec3 c : frame.color) sum += double(luminance(c));
     replicates[size_t(i)] = sum / double(frame.color.size());
@@ -72,9 +71,7 @@ inline Estimate estimate_radiance(const Technique& technique, const World& world
 // A picture so narrow that all of it is one ray; techniques that work in passes over a picture
 // get a few pixels to spread over.
 inline View view_along(Ray ray, const Technique& technique) {
-  View view;
-  view.position = ray.origin;
-  view.forward = ray.direction;
+  View view{.position = ray.origin, .forward = ray.direction};
   vec3 other = std::abs(ray.direction.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
   view.right = normalize(cross(view.forward, other));
   view.up = cross(view.right, view.forward);

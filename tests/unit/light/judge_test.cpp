@@ -4,16 +4,13 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 #include "statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 template <int thousandths>
 Sample trace_biased(const World& world, const Lights& lights, const TransportSettings& settings,
@@ -29,12 +26,8 @@ constexpr Technique too_bright{"too bright", "path and 1 % more", trace_biased<1
 Ray lit_ray() { return ray_towards({0.1f, 0.5f, 0.8f}, {0, 0, 0}); }
 double lit_radiance() { return rect_light_irradiance({0, 0, 0}, 10) * 0.5 / double(pi); }
 
-}  // namespace
-
 TEST(Judge, FindsABiasOfOnePercent) {
-  Scene scene = make_plane_with_rect_light(10);
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_plane_with_rect_light(10));
   for (const Technique* technique : {&too_bright, &too_dark}) {
     for (uint64_t seed = 1; seed <= 20; seed++) {
       Estimate e = estimate_radiance(*technique, world, lights, view_along(lit_ray(), *technique),
@@ -50,9 +43,7 @@ TEST(Judge, FindsABiasOfOnePercent) {
 }
 
 TEST(Judge, NamesATestThatIsTooNoisyToTell) {
-  Scene scene = make_plane_with_rect_light(10);
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_plane_with_rect_light(10));
   Estimate e = estimate_radiance(*find_technique("path"), world, lights,
                                  view_along(lit_ray(), *find_technique("path")), {}, {16, 1});
   Family family;
@@ -65,9 +56,7 @@ TEST(Judge, NamesATestThatIsTooNoisyToTell) {
 // If a technique is right, t follows Student's distribution: its deciles are equally filled.
 // Samples of one seed would fail this: their spread is no measure of their error.
 TEST(Judge, RightTechniquesPassAsOftenAsStated) {
-  Scene scene = make_plane_with_rect_light(10);
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_plane_with_rect_light(10));
   const Technique& path = *find_technique("path");
   constexpr int trials = 1000;
   std::vector<double> counts(10), expected(10, trials / 10.0);
@@ -90,3 +79,6 @@ TEST(Judge, DarknessIsExact) {
   family.add("no number", {std::nan(""), std::nan(""), 16}, 1);
   EXPECT_TRUE(judge(family.comparisons[2], 3).refuted);
 }
+
+}  // namespace
+}  // namespace wellspring::test

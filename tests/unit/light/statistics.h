@@ -63,10 +63,7 @@ inline Mean trace_mean(const char* technique, const World& world, const Lights& 
 }
 
 inline Ray ray_towards(vec3 eye, vec3 target) {
-  Ray ray;
-  ray.origin = eye;
-  ray.direction = normalize(target - eye);
-  return ray;
+  return Ray{.origin = eye, .direction = normalize(target - eye)};
 }
 
 // Upper bound of a chi-squared variable at significance 1e-4 (Wilson and Hilferty 1931).

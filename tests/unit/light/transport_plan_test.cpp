@@ -10,30 +10,21 @@
 #include "scenes/scenes.h"
 #include "unit/light/full_plan.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using enum wellspring::light::TransportPart;
-
+namespace wellspring::test {
 namespace {
 
+using namespace scenes;
+using enum light::TransportPart;
+
 int add_picture(Scene& scene, std::vector<vec4> texels) {
-  Image image;
-  image.width = int(texels.size());
-  image.height = 1;
-  image.texels = std::move(texels);
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = int(scene.images.size()) - 1;
-  scene.textures.push_back(texture);
-  return int(scene.textures.size()) - 1;
+  Image image{.width = int(texels.size()), .height = 1, .texels = std::move(texels)};
+  return add_texture(scene, image);
 }
 
 // A floor, a lamp of one triangle pair, and a ball of the material in question.
 Scene scene_with(const Material& material) {
   Scene scene = make_plane_with_rect_light(3);
-  add_mesh(scene, sphere_mesh(add_material(scene, material), 0.2f, 8), "ball", at({0, 0.3f, 0}));
+  add_sphere(scene, material, 0.2f, "ball", at({0, 0.3f, 0}), 8);
   return scene;
 }
 TransportPlan plan_with(const Material& material) {
@@ -45,8 +36,6 @@ Material with(Material material, const std::function<void(Material&)>& change) {
   change(material);
   return material;
 }
-
-}  // namespace
 
 TEST(TransportPlan, EveryPartHasANameAndEveryDecisionAReason) {
   for (const TransportPlan& plan :
@@ -126,7 +115,7 @@ TEST(TransportPlan, CausticsNeedSomethingSharpSomethingRoughAndLight) {
   EXPECT_FALSE(asks(caustics, plastic(vec3(0.5f), 0.0f, 1.0f)));
   Scene mirrors = empty_scene();
   mirrors.environment.radiance = vec3(1);
-  add_mesh(mirrors, sphere_mesh(add_material(mirrors, metal(vec3(0.9f), 0)), 1, 8), "ball");
+  add_sphere(mirrors, metal(vec3(0.9f), 0), 1, "ball", mat4(1), 8);
   EXPECT_FALSE(make_transport_plan(mirrors).uses(caustics));  // nothing rough to see them on
   EXPECT_FALSE(make_transport_plan(mirrors).uses(kept_light));
   add_floor(mirrors, 0.5f);
@@ -197,11 +186,8 @@ TEST(TransportPlan, MetalsAreKeptByWhatTheyAreAllOver) {
 
 TEST(TransportPlan, EightBitPicturesInBothEncodings) {
   for (bool srgb : {false, true}) {
-    Image image;
-    image.width = 2;
-    image.height = 1;
-    image.srgb = srgb;
-    image.texels8 = {0, 128, 255, 51, 10, 128, 255, 102};
+    Image image{
+        .width = 2, .height = 1, .srgb = srgb, .texels8 = {0, 128, 255, 51, 10, 128, 255, 102}};
     Scene scene;
     scene.images.push_back(image);
     TexelRange range = TextureRanges(scene).image(0);
@@ -242,8 +228,7 @@ TEST(TransportPlan, WhatNothingShowsDoesNotCount) {
 TEST(TransportPlan, LightsCountByTheirPowerAndByWhomTheyLight) {
   Scene scene = empty_scene();
   add_floor(scene, 0.5f);
-  PunctualLight light;
-  light.intensity = vec3(0);
+  PunctualLight light{.intensity = vec3(0)};
   scene.lights.push_back(light);
   EXPECT_FALSE(make_transport_plan(scene).uses(punctual_lights));
   scene.lights[0].intensity = vec3(0, 0, 1);
@@ -317,3 +302,6 @@ TEST(TransportPlan, ExplanationListsEveryPartOnce) {
   EXPECT_LT(parted, text.find("left out"));
   EXPECT_LT(parted, text.find("instant_radiosity: photons and walks of light carry wavelengths"));
 }
+
+}  // namespace
+}  // namespace wellspring::test

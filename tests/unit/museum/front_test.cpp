@@ -15,10 +15,7 @@ const std::map<std::string, PageFile> pages = {
 
 HttpReply answer_to(const std::string& path, const std::string& accept = "*/*") {
   Front front(pages);
-  HttpQuestion question;
-  question.method = "GET";
-  question.path = path;
-  question.accept = accept;
+  HttpQuestion question{.method = "GET", .path = path, .accept = accept};
   EXPECT_FALSE(front.answer_later(question, nullptr));
   return front.answer(question);
 }

@@ -14,12 +14,12 @@ namespace {
 constexpr int width = 96, height = 64;
 
 View front_view() {
-  View view;
-  view.width = width * cell_size;
-  view.height = height * cell_size;
-  view.right = {1, 0, 0}, view.up = {0, 1, 0}, view.forward = {0, 0, -1};
-  view.tan_half_fov = 0.5f;
-  return view;
+  return View{.right = {1, 0, 0},
+              .up = {0, 1, 0},
+              .forward = {0, 0, -1},
+              .tan_half_fov = 0.5f,
+              .width = width * cell_size,
+              .height = height * cell_size};
 }
 
 // A wall two metres off, of which one cell in six has a point: one sample, as a renderer gives it

@@ -23,18 +23,12 @@ constexpr int width = 160, height = 120, pixels = width * height;
 // A box with a picture on its back wall and thin dark bars before it.
 Scene make_room() {
   Scene scene = make_barred_box(vec3(0.1f), 0.004f);
-  Image image;
-  image.width = image.height = 32;
+  Image image{.width = 32, .height = 32};
   for (int i = 0; i < 32 * 32; i++)
     for (uint8_t c : {(i / 2 + i / 64) % 2 ? 220 : 30, 120, 60, 255}) image.texels8.push_back(c);
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = int(scene.images.size()) - 1;
-  scene.textures.push_back(texture);
   Material picture = diffuse(vec3(1));
-  picture.base_color_texture.texture = int(scene.textures.size()) - 1;
-  add_quad(scene, add_material(scene, picture), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0},
-           "picture");
+  picture.base_color_texture.texture = add_texture(scene, image);
+  add_quad(scene, picture, {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0}, "picture");
   return scene;
 }
 Stage make_room_with_ball() {
@@ -46,8 +40,7 @@ Stage make_room_with_ball() {
 Scene make_emitting() {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(0.5f, 1, 2);
-  add_quad(scene, add_material(scene, emitter(vec3(3, 2, 1))), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0},
-           "lamp");
+  add_wall(scene, emitter(vec3(3, 2, 1)), -4, 1, "lamp");
   return scene;
 }
 View view_from(const Stage& stage, double x, int width, int height) {

@@ -47,16 +47,12 @@ double shown_error(Frame a, Frame b) {
 // A closed room of 4 x 3 x 4 m about (0, 1.5, 0) with a lamp, a pillar, and a thin screen.
 Scene make_room() {
   Scene scene = empty_scene();
-  add_mesh(scene,
-           box_mesh(add_material(scene, diffuse(vec3(0.6f, 0.55f, 0.5f))), vec3(4, 3, 4), true),
-           "room", at(vec3(0, 1.5f, 0)));
-  add_mesh(scene,
-           box_mesh(add_material(scene, diffuse(vec3(0.2f, 0.3f, 0.6f))), vec3(0.4f, 3, 0.4f)),
-           "pillar", at(vec3(1, 1.5f, -1)));
-  add_mesh(scene, box_mesh(add_material(scene, diffuse(vec3(0.6f, 0.2f, 0.1f))), vec3(2, 2, 0.02f)),
-           "screen", at(vec3(-0.6f, 1, -0.5f)));
-  add_quad(scene, add_material(scene, emitter(vec3(6))), {-0.5f, 2.99f, -0.5f}, {1, 0, 0},
-           {0, 0, 1}, "lamp");
+  add_room(scene, diffuse(vec3(0.6f, 0.55f, 0.5f)), vec3(4, 3, 4), "room", at(vec3(0, 1.5f, 0)));
+  add_box(scene, diffuse(vec3(0.2f, 0.3f, 0.6f)), vec3(0.4f, 3, 0.4f), "pillar",
+          at(vec3(1, 1.5f, -1)));
+  add_box(scene, diffuse(vec3(0.6f, 0.2f, 0.1f)), vec3(2, 2, 0.02f), "screen",
+          at(vec3(-0.6f, 1, -0.5f)));
+  add_quad(scene, emitter(vec3(6)), {-0.5f, 2.99f, -0.5f}, {1, 0, 0}, {0, 0, 1}, "lamp");
   return scene;
 }
 
@@ -196,18 +192,24 @@ TEST(DrawnHardCases, DegenerateThings) {
   Scene scene = make_room();
   const float tiny = std::numeric_limits<float>::denorm_min();
   int red = add_material(scene, diffuse(vec3(0.8f, 0.1f, 0.1f)));
-  Mesh mesh;
-  mesh.positions = {{0, 1, 0},          {0, 1, 0},      {0, 1, 0},     {0, 1, -1},
-                    {0, 2, -1},         {0, 1.5f, -1},  {tiny, 1, -1}, {0, 1 + tiny, -1},
-                    {tiny, tiny, tiny}, {-1, 1.2f, -1}, {1, 1.2f, -1}, {1, 1.2f + 1e-6f, -1}};
+  Mesh mesh{.positions = {{0, 1, 0},
+                          {0, 1, 0},
+                          {0, 1, 0},
+                          {0, 1, -1},
+                          {0, 2, -1},
+                          {0, 1.5f, -1},
+                          {tiny, 1, -1},
+                          {0, 1 + tiny, -1},
+                          {tiny, tiny, tiny},
+                          {-1, 1.2f, -1},
+                          {1, 1.2f, -1},
+                          {1, 1.2f + 1e-6f, -1}}};
   mesh.normals.assign(mesh.positions.size(), vec3(0));
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 11}};
   mesh.material = red;
   add_mesh(scene, mesh, "needles");
-  add_quad(scene, add_material(scene, emitter(vec3(tiny))), {-1, 0.5f, -1.5f}, {0.5f, 0, 0},
-           {0, 0.5f, 0}, "dark lamp");
-  add_quad(scene, add_material(scene, emitter(vec3(5))), {-1, 0.5f, -1.6f}, {0, 0, 0}, {0, 0.5f, 0},
-           "no lamp");
+  add_quad(scene, emitter(vec3(tiny)), {-1, 0.5f, -1.5f}, {0.5f, 0, 0}, {0, 0.5f, 0}, "dark lamp");
+  add_quad(scene, emitter(vec3(5)), {-1, 0.5f, -1.6f}, {0, 0, 0}, {0, 0.5f, 0}, "no lamp");
   Stage stage(std::move(scene));
   Visitor visitor;
   for (int i = 0; i < 40; i++) {
@@ -237,8 +239,7 @@ TEST(DrawnHardCases, AlongTheFloor) {
 // surface shows the room around, as the reference has it.
 TEST(DrawnHardCases, AnEyeWithinGlass) {
   Scene scene = make_room();
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.5f), "glass",
-           at(vec3(-0.4f, 1.2f, 1)));
+  add_sphere(scene, glass(1.5f, 0, 1), 0.5f, "glass", at(vec3(-0.4f, 1.2f, 1)));
   Stage stage(std::move(scene));
   Visitor visitor;
   auto view = [&](int i) { return view_of(stage, {-0.4, 1.2, 1.8 - 0.04 * i}, 0.1f); };

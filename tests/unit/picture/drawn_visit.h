@@ -33,10 +33,8 @@ struct Stage {
     return hit.valid() ? world->object_of(hit.instance) : 0;
   }
   Frame truth(const View& view, int samples, const TransportSettings& transport = {}) const {
-    StillSettings settings;
-    settings.spp = samples;
-    settings.transport = transport;
-    return render_still(*find_technique("path"), *world, lights, view, settings);
+    return render_still(*find_technique("path"), *world, lights, view,
+                        {.spp = samples, .transport = transport});
   }
 
  private:

@@ -87,13 +87,12 @@ Bars look_at_bars(const Stage& stage, const Shown& shown) {
 
 // Bars a pixel wide, of which most pixels have no sample of their own, and whose light no map
 // knows.
-TEST(FewPoints, NarrowMetalIsAboutAsBrightAsTheReference) {
+TEST(FewPoints, NarrowMetalIsNeitherBlackNorSeveralTimesTooBright) {
   Scene scene = make_barred_box(vec3(0.7f), 0.004f);
   Material gilt = diffuse(vec3(1, 0.7f, 0.3f));
   gilt.metallic = 1, gilt.roughness = 0.3f;
   scene.materials.back() = gilt;
-  add_quad(scene, add_material(scene, emitter(vec3(8))), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0},
-           {0, 0.3f, 0}, "sky");
+  add_quad(scene, emitter(vec3(8)), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0}, "sky");
   Stage stage(std::move(scene));
   const Bars bars = look_at_bars(stage, stroll(stage, 64));
   EXPECT_GT(bars.count, 500);

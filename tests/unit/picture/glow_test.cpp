@@ -19,19 +19,14 @@ constexpr int size = 96;
 Scene make_board() {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(1);
-  Image image;
-  image.width = image.height = 32;
+  Image image{.width = 32, .height = 32};
   constexpr uint8_t levels[] = {0, 2, 0, 255};
   for (int i = 0; i < 32 * 32; i++)
     for (int c = 0; c < 4; c++) image.texels8.push_back(c == 3 ? 255 : levels[i / 4 % 4]);
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = int(scene.images.size()) - 1;
-  scene.textures.push_back(texture);
   Material board = diffuse(vec3(0.5f));
   board.emission = vec3(2, 1, 0.5f);
-  board.emission_texture.texture = int(scene.textures.size()) - 1;
-  add_quad(scene, add_material(scene, board), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0}, "board");
+  board.emission_texture.texture = add_texture(scene, image);
+  add_wall(scene, board, -4, 1, "board");
   return scene;
 }
 

@@ -29,10 +29,7 @@ Frame show(const Stage& stage, const View& view, bool told) {
 TEST(Hint, ShadowsOfALampWithoutASizeAreSure) {
   Scene scene = make_cornell_box();
   for (Material& material : scene.materials) material.emission = vec3(0);
-  PunctualLight lamp;
-  lamp.position = {0, 0.54f, -0.28f};
-  lamp.intensity = {0.25f, 0.2f, 0.12f};
-  scene.lights.push_back(lamp);
+  scene.lights.push_back({.position = {0, 0.54f, -0.28f}, .intensity = {0.25f, 0.2f, 0.12f}});
   Stage stage(std::move(scene));
   View view = make_view(stage.scene, {0, 0.275, 0.8}, 0, 0, 0.7f, 160, 120);
   Frame truth = stage.truth(view, 64);

@@ -97,8 +97,7 @@ TEST(MappedLight, MetalIsNotBlackBeforeItsFirstSample) {
   Scene scene = make_cornell_box();
   Material gold = diffuse({0.8f, 0.6f, 0.2f});
   gold.metallic = 1, gold.roughness = 0.3f;
-  add_quad(scene, add_material(scene, gold), {-0.2f, 0.2f, -0.1f}, {0.4f, 0, 0}, {0, 0.2f, 0},
-           "board");
+  add_quad(scene, gold, {-0.2f, 0.2f, -0.1f}, {0.4f, 0, 0}, {0, 0.2f, 0}, "board");
   MappedStage mapped(std::move(scene), [](vec3) { return vec3(0.7f); });
   for (PictureOf kind : kinds) {
     DrawnVisit visit = mapped.visit("path");

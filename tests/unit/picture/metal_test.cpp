@@ -18,23 +18,17 @@ constexpr int size = 96;
 Scene make_board(vec2 roughness, vec2 metallic) {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(1);
-  Image image;
-  image.width = image.height = 64;
-  image.srgb = false;
+  Image image{.width = 64, .height = 64, .srgb = false};
   auto level = [](float value) { return uint8_t(value * 255 + 0.5f); };
   for (int i = 0; i < 64 * 64; i++) {
     int odd = (i / 2 + i / 128) % 2;
     for (uint8_t c : {uint8_t(0), level(roughness[odd]), level(metallic[odd]), uint8_t(255)})
       image.texels8.push_back(c);
   }
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = int(scene.images.size()) - 1;
-  scene.textures.push_back(texture);
   Material board = diffuse({0.8f, 0.6f, 0.2f});
   board.metallic = board.roughness = 1;
-  board.metallic_roughness_texture.texture = int(scene.textures.size()) - 1;
-  add_quad(scene, add_material(scene, board), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0}, "board");
+  board.metallic_roughness_texture.texture = add_texture(scene, image);
+  add_wall(scene, board, -4, 1, "board");
   return scene;
 }
 

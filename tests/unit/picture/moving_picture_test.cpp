@@ -74,8 +74,7 @@ struct Rested {
     visit.compositor.set_skin(&skin, &stage.lights);
   }
   void compute_skin_light(const Stage& stage) {
-    SkinUpdate update;
-    update.samples = 32 * int(skin.places.size());
+    SkinUpdate update{.samples = 32 * int(skin.places.size())};
     update_skin(*stage.world, stage.lights, update, skin);
     for (int i = 0; i < 8; i++) smooth_skin(*stage.world, skin);
   }
@@ -370,8 +369,7 @@ TEST(MovingPicture, NeedsNoPoint) {
 // A peak above white cannot be read from its code: the least that is shown so is taken. Below,
 // codes give their light.
 TEST(MovingPicture, GuessesPeaksFromColours) {
-  Image8 image;
-  image.width = 256, image.height = 1;
+  Image8 image{.width = 256, .height = 1};
   for (int i = 0; i < 256; i++)
     for (int c : {i / 2, i, 0}) image.rgb.push_back(uint8_t(c));
   std::vector<uint8_t> peaks;

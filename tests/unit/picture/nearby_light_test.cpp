@@ -12,10 +12,7 @@
 #include "cache/packing.h"
 #include "cache/point_image.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 37, height = 19;  // no lanes divide it, and both sides are near everywhere
@@ -76,12 +73,9 @@ NearbyLight expected(const std::vector<Known>& known, int px, int py) {
   return found;
 }
 
-}  // namespace
-
 // Light of a single point has no border: it is trusted less and less.
 TEST(NearbyLight, IsTrustedLessTheFartherItIs) {
-  View view;
-  view.width = width, view.height = height;
+  View view{.width = width, .height = height};
   Frame frame;
   make_points(0, 1, frame);
   size_t middle = 9 * width + 18;
@@ -101,8 +95,7 @@ TEST(NearbyLight, IsTrustedLessTheFartherItIs) {
 }
 
 TEST(NearbyLight, RingsEndAtThePicturesBorders) {
-  View view;
-  view.width = width, view.height = height;
+  View view{.width = width, .height = height};
   for (float share : {0.02f, 0.2f, 1.0f}) {
     Frame frame;
     std::vector<Known> known = make_points(share, uint64_t(1000 * share), frame);
@@ -152,3 +145,6 @@ TEST(NearbyLight, FarOffIsThatOfTheNearestCellsWithSamples) {
   EXPECT_FLOAT_EQ(light_at(39, 39).smooth.x, 0);  // likewise
   EXPECT_FLOAT_EQ(light_at(20, 0).smooth.x, 8);   // at the border
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -6,9 +6,8 @@
 
 #include "base/rng.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 TEST(PixelLight, SomeFlatPixelsAreLitAsAllWouldBe) {
   Rng rng(3);
@@ -48,3 +47,6 @@ TEST(PixelLight, SomeFlatPixelsAreLitAsAllWouldBe) {
     }
   }
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -9,31 +9,17 @@
 
 #include "light/dynamic/dynamic_image.h"
 #include "light/visible/surface_buffer.h"
-#include "scenes/scenes.h"
+#include "unit/picture/drawn_visit.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
 
+using namespace scenes;
+
 // A floor, and a lamp's glowing ball above it.
-struct Room {
-  Scene scene = empty_scene();
-  std::unique_ptr<World> world;
-  Lights lights;
-  std::unique_ptr<VisibilityPass> visibility;
-  View view;
-  Room() {
-    add_floor(scene, 0.5f);
-    add_mesh(scene, sphere_mesh(add_material(scene, emitter(vec3(1, 0.5f, 0.2f))), 0.3f), "ball",
-             at({0, 0.8f, 0}));
-    world = std::make_unique<World>(scene);
-    lights = make_lights(*world);
-    visibility = std::make_unique<VisibilityPass>(*world, lights);
-    view = make_view_towards(scene, {0, 1.5, 3}, {0, 0.5, 0}, {0, 1, 0}, 0.7f, 128, 96);
-  }
+struct Room : Stage {
+  View view = make_view_towards(scene, {0, 1.5, 3}, {0, 0.5, 0}, {0, 1, 0}, 0.7f, 128, 96);
+  Room() : Stage(make_lamp_over_floor(vec3(1, 0.5f, 0.2f))) {}
 };
 
 // The light of a lamp there.
@@ -139,3 +125,4 @@ TEST(Relight, DarkLightChangesNothing) {
 }
 
 }  // namespace
+}  // namespace wellspring::test

@@ -5,18 +5,14 @@
 
 #include "frame/tonemap.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 // Through the tone curve as compose_drawn() does, softened, and what the curve says of light that
 // was mixed.
 void expect_mixed_before_the_curve(std::vector<vec3> light,
                                    const std::vector<std::vector<EdgeShare>>& edges, int codes) {
-  Frame frame;
-  frame.width = int(light.size()), frame.height = 1, frame.color = light;
+  Frame frame{.width = int(light.size()), .height = 1, .color = light};
   Image8 image, expected;
   tonemap(frame, {}, image);
   std::vector<uint8_t> peaks;
@@ -27,8 +23,6 @@ void expect_mixed_before_the_curve(std::vector<vec3> light,
   for (size_t i = 0; i < image.rgb.size(); i++)
     EXPECT_NEAR(image.rgb[i], expected.rgb[i], codes) << "byte " << i;
 }
-
-}  // namespace
 
 TEST(SoftenEdges, MixesLightNotCodes) {
   std::vector<std::vector<EdgeShare>> edges{{{0, 1, 0.25f}}, {{1, 0, 0.5f}}};
@@ -56,3 +50,6 @@ TEST(SoftenEdges, SeveralEdgesNeverTakeMoreThanThereIs) {
   EXPECT_GE(color[1].x, 1);
   EXPECT_LT(color[1].x, 10);
 }
+
+}  // namespace
+}  // namespace wellspring::test

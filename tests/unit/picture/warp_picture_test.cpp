@@ -22,13 +22,11 @@ struct SeenPlace {
 using Place = std::function<SeenPlace(const Ray&)>;
 
 View look_at(vec3 position, float yaw, int width = 200, int height = 120) {
-  View view;
-  view.position = position;
-  view.forward = vec3(-std::sin(yaw), 0, -std::cos(yaw));
-  view.right = vec3(std::cos(yaw), 0, -std::sin(yaw));
-  view.width = width;
-  view.height = height;
-  return view;
+  return View{.position = position,
+              .right = vec3(std::cos(yaw), 0, -std::sin(yaw)),
+              .forward = vec3(-std::sin(yaw), 0, -std::cos(yaw)),
+              .width = width,
+              .height = height};
 }
 
 struct Drawn {

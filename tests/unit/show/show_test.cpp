@@ -69,8 +69,7 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
   run(4);
   for (int i = 0; i < 600 && show->totals.samples < 120u * 96 * 64; i++) run(0.1);
   const Visitor& visitor = show->visits.visitors.front();
-  StillSettings settings;
-  settings.spp = 768;
+  StillSettings settings{.spp = 768};
   settings.transport = show->settings.transport;
   Frame reference = render_still(*show->stage.still_technique, *show->stage.world,
                                  show->stage.lights, visitor.place.last_view, settings);
@@ -188,8 +187,7 @@ TEST(DescribeApi, NamesOnlyMessagesThatAreUnderstood) {
 }
 
 TEST(MakeShow, UnknownTechniqueIsRefused) {
-  ShowSettings settings;
-  settings.technique = "magic";
+  ShowSettings settings{.technique = "magic"};
   EXPECT_THROW(make_show(make_tiny_exhibit(), settings), std::invalid_argument);
 }
 

@@ -8,9 +8,8 @@
 #include "stream/core.h"
 #include "unit/stream/raw_client.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 static Address at(const char* text) { return read_address(text).value(); }
 
@@ -235,3 +234,6 @@ TEST(Admission, addresses_that_left_are_forgotten) {
   admission.leave(1);
   EXPECT_EQ(admission.connections(), 0u);
 }
+
+}  // namespace
+}  // namespace wellspring::test

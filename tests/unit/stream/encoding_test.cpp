@@ -4,27 +4,20 @@
 #include "unit/stream/fixture.h"
 #include "wire/http.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 HttpReply text_of(size_t bytes) {
-  HttpReply reply;
-  reply.body = std::string(bytes, 'a');
+  HttpReply reply{.body = std::string(bytes, 'a')};
   reply.headers["ETag"] = "\"v1\"";
   return reply;
 }
 
 HttpReply encoded(HttpReply reply, const std::string& accept_encoding) {
-  HttpQuestion question;
-  question.accept_encoding = accept_encoding;
+  HttpQuestion question{.accept_encoding = accept_encoding};
   encode_reply(question, reply);
   return reply;
 }
-
-}  // namespace
 
 TEST(Encoding, gzip_is_sent_to_who_says_so) {
   for (const char* header :
@@ -97,3 +90,6 @@ TEST(Encoding, on_the_line_heads_and_304_agree_with_what_is_sent) {
   EXPECT_EQ(plain.status, 200) << "that is the other form's";
   EXPECT_EQ(plain.body, std::string(5000, 'a'));
 }
+
+}  // namespace
+}  // namespace wellspring::test

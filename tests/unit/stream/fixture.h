@@ -13,11 +13,7 @@
 
 namespace wellspring::test {
 
-inline StreamSettings quick_settings() {
-  StreamSettings settings;
-  settings.port = 0;
-  return settings;
-}
+inline StreamSettings quick_settings() { return StreamSettings{.port = 0}; }
 
 // Waits until `condition` holds; false when it does not within `timeout` seconds.
 inline bool eventually(const std::function<bool()>& condition, double timeout = patience) {
@@ -68,9 +64,7 @@ struct House {
   }
 
   static HttpReply echo(const HttpQuestion& question) {
-    HttpReply reply;
-    reply.content_type = "text/plain; charset=utf-8";
-    reply.body = question.path;
+    HttpReply reply{.content_type = "text/plain; charset=utf-8", .body = question.path};
     for (const auto& [name, value] : question.query) reply.body += "|" + name + "=" + value;
     if (question.path == "/missing") reply.status = 404;
     if (question.path == "/tagged") reply.headers["ETag"] = "\"v1\"";

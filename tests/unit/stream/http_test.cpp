@@ -7,9 +7,8 @@
 #include "unit/folder.h"
 #include "unit/stream/fixture.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 TEST(Http, get_and_head_on_one_connection) {
   House house;
@@ -350,3 +349,6 @@ TEST(Http, stop_finishes_the_answer_under_way_and_is_idempotent) {
   RawClient late(house.port());
   EXPECT_FALSE(late.connected());
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -2,9 +2,8 @@
 // Names, addresses, floods and places, over sockets.
 #include "unit/stream/fixture.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 static std::string frame_bytes(int first, std::string_view payload) {
   return RawClient::frame_bytes(first, payload);
@@ -279,3 +278,6 @@ TEST(AgentPort, tells_every_caller_one_line) {
   for (int i = 0; i < 3; i++) EXPECT_EQ(told(), "18%\n");
   server.stop();
 }
+
+}  // namespace
+}  // namespace wellspring::test

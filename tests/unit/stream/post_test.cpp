@@ -2,19 +2,14 @@
 // The one path that takes a body.
 #include "fixture.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 constexpr const char* path = "/api/v1/admin/announce";
 const std::string as_json = "Content-Type: application/json\r\n";
 
 HttpReply repeat(const HttpQuestion& question) {
-  HttpReply reply;
-  reply.body = question.method + "|" + question.authorization + "|" + question.body;
-  return reply;
+  return HttpReply{.body = question.method + "|" + question.authorization + "|" + question.body};
 }
 
 struct Post : testing::Test {
@@ -87,3 +82,4 @@ TEST_F(Post, an_upgrade_that_is_posted_opens_nothing) {
 }
 
 }  // namespace
+}  // namespace wellspring::test

@@ -12,9 +12,8 @@
 #include "stream/reply.h"
 #include "stream/target.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 TEST(Target, good_ones_are_decoded_once) {
   HttpQuestion q;
@@ -324,3 +323,6 @@ TEST(Workers, live_on_after_a_job_throws) {
   ASSERT_TRUE(workers.post([&](bool run) { done.set_value(run); }));
   EXPECT_TRUE(done.get_future().get());
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -6,9 +6,8 @@
 #include "judge/ws_client.h"
 #include "unit/stream/fixture.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 static long resident_kib() {
   std::ifstream status("/proc/self/status");
@@ -150,3 +149,6 @@ TEST(SlowReader, sixty_four_texts_behind_is_closed) {
   EXPECT_TRUE(link->close_requested(reason));
   EXPECT_TRUE(eventually([&] { return link->closed(); }));
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -3,9 +3,8 @@
 #include "judge/ws_client.h"
 #include "unit/stream/fixture.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 TEST(Upgrade, visit_and_eye_become_links_of_their_kind) {
   House house;
@@ -126,8 +125,7 @@ TEST(Upgrade, who_is_not_admitted_is_told_before_it) {
                  .admit = [&](const HttpQuestion& question) -> UpgradeAnswer {
                    asked++;
                    if (question.authorization == "Bearer right") return {{}, "hall"};
-                   HttpReply reply;
-                   reply.status = 401;
+                   HttpReply reply{.status = 401};
                    reply.headers["WWW-Authenticate"] = "Bearer";
                    reply.body = question.local ? "local" : "elsewhere";
                    return {reply};
@@ -283,3 +281,6 @@ TEST(Client, errors_name_address_and_cause) {
   WsMessage message;
   EXPECT_EQ(client.receive(message, patience), WsClient::Got::closed);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -3,9 +3,8 @@
 #include "unit/stream/fixture.h"
 #include "wire/json.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 static std::string frame_bytes(int first, std::string_view payload, bool masked = true) {
   return RawClient::frame_bytes(first, payload, masked);
@@ -221,3 +220,6 @@ TEST(WebSocket, a_peer_that_answers_pings_stays) {
   }
   EXPECT_FALSE(talk.link->closed());
 }
+
+}  // namespace
+}  // namespace wellspring::test

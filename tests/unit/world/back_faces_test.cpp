@@ -25,7 +25,7 @@ Scene two_squares(const Material& near_material) {
   scene.cull_back_faces = true;
   const int near = add_material(scene, near_material), far = add_material(scene, diffuse(vec3(1)));
   add_quad(scene, near, {-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, "near");
-  add_quad(scene, far, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, "far");
+  add_wall(scene, far, 0, 1, "far");
   return scene;
 }
 
@@ -69,7 +69,7 @@ TEST(BackFaces, LightIsStoppedByBothSides) {
 
 TEST(BackFaces, AFrontInTheSamePlaceIsSeen) {
   Scene scene = two_squares(diffuse(vec3(1)));
-  const int front = add_quad(scene, 2, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, "front");
+  const int front = add_wall(scene, 2, 1, 1, "front");
   const World world(scene);
   const View view = eye(scene);
   for (int i = 0; i < 32; i++)

@@ -9,10 +9,7 @@
 
 #include "world/texture.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 std::vector<uint8_t> read_seed(const char* name) {
@@ -79,3 +76,4 @@ TEST(Picture, NoMoreTexelsThanAreLeft) {
 }
 
 }  // namespace
+}  // namespace wellspring::test

@@ -15,13 +15,11 @@ struct Stage {
 
   explicit Stage(AlphaMode mode = AlphaMode::opaque) {
     scene.objects = {"", "still", "figure"};
-    Image image;
-    image.width = 2, image.height = 1, image.srgb = false;
-    image.texels = {vec4(1, 0, 0, 1), vec4(0, 1, 0, 1)};
+    Image image{
+        .width = 2, .height = 1, .srgb = false, .texels = {vec4(1, 0, 0, 1), vec4(0, 1, 0, 1)}};
     scene.images.push_back(image);
     scene.textures.push_back({.image = 0, .nearest = true});
-    Material painted;
-    painted.base_color = vec4(0.5f, 0.5f, 0.5f, 1);
+    Material painted{.base_color = vec4(0.5f, 0.5f, 0.5f, 1)};
     painted.base_color_texture.texture = 0;
     painted.alpha_mode = mode;
     painted.metallic = 0;
@@ -30,8 +28,7 @@ struct Stage {
     plain.repaints = false;
     scene.materials = {painted, plain};
     auto square = [](float x, int material) {
-      Mesh mesh;
-      mesh.positions = {{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}};
+      Mesh mesh{.positions = {{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}}};
       mesh.normals.assign(4, vec3(0, 0, 1));
       mesh.uv[0].assign(4, vec2(0.25f, 0.5f));  // the red texel
       mesh.triangles = {{0, 1, 2}, {0, 2, 3}};

@@ -5,10 +5,7 @@
 
 #include <cmath>
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 vec3 eval_sun_irradiance(const SkySettings& settings) {
@@ -38,8 +35,6 @@ struct Sky {
     return vec3(sum);
   }
 };
-
-}  // namespace
 
 TEST(Sky, ANoonHasTheLightThatIsMeasuredOutdoors) {
   SkySettings noon{60, 180, 2.5, 1};
@@ -124,3 +119,6 @@ TEST(Sky, WhatMakesNoSenseIsSaid) {
                         {0, 0, nan, 1}})
     EXPECT_NE(sky_problem(s), nullptr);
 }
+
+}  // namespace
+}  // namespace wellspring::test

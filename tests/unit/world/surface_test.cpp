@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/rng.h"
+#include "scenes/build.h"
 
 namespace wellspring::test {
 namespace {
@@ -22,8 +23,7 @@ vec3 random_direction(Rng& rng) {
 Scene square_scene() {
   Scene scene;
   scene.materials.resize(1);
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
   mesh.normals.assign(4, vec3(0, 0, 1));
   mesh.uv[0] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -35,23 +35,14 @@ Scene square_scene() {
 }
 
 Surface look(const World& world, vec3 origin, vec3 direction) {
-  Ray ray;
-  ray.origin = origin;
-  ray.direction = normalize(direction);
+  Ray ray{.origin = origin, .direction = normalize(direction)};
   Hit hit = world.intersect(ray);
   EXPECT_TRUE(hit.valid());
   return hit.valid() ? eval_surface(world, ray, hit) : Surface();
 }
 
-int add_texture(Scene& scene, std::vector<uint8_t> rgba) {
-  Image image;
-  image.width = image.height = 1;
-  image.texels8 = std::move(rgba);
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = int(scene.images.size()) - 1;
-  scene.textures.push_back(texture);
-  return int(scene.textures.size()) - 1;
+int add_texel(Scene& scene, std::vector<uint8_t> rgba) {
+  return scenes::add_texture(scene, {.width = 1, .height = 1, .texels8 = std::move(rgba)});
 }
 
 TEST(Surface, FrontAndBack) {
@@ -99,16 +90,16 @@ TEST(Surface, MaterialIsFactorTimesTextureTimesVertexColour) {
   Scene scene = square_scene();
   Material& m = scene.materials[0];
   m.base_color = vec4(0.5f, 1, 1, 0.5f);
-  m.base_color_texture.texture = add_texture(scene, {255, 127, 255, 255});
+  m.base_color_texture.texture = add_texel(scene, {255, 127, 255, 255});
   m.metallic = 0.5f;
   m.roughness = 0.8f;
-  m.metallic_roughness_texture.texture = add_texture(scene, {255, 51, 102, 255});
+  m.metallic_roughness_texture.texture = add_texel(scene, {255, 51, 102, 255});
   m.transmission = 0.9f;
-  m.transmission_texture.texture = add_texture(scene, {51, 255, 255, 255});
+  m.transmission_texture.texture = add_texel(scene, {51, 255, 255, 255});
   m.thickness = 2;
-  m.thickness_texture.texture = add_texture(scene, {0, 51, 0, 0});
+  m.thickness_texture.texture = add_texel(scene, {0, 51, 0, 0});
   m.emission = vec3(10);
-  m.emission_texture.texture = add_texture(scene, {255, 0, 51, 0});
+  m.emission_texture.texture = add_texel(scene, {255, 0, 51, 0});
   scene.meshes[0].colors.assign(4, vec4(0.5f, 1, 0.25f, 0.5f));
   World world(scene);
   Surface s = look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1));
@@ -123,17 +114,9 @@ TEST(Surface, MaterialIsFactorTimesTextureTimesVertexColour) {
 
 TEST(Surface, TextureTransformAndSecondSetAreUsed) {
   Scene scene = square_scene();
-  Image image;
-  image.width = 2;
-  image.height = 1;
-  image.texels8 = {255, 0, 0, 255, 0, 255, 0, 255};
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = 0;
-  texture.nearest = true;
-  scene.textures.push_back(texture);
+  Image image{.width = 2, .height = 1, .texels8 = {255, 0, 0, 255, 0, 255, 0, 255}};
   TextureRef& reference = scene.materials[0].base_color_texture;
-  reference.texture = 0;
+  reference.texture = scenes::add_texture(scene, image, true);
   World world(scene);
   auto red = [&](float x) { return look(world, vec3(x, 0.5f, 2), vec3(0, 0, -1)).base_color.x; };
   EXPECT_EQ(red(0.1f), 1.0f);
@@ -152,8 +135,7 @@ TEST(Surface, NormalMapLeansAlongThePicture) {
   for (bool mirrored : {false, true}) {
     Scene scene = square_scene();
     scene.meshes[0].tangents.assign(4, vec4(1, 0, 0, 1));
-    int right = add_texture(scene, {218, 128, 218, 255}),
-        up = add_texture(scene, {128, 218, 218, 255});
+    int right = add_texel(scene, {218, 128, 218, 255}), up = add_texel(scene, {128, 218, 218, 255});
     if (mirrored) scene.instances[0].to_world = glm::scale(mat4(1), vec3(-1, 1, 1));
     World world(scene);
     float side = mirrored ? -1.0f : 1.0f;
@@ -221,8 +203,7 @@ TEST(Surface, OffsetOriginLeavesTheSurface) {
         if (!hit.valid() || std::abs(dot(ray.direction, normal)) < 0.05f) continue;
         Surface s = eval_surface(world, ray, hit);
         for (int k = 0; k < 4; k++) {
-          Ray leaving;
-          leaving.direction = random_direction(rng);
+          Ray leaving{.direction = random_direction(rng)};
           leaving.origin = offset_origin(s, leaving.direction);
           again += world.occluded(leaving);
           tried++;
@@ -238,7 +219,7 @@ TEST(Surface, OffsetOriginLeavesTheSurface) {
 TEST(Surface, LayersAreFactorTimesTexture) {
   Scene scene = square_scene();
   Material& m = scene.materials[0];
-  int picture = add_texture(scene, {51, 102, 153, 204});
+  int picture = add_texel(scene, {51, 102, 153, 204});
   m.specular = 0.5f;
   m.specular_texture.texture = picture;
   m.specular_color = vec3(2, 1, 0.5f);
@@ -267,13 +248,13 @@ TEST(Surface, TheCoatHasANormalOfItsOwn) {
   Scene scene = square_scene();
   Material& m = scene.materials[0];
   m.clearcoat = 1;
-  m.normal_texture.texture = add_texture(scene, {204, 128, 204, 255});
+  m.normal_texture.texture = add_texel(scene, {204, 128, 204, 255});
   scene.meshes[0].tangents.assign(4, vec4(1, 0, 0, 1));
   World world(scene);
   Surface s = look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1));
   EXPECT_GT(s.normal.x, 0.5f);
   EXPECT_EQ(s.clearcoat_normal, vec3(0, 0, 1));
-  m.clearcoat_normal_texture.texture = add_texture(scene, {128, 204, 204, 255});
+  m.clearcoat_normal_texture.texture = add_texel(scene, {128, 204, 204, 255});
   s = look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1));
   EXPECT_GT(s.clearcoat_normal.y, 0.5f);
   m.clearcoat_normal_scale = 0;
@@ -299,7 +280,7 @@ TEST(Surface, AnisotropyFollowsTheTangentTheAngleAndThePicture) {
   m.anisotropy_rotation = pi / 2;  // counter-clockwise
   EXPECT_NEAR(length(tangent() - vec3(0, 1, 0)), 0, 1e-6f);
   EXPECT_NEAR(length(tangent(-2) - vec3(0, 1, 0)), 0, 1e-6f);
-  m.anisotropy_texture.texture = add_texture(scene, {128, 255, 102, 255});  // along +v, turned on
+  m.anisotropy_texture.texture = add_texel(scene, {128, 255, 102, 255});  // along +v, turned on
   EXPECT_NEAR(length(tangent() - vec3(-1, 0, 0)), 0, 0.01f);
   EXPECT_NEAR(look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1)).anisotropy, 0.2f, 1e-6f);
   scene.meshes[0].tangents.assign(4, vec4(0, 0, 1, 1));  // degenerate: along the normal

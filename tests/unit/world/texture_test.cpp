@@ -11,18 +11,13 @@ namespace {
 
 // 4x1 picture whose red counts 0, 0.25, 0.5, 0.75.
 Image ramp() {
-  Image image;
-  image.width = 4;
-  image.height = 1;
+  Image image{.width = 4, .height = 1};
   for (int i = 0; i < 4; i++) image.texels.push_back(vec4(0.25f * float(i), 0, 0, 1));
   return image;
 }
 
 float red(Wrap wrap, bool nearest, float u) {
-  Texture texture;
-  texture.image = 0;
-  texture.wrap_u = wrap;
-  texture.nearest = nearest;
+  Texture texture{.image = 0, .wrap_u = wrap, .nearest = nearest};
   return eval_texture(ramp(), texture, vec2(u, 0.5f)).x;
 }
 
@@ -63,13 +58,8 @@ TEST(Texture, NearestTakesOneTexel) {
 }
 
 TEST(Texture, SrgbIsDecodedBeforeFiltering) {
-  Image image;
-  image.width = 2;
-  image.height = 1;
-  image.srgb = true;
-  image.texels8 = {0, 0, 0, 0, 255, 255, 255, 255};
-  Texture texture;
-  texture.wrap_u = Wrap::clamp;
+  Image image{.width = 2, .height = 1, .srgb = true, .texels8 = {0, 0, 0, 0, 255, 255, 255, 255}};
+  Texture texture{.wrap_u = Wrap::clamp};
   vec4 middle = eval_texture(image, texture, vec2(0.5f, 0.5f));
   EXPECT_NEAR(middle.x, 0.5f, 1e-6f);
   EXPECT_NEAR(middle.w, 0.5f, 1e-6f);
@@ -82,12 +72,8 @@ TEST(Texture, SrgbIsDecodedBeforeFiltering) {
 }
 
 TEST(Texture, TopRowFirst) {
-  Image image;
-  image.width = 1;
-  image.height = 2;
-  image.texels = {vec4(1), vec4(0)};
-  Texture texture;
-  texture.nearest = true;
+  Image image{.width = 1, .height = 2, .texels = {vec4(1), vec4(0)}};
+  Texture texture{.nearest = true};
   EXPECT_EQ(eval_texture(image, texture, vec2(0.5f, 0.25f)).x, 1.0f);
   EXPECT_EQ(eval_texture(image, texture, vec2(0.5f, 0.75f)).x, 0.0f);
 }
@@ -105,9 +91,9 @@ TEST(Texture, AnyCoordinateIsSafe) {
 }
 
 TEST(Texture, BadTexelsReadAsZero) {
-  Image image;
-  image.width = image.height = 1;
-  image.texels = {vec4(std::nanf(""), std::numeric_limits<float>::infinity(), 2, 1)};
+  Image image{.width = 1,
+              .height = 1,
+              .texels = {vec4(std::nanf(""), std::numeric_limits<float>::infinity(), 2, 1)}};
   vec4 value = eval_texture(image, Texture(), vec2(0.5f));
   EXPECT_EQ(value, vec4(0, 0, 2, 1));
 }

@@ -34,8 +34,7 @@ TEST(View, YawAndPitchTurnAsSaid) {
 
 TEST(View, PositiveRollLeansToTheLeft) {
   Scene scene;
-  Viewpoint at;
-  at.yaw = 0.7f, at.pitch = -0.3f;
+  Viewpoint at{.yaw = 0.7f, .pitch = -0.3f};
   View upright = make_view(scene, at, 64, 64);
   at.roll = 30 * degrees;
   View leans = make_view(scene, at, 64, 64);

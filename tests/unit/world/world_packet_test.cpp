@@ -8,10 +8,10 @@
 #include "scenes/scenes.h"
 #include "world/world.h"
 
-using namespace wellspring;
+namespace wellspring::test {
+namespace {
 
-using namespace wellspring::test;
-using namespace wellspring::scenes;
+using namespace scenes;
 
 // Rays within the box; every 50th round one of them is not a number.
 RayPacket make_rays(Rng& rng, int round, Ray (&rays)[RayPacket::lanes]) {
@@ -37,13 +37,12 @@ TEST(RayPacket, AnswersAreThoseOfSingleRays) {
   Material leaf = diffuse(vec3(0.5f));
   leaf.alpha_mode = AlphaMode::blend;
   leaf.base_color.w = 0.5f;
-  add_quad(scene, add_material(scene, leaf), {-0.2f, 0.3f, -0.4f}, {0.4f, 0, 0}, {0, 0, 0.3f});
+  add_quad(scene, leaf, {-0.2f, 0.3f, -0.4f}, {0.4f, 0, 0}, {0, 0, 0.3f});
   int moving = add_material(scene, diffuse(vec3(0.5f)));
   scene.objects.push_back("ball");
   Mesh ball = sphere_mesh(moving, 0.1f, 12);
   for (vec3& p : ball.positions) p += vec3(0, 0.2f, -0.2f);
   World world(scene, {ball}, {uint32_t(scene.objects.size() - 1)});
-  world.commit();
   Rng rng(11);
   int blocked_rays = 0, clear_rays = 0, moving_hits = 0;
   for (int round = 0; round < 4000; round++) {
@@ -82,3 +81,6 @@ TEST(RayPacket, AnswersAreThoseOfSingleRays) {
   EXPECT_GT(clear_rays, 5000);
   EXPECT_GT(moving_hits, 1000);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/rng.h"
+#include "scenes/build.h"
 
 namespace wellspring::test {
 namespace {
@@ -32,8 +33,7 @@ Mesh random_mesh(uint64_t seed, int triangles, float size) {
 
 // The unit square in z = 0, facing +Z.
 Mesh square() {
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
   mesh.normals.assign(4, vec3(0, 0, 1));
   mesh.uv[0] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -50,8 +50,7 @@ Scene scene_of(Mesh mesh) {
 }
 
 Ray random_ray(Rng& rng) {
-  Ray ray;
-  ray.origin = 3.0f * normalize(random_vec3(rng));
+  Ray ray{.origin = 3.0f * normalize(random_vec3(rng))};
   ray.direction = normalize(random_vec3(rng) - ray.origin);
   return ray;
 }
@@ -133,8 +132,7 @@ TEST(World, ThousandsOfInstances) {
   scene.instances.clear();
   for (int x = 0; x < 50; x++)
     for (int z = 0; z < 50; z++) {
-      Instance instance;
-      instance.to_world = glm::translate(mat4(1), vec3(4 * x, 0, 4 * z));
+      Instance instance{.to_world = glm::translate(mat4(1), vec3(4 * x, 0, 4 * z))};
       instance.to_world = glm::scale(instance.to_world, vec3(1, 0.5f, 1));
       scene.instances.push_back(instance);
     }
@@ -165,8 +163,7 @@ TEST(World, ThousandsOfInstances) {
     EXPECT_NEAR(dot(normal, expected), 1, 1e-5f);
   }
   EXPECT_GT(hits, 60);
-  Ray at_flat;
-  at_flat.origin = vec3(-9, 0, 5);
+  Ray at_flat{.origin = vec3(-9, 0, 5)};
   EXPECT_TRUE(world.intersect(at_flat).valid());
 }
 
@@ -195,8 +192,7 @@ TEST(World, MovingMeshMovesHidesAndReturns) {
   World world(scene, {square()}, {7});
   EXPECT_TRUE(world.is_moving(1));
   EXPECT_EQ(world.object_of(1), 7u);
-  Ray ray;
-  ray.origin = vec3(0.5f, 0.5f, 5);
+  Ray ray{.origin = vec3(0.5f, 0.5f, 5)};
   auto place = [&](vec3 offset) {
     Mesh mesh = square();
     for (vec3& p : mesh.positions) p += offset;
@@ -276,8 +272,7 @@ TEST(World, RaysThatAreNotFiniteHitNothing) {
   Scene scene = scene_of(square());
   World world(scene);
   float bad = std::nanf("");
-  Ray good;
-  good.origin = vec3(0.5f, 0.25f, 1);
+  Ray good{.origin = vec3(0.5f, 0.25f, 1)};
   EXPECT_TRUE(world.occluded(good));
   for (int i = 0; i < 6; i++) {
     Ray ray = good;
@@ -293,16 +288,8 @@ TEST(World, RaysThatAreNotFiniteHitNothing) {
 // Left half of the square's picture is transparent.
 Scene window_scene(AlphaMode mode, uint8_t left_alpha) {
   Scene scene = scene_of(square());
-  Image image;
-  image.width = 2;
-  image.height = 1;
-  image.texels8 = {255, 255, 255, left_alpha, 255, 255, 255, 255};
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = 0;
-  texture.nearest = true;
-  scene.textures.push_back(texture);
-  scene.materials[0].base_color_texture.texture = 0;
+  Image image{.width = 2, .height = 1, .texels8 = {255, 255, 255, left_alpha, 255, 255, 255, 255}};
+  scene.materials[0].base_color_texture.texture = scenes::add_texture(scene, image, true);
   scene.materials[0].alpha_mode = mode;
   return scene;
 }
@@ -333,8 +320,7 @@ TEST(World, MaskedInstancesHaveHolesWhereTheyStand) {
     scene.instances.push_back({0, glm::translate(mat4(1), vec3(2 * i, 0, 0)), 0});
   World world(scene);
   for (int i : {0, 17, 399}) {
-    Ray ray;
-    ray.origin = vec3(2 * i + 0.25f, 0.5f, 1);
+    Ray ray{.origin = vec3(2 * i + 0.25f, 0.5f, 1)};
     EXPECT_FALSE(world.intersect(ray).valid());
     ray.origin.x += 0.5f;
     EXPECT_EQ(world.intersect(ray).instance, uint32_t(i));

@@ -163,8 +163,7 @@ TEST(Detail, WhatIsNotNeededIsNotComputed) {
   };
   StorytellerWork far = work_at(20), middle = work_at(5), near = work_at(1);
   EXPECT_EQ(far.ticks, near.ticks);
-  StorytellerWork nothing;
-  nothing.ticks = far.ticks;
+  StorytellerWork nothing{.ticks = far.ticks};
   EXPECT_EQ(far, nothing) << "far away the body alone moves";
   for (uint64_t StorytellerWork::*none :
        {&StorytellerWork::saccades, &StorytellerWork::flex_noise, &StorytellerWork::expressions,

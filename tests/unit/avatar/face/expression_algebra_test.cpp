@@ -20,9 +20,7 @@ Character figure_with_everything() {
       character.displacers.push_back({control.displacers[0], {}, {}});
   int parent = -1;
   for (const char* name : {"humanoid_root", "vc4", "skullbase"}) {
-    Joint joint;
-    joint.name = name;
-    joint.parent = parent;
+    Joint joint{.name = name, .parent = parent};
     parent = int(character.joints.size());
     character.joints.push_back(joint);
   }
@@ -174,8 +172,7 @@ TEST_F(Algebra, NothingThatIsNoNumberGetsIn) {
 TEST_F(Algebra, LipsMeetAtABilabialWhateverTheLayersSay) {
   for (int i = 0; i < 500; i++) {
     ExpressionSum sum = random_sum(3);
-    Protected words;
-    words.talking = rng.uniform();
+    Protected words{.talking = rng.uniform()};
     for (float& viseme : words.visemes) viseme = rng.uniform();
     words.visemes[size_t(Viseme::PP)] = 1;
     protect(sum, rig, words);
@@ -194,8 +191,7 @@ TEST_F(Algebra, LipsMeetAtABilabialWhateverTheLayersSay) {
 TEST_F(Algebra, ABlinkClosesTheLidsWhateverTheLayersSay) {
   for (int i = 0; i < 500; i++) {
     ExpressionSum sum = random_sum(3);
-    Protected words;
-    words.closing = {1, rng.uniform()};
+    Protected words{.closing = {1, rng.uniform()}};
     protect(sum, rig, words);
     Pose pose = posed(sum);
     EXPECT_EQ(shown(pose, "blink_l"), 1);

@@ -124,10 +124,10 @@ TEST(Expressions, WhatAFigureLacksIsSaidOnceAndLeftOut) {
 TEST(Expressions, LidsAndJawsOfFiguresWithJointsTurn) {
   Character character;
   for (const char* name : {"humanoid_root", "skullbase", "l_eyelid_joint", "temporomandibular"}) {
-    Joint joint;
-    joint.name = name;
-    joint.parent = character.joints.empty() ? -1 : character.joints.size() == 1 ? 0 : 1;
-    character.joints.push_back(joint);
+    character.joints.push_back({.name = name,
+                                .parent = character.joints.empty()       ? -1
+                                          : character.joints.size() == 1 ? 0
+                                                                         : 1});
   }
   character.positions.assign(3, vec3(0));
   character.first_weight = {0, 1, 2, 3};
@@ -135,8 +135,7 @@ TEST(Expressions, LidsAndJawsOfFiguresWithJointsTurn) {
   ExpressionRig rig = make_expression_rig(default_expressions(), character);
   ExpressionSum sum;
   clear(sum, rig);
-  Protected words;
-  words.closing = {1, 1};
+  Protected words{.closing = {1, 1}};
   words.visemes[size_t(Viseme::aa)] = 1;
   protect(sum, rig, words);
   Pose pose = make_rest_pose(character);

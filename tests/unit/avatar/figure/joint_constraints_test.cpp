@@ -148,9 +148,8 @@ TEST(JointConstraints, AreThoseOfTheFormatWhateverTheAxesOfTheNodes) {
   int seen = 0;
   for (bool version_0 : {false, true})
     for (const Case& c : cases) {
-      PersonOptions options;
-      options.odd_axes = true;
-      options.axes = glm::angleAxis(1.0f, normalize(vec3(1, 2, 3)));
+      PersonOptions options{.axes = glm::angleAxis(1.0f, normalize(vec3(1, 2, 3))),
+                            .odd_axes = true};
       if (version_0) options.world = quat(0, 0, 1, 0);
       Asset asset = make_person(options);
       version_0 ? add_vrm_0(asset) : add_vrm_1(asset);
@@ -190,8 +189,7 @@ TEST(JointConstraints, AreThoseOfTheFormatWhateverTheAxesOfTheNodes) {
 }
 
 TEST(JointConstraints, AtRestNothingTurns) {
-  PersonOptions options;
-  options.odd_axes = true;
+  PersonOptions options{.odd_axes = true};
   Asset asset = make_person(options);
   add_vrm_1(asset);
   size_t arm = size_t(person_bone("leftLowerArm"));

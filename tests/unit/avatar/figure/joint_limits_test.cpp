@@ -87,8 +87,7 @@ TEST(JointLimits, LookingPointingAndGesturesKeepToThem) {
     joint.limits.assign(3, {-most, most});
     joint.limit_orientation = glm::angleAxis(0.7f, normalize(vec3(1, 1, 0)));
   }
-  Storyteller storyteller;
-  storyteller.character = &figure;
+  Storyteller storyteller{.character = &figure};
   StorytellerState state;
   StorytellerInput input;
   StorytellerEvents events;

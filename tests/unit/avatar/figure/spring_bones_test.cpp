@@ -25,11 +25,9 @@ Character make_braid(int count, SpringBone like) {
   character.joints.resize(1);
   character.joints[0].name = "skullbase";
   for (int i = 0; i < count; i++) {
-    Joint joint;
-    joint.name = "braid" + std::to_string(i);
-    joint.parent = i;
-    joint.center = vec3(0, -length * float(i), -0.1f);
-    character.joints.push_back(joint);
+    character.joints.push_back({.name = "braid" + std::to_string(i),
+                                .parent = i,
+                                .center = vec3(0, -length * float(i), -0.1f)});
     SpringBone bone = like;
     bone.joint = i + 1;
     bone.tail = vec3(0, -length, 0);
@@ -39,9 +37,7 @@ Character make_braid(int count, SpringBone like) {
 }
 
 SpringBone make_bone(float stiffness, float drag) {
-  SpringBone bone;
-  bone.stiffness = stiffness, bone.drag = drag;
-  return bone;
+  return SpringBone{.stiffness = stiffness, .drag = drag};
 }
 
 // Angle by which the first bone of the braid lags behind a head that has leant over by `lean`.

@@ -89,12 +89,16 @@ TEST(Corpus, RecordingsMoveAnyFigure) {
   NEEDS_CORPUS();
   fs::path data(WELLSPRING_DATA);
   Character jin = load("web3d_pythonSAI/KoreanCharacter01Jin.x3d");
+  std::string missing;
   for (const char* file : {"4_bvh/assimp/01_01.bvh", "4_bvh/bvh_python/test_mocapbank.bvh",
                            "3_vrm/three_vrm/packages/vrm-viewer/idle_loop.vrma",
                            "1_gltf/khronos/CesiumMan/glTF-Binary/CesiumMan.glb",
                            "2_x3d_hanim/web3d_pythonSAI/KoreanCharacterMotionAnnexD01Jin.x3d",
                            "2_x3d_hanim/web3d_pythonSAI/JoeKick.x3d"}) {
-    if (!fs::exists(data / file)) continue;
+    if (!fs::exists(data / file)) {
+      missing += std::string(" ") + file;
+      continue;
+    }
     SCOPED_TRACE(file);
     Character recorded = load_character((data / file).string());
     ASSERT_FALSE(recorded.motions.empty());
@@ -113,6 +117,7 @@ TEST(Corpus, RecordingsMoveAnyFigure) {
   Character walk = load_character((data / "4_bvh/assimp/01_01.bvh").string());
   EXPECT_NEAR(walk.motions[0].duration, 22.9f, 0.1f);
   EXPECT_GE(find_joint(walk, "l_carpometacarpal_1"), 0) << "LThumb";
+  if (!missing.empty()) GTEST_SKIP() << "not all recordings are here:" << missing;
 }
 
 TEST(Corpus, StandardSkeletonsHaveTheirLevelOfArticulation) {

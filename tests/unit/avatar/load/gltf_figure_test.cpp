@@ -95,8 +95,7 @@ TEST(GltfFigure, TheNodeOfASkinnedMeshDecidesWhichSideIsItsFront) {
 }
 
 TEST(GltfFigure, Vrm0FacesTheOtherWayAndIsTurned) {
-  PersonOptions options;
-  options.world = quat(0, 0, 1, 0);
+  PersonOptions options{.world = quat(0, 0, 1, 0)};
   Asset asset = make_person(options);
   add_vrm_0(asset);
   Character c = load_asset(asset);
@@ -109,9 +108,7 @@ TEST(GltfFigure, Vrm0FacesTheOtherWayAndIsTurned) {
 
 TEST(GltfFigure, HowTheFileTurnsItsBonesDoesNotShow) {
   Character plain = load_asset(make_person());
-  PersonOptions odd;
-  odd.odd_axes = true;
-  odd.axes = glm::angleAxis(1.0f, normalize(vec3(1, 2, 3)));
+  PersonOptions odd{.axes = glm::angleAxis(1.0f, normalize(vec3(1, 2, 3))), .odd_axes = true};
   Character turned = load_asset(make_person(odd));
   odd.world = glm::angleAxis(-pi / 2, vec3(1, 0, 0)) * glm::angleAxis(pi / 2, vec3(0, 1, 0));
   odd.unit = 100;
@@ -132,8 +129,7 @@ TEST(GltfFigure, HowTheFileTurnsItsBonesDoesNotShow) {
 }
 
 TEST(GltfFigure, AFileThatPosesItsBonesRestsAsItWasBound) {
-  PersonOptions options;
-  options.odd_axes = true;
+  PersonOptions options{.odd_axes = true};
   options.posed["leftUpperArm"] = glm::angleAxis(-1.0f, vec3(0, 0, 1));
   options.posed["rightLowerLeg"] = glm::angleAxis(0.6f, vec3(1, 0, 0));
   Character c = load_asset(make_person(options)), plain = load_asset(make_person());
@@ -148,12 +144,11 @@ TEST(GltfFigure, AFileThatPosesItsBonesRestsAsItWasBound) {
 }
 
 TEST(GltfFigure, NamesOfOtherRigsAndNoNamesAtAll) {
-  PersonOptions options;
-  options.names = {{"hips", "pelvis"},
-                   {"leftUpperArm", "upperarm_l"},
-                   {"leftLowerArm", "lowerarm_l"},
-                   {"leftHand", "hand_l"},
-                   {"head", "Antenna"}};
+  PersonOptions options{.names = {{"hips", "pelvis"},
+                                  {"leftUpperArm", "upperarm_l"},
+                                  {"leftLowerArm", "lowerarm_l"},
+                                  {"leftHand", "hand_l"},
+                                  {"head", "Antenna"}}};
   Character c = load_asset(make_person(options), false);
   EXPECT_NEAR(centre(c, "l_radiocarpal").x, 0.7f, 1e-5f);
   EXPECT_GE(find_joint(c, "Antenna"), 0);

@@ -24,8 +24,7 @@ TEST(Thumbs, CloseAcrossThePalm) {
       ASSERT_GE(middle, 0);
       // Returns the gap from the thumb's last joint to the root of the ring finger, in the hand.
       auto gap = [&](float curl, float thumb) {
-        BodyPlan plan;
-        plan.fingers = true;
+        BodyPlan plan{.fingers = true};
         for (ArmPose& arm : plan.arm) {
           arm = hanging_arm(0);
           arm.curl = curl;

@@ -256,8 +256,7 @@ TEST(Storyteller, ArmsHangTheSameInEveryRestPose) {
     Character character = make(a);
     Storyteller storyteller{&character, mat4(1)};
     StorytellerState state;
-    StorytellerInput input;
-    input.humanlike = false;
+    StorytellerInput input{.humanlike = false};
     StorytellerEvents events;
     Pose pose;
     tick_storyteller(state, storyteller, input, pose, events);

@@ -130,8 +130,7 @@ TEST(ObjectSamples, NothingGrowsOlderThanTheMaximum) {
   SampleStore store;
   add_at_origin(store, 20, true, 5);
   add_at_origin(store, 20, true, 6);
-  AgeingSettings settings;
-  settings.max_age = 10;
+  AgeingSettings settings{.max_age = 10};
   age_samples(store, eye_at(0).position, 15, settings);
   EXPECT_EQ(store.count(), 40);
   age_samples(store, eye_at(0).position, 16, settings);
@@ -178,8 +177,7 @@ TEST(ObjectSamples, AgesDieRoundABallAsComputedSampleBySample) {
 }
 
 TEST(ObjectSamples, OverABoundTheOldestGoFirst) {
-  SampleStore store;
-  store.limits = {160, 320};
+  SampleStore store{.limits = {160, 320}};
   for (uint32_t age : {1u, 2u, 3u}) add_at_origin(store, 60, true, age);
   EXPECT_LE(store.count(), 160);
   EXPECT_EQ(count_age(store, 1, 1), 30);  // a sixteenth more than it must
@@ -194,8 +192,7 @@ TEST(ObjectSamples, OverABoundTheOldestGoFirst) {
 }
 
 TEST(ObjectSamples, OfOneAgeTheFinestGoFirst) {
-  SampleStore store;
-  store.limits = {64, 1000};
+  SampleStore store{.limits = {64, 1000}};
   add_at_origin(store, 40, true, 1, 4);
   add_at_origin(store, 30, true, 1, 2);
   EXPECT_EQ(store.objects[0].levels[1].count(), 30);

@@ -63,12 +63,11 @@ Stage two_balls(float unit) {
 }
 
 View view_of_balls(int width, int height, float angle, float distance, float unit) {
-  View view;
-  view.position = vec3(std::sin(angle), 0, std::cos(angle)) * (distance * unit);
-  view.forward = vec3(-std::sin(angle), 0, -std::cos(angle));
-  view.right = vec3(std::cos(angle), 0, -std::sin(angle));
-  view.width = width;
-  view.height = height;
+  View view{.position = vec3(std::sin(angle), 0, std::cos(angle)) * (distance * unit),
+            .right = vec3(std::cos(angle), 0, -std::sin(angle)),
+            .forward = vec3(-std::sin(angle), 0, -std::cos(angle)),
+            .width = width,
+            .height = height};
   return view;
 }
 

@@ -20,8 +20,7 @@ using test::Stage;
 
 // A store that has seen all of a view.
 SampleStore traced(const Stage& stage, const View& view, int levels = 4) {
-  SampleStore store;
-  store.grid = make_sqrt5_grid(levels);
+  SampleStore store{.grid = make_sqrt5_grid(levels)};
   add_samples(store, view, 0, stage.trace_all(view, store.grid));
   return store;
 }

@@ -125,8 +125,7 @@ bool are_alike(const std::unique_ptr<FaceFinder>& one, const std::unique_ptr<Fac
 }
 
 TEST(FaceNetwork, without_weights_or_with_damaged_ones_cascades_run) {
-  FaceSettings settings;
-  settings.weights = "/nowhere";
+  FaceSettings settings{.weights = "/nowhere"};
   EXPECT_TRUE(are_alike(make_face_finder(settings), make_cascade_finder()));
   const fs::path folder = fs::temp_directory_path() / "wellspring_damaged_weights";
   fs::create_directories(folder);

@@ -47,9 +47,7 @@ TEST(HeadPose, exact_landmarks_give_the_exact_pose) {
 }
 
 TEST(HeadPose, the_mount_is_taken_out_as_a_rotation) {
-  Mount mount;
-  mount.offset = {0.1f, 0.4f, 0};
-  mount.pitch = -0.35f;
+  Mount mount{.offset = {0.1f, 0.4f, 0}, .pitch = -0.35f};
   for (bool mirrored : {false, true}) {
     mount.mirrored = mirrored;
     const vec3 angles{0.5f, 0.1f, 0}, position{-0.2f, 0, 0.9f};

@@ -18,8 +18,7 @@ Box box_at(float u, float v, float side) {
 }
 
 TEST(Head, a_known_box_gives_known_metres) {
-  Mount mount;
-  mount.fov = 90 * pi / 180;
+  Mount mount{.fov = 90 * pi / 180};
   const float focal = focal_length(mount, 640);
   EXPECT_NEAR(focal, 320, 1e-3f);
   // 57.6 pixels of 0.18 m at 320 pixels focal length: 1 m away.
@@ -37,8 +36,7 @@ TEST(Head, image_right_is_screen_left_and_image_top_is_up) {
 }
 
 TEST(Head, offset_and_pitch_of_the_camera) {
-  Mount mount;
-  mount.offset = {0.1f, 0.4f, 0.02f};
+  Mount mount{.offset = {0.1f, 0.4f, 0.02f}};
   expect_near(camera_to_screen(mount, {0, 0, 1}), {0.1f, 0.4f, 1.02f}, 1e-6f);
   mount.pitch = -30 * pi / 180;  // down: what lies ahead of the lens lies lower
   expect_near(camera_to_screen(mount, {0, 0, 1}), {0.1f, 0.4f - 0.5f, 0.02f + std::sqrt(0.75f)},
@@ -75,9 +73,7 @@ TEST(Head, the_bearing_is_taken_out) {
 }
 
 TEST(Head, the_tilt_of_the_camera_is_taken_out_as_a_rotation) {
-  Mount mount;
-  mount.offset = {0, 0.4f, 0};
-  mount.pitch = -0.4f;
+  Mount mount{.offset = {0, 0.4f, 0}, .pitch = -0.4f};
   // Looking into a camera that is above and tilted down, straight along its axis: looking up by as
   // much.
   expect_near(rotation_on_screen(mount, mat3(1), {0, 0, 1}), {0, 0.4f, 0}, 1e-5f);

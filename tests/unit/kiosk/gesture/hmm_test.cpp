@@ -19,8 +19,7 @@ void fill(Rng& rng, double* row, size_t count) {
 
 Hmm random_model(int states, uint64_t seed) {
   Rng rng(seed);
-  Hmm m;
-  m.states = states;
+  Hmm m{.states = states};
   m.initial.resize(size_t(states));
   m.transition.resize(size_t(states * states));
   m.output.resize(size_t(states));
@@ -155,8 +154,7 @@ TEST(NonGesture, equation_9_joins_all_states_and_keeps_the_stays) {
   const std::vector<std::vector<Code>> one{{0, 0, 0, 5, 5, 5}}, two{{9, 9, 13, 13, 13, 13}};
   const std::vector<Hmm> gestures{make_banded(2, one), make_banded(2, two)};
   const std::vector<double> last_stay{3, 4};
-  NonGestureSettings settings;
-  settings.states = 4;
+  NonGestureSettings settings{.states = 4};
   const Hmm m = make_non_gesture(gestures, last_stay, settings);
   ASSERT_EQ(m.states, 4);
   const double stays[4] = {gestures[0].at(0, 0), 1 - 1.0 / 3, gestures[1].at(0, 0), 0.75};
@@ -181,8 +179,7 @@ TEST(NonGesture, a_single_state_keeps_itself) {
 TEST(NonGesture, the_most_similar_states_are_merged_first) {
   const std::vector<std::vector<Code>> one{{0, 0, 0, 9, 9, 9}}, two{{1, 1, 1, 5, 5, 5}};
   const std::vector<Hmm> gestures{make_banded(2, one), make_banded(2, two)};
-  NonGestureSettings settings;
-  settings.states = 3;
+  NonGestureSettings settings{.states = 3};
   const Hmm m = make_non_gesture(gestures, std::vector<double>{3, 3}, settings);
   ASSERT_EQ(m.states, 3);
   EXPECT_NEAR(m.output[0][0], m.output[0][1], 1e-9);  // codes 0 and 1 share a state

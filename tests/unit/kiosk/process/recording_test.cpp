@@ -11,11 +11,8 @@ namespace wellspring::test {
 namespace {
 
 std::string observed(double time) {
-  Observation seen;
-  seen.time = time;
-  seen.state = Presence::person;
-  Person person;
-  person.position = {0.1f, 0.2f, 1};
+  Observation seen{.time = time, .state = Presence::person};
+  Person person{.position = {0.1f, 0.2f, 1}};
   seen.people = {person};
   return write_observation(seen);
 }

@@ -6,13 +6,10 @@
 #include "unit/light/material/bsdf_cases.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 constexpr float roughnesses[] = {0, 0.05f, 0.1f, 0.18f, 0.3f, 0.45f, 0.65f, 1};
 constexpr float angles[] = {0, 30, 60, 80, 88};
@@ -48,8 +45,6 @@ void measure(std::vector<Place>& places) {
     p.albedo = albedo_of(bsdf, uint64_t(i));
   });
 }
-
-}  // namespace
 
 TEST(BsdfFurnace, WhiteMaterialsKeepAllLight) {
   std::vector<Place> places;
@@ -111,3 +106,6 @@ TEST(BsdfFurnace, TintedReflectionOverWhite) {
     }
   }
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -6,13 +6,10 @@
 #include "unit/light/material/bsdf_cases.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 constexpr int rows = 24, columns = 16, fine = 24, draws = 20000;
 
@@ -80,8 +77,6 @@ Judged judge(const Bsdf& bsdf, Lobes lobes, uint64_t seed) {
 }
 
 vec3 total(const BsdfValue& value) { return value.diffuse + value.specular; }
-
-}  // namespace
 
 // All are one test at a significance of 1 %: each at Sidak's share of it.
 TEST(BsdfSampling, FollowsTheDensity) {
@@ -169,3 +164,6 @@ TEST(BsdfSampling, LayersAreNotReciprocalByWhatTheyLeave) {
         EXPECT_NEAR(f - g, expected, 2e-3f * base + 1e-5f) << from << " to " << to;
       }
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -7,13 +7,10 @@
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 // Any opaque surface without coats; some with a mapped normal, brushed, tinted, of infinite index.
 Bsdf draw_bsdf(Rng& rng, Material& m) {
@@ -34,8 +31,6 @@ Bsdf draw_bsdf(Rng& rng, Material& m) {
   if (dot(view, surface.geometric_normal) < 0) view = -view;
   return make_bsdf(surface, m, -view, dielectric_albedo(m.ior, false));
 }
-
-}  // namespace
 
 TEST(BsdfLanes, EightAtOnceAreEachAlone) {
   Rng rng(3);
@@ -96,3 +91,6 @@ TEST(BsdfLanes, WhatDoesNotFitIsToldApart) {
   EXPECT_FALSE(fits_lanes(
       make_bsdf(surface_of(coated), coated, -direction_at(30), dielectric_albedo(1.5f))));
 }
+
+}  // namespace
+}  // namespace wellspring::test

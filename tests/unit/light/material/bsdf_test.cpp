@@ -7,13 +7,10 @@
 #include "unit/light/material/bsdf_cases.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 // Everything, over the range of roughness that has a density.
 std::vector<Case> rough_cases() {
@@ -40,8 +37,6 @@ Mean albedo_of(const Bsdf& bsdf, Lobes lobes, int count = 40000) {
   }
   return mean;
 }
-
-}  // namespace
 
 TEST(Bsdf, WeightIsValueOverDensity) {
   for (const Case& c : rough_cases())
@@ -196,3 +191,6 @@ TEST(Bsdf, NothingLeaksThroughAnOpaqueSurface) {
       EXPECT_EQ(below.diffuse + below.specular, vec3(0));
     }
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -5,16 +5,13 @@
 
 #include "unit/light/material/bsdf_cases.h"
 #include "light/random/warp.h"
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 Material flint(float roughness) {
   Material m = glass(1.6f, roughness, 1);
@@ -35,10 +32,7 @@ ColorMean trace_color(const World& world, const Lights& lights, Ray ray, int rep
   for (int r = 0; r < replicates; r++) {
     vec3 sum(0);
     for (uint32_t i = 0; i < count; i++) {
-      Request request;
-      request.ray = ray;
-      request.seed = mix64(uint64_t(r) + 17);
-      request.index = i;
+      Request request{.ray = ray, .seed = mix64(uint64_t(r) + 17), .index = i};
       vec3 radiance = technique.trace(world, lights, settings, request).radiance();
       EXPECT_TRUE(is_finite(radiance));
       EXPECT_GE(std::min({radiance.x, radiance.y, radiance.z}), 0);
@@ -48,8 +42,6 @@ ColorMean trace_color(const World& world, const Lights& lights, Ray ray, int rep
   }
   return mean;
 }
-
-}  // namespace
 
 TEST(Dispersion, WhiteStaysWhiteAndNothingIsNegative) {
   constexpr int steps = 4096;
@@ -81,9 +73,7 @@ TEST(Dispersion, IndexFollowsTheAbbeNumber) {
 // A glass sphere in light from everywhere: what parts the colours may not change the whole.
 TEST(Dispersion, FurnaceStaysWhite) {
   for (float roughness : {0.0f, 0.3f}) {
-    Scene scene = make_white_furnace(flint(roughness));
-    World world(scene);
-    Lights lights = make_lights(world);
+    auto [scene, world, lights] = LitWorld(make_white_furnace(flint(roughness)));
     for (float height : {0.2f, 0.8f}) {
       Ray ray = ray_towards({0, height, 3}, {0, height, 0});
       ColorMean mean = trace_color(world, lights, ray);
@@ -200,10 +190,11 @@ TEST(Dispersion, APrismSpreadsItsHuesInOrder) {
 
 // A scene in which nothing is dispersive draws the same numbers as before.
 TEST(Dispersion, WithoutItNothingIsDrawn) {
-  Scene scene = make_white_furnace(glass(1.6f, 0, 1));
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_white_furnace(glass(1.6f, 0, 1)));
   Ray ray = ray_towards({0, 0.3f, 3}, {0, 0.3f, 0});
   ColorMean mean = trace_color(world, lights, ray, 2, 64);
   EXPECT_EQ(mean.channel[0].mean(), mean.channel[2].mean());
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -10,10 +10,7 @@
 #include "base/rng.h"
 #include "light/material/bsdf.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 float signed_unit(Rng& rng) { return 2 * rng.uniform() - 1; }
@@ -23,11 +20,7 @@ vec3 in_box(Rng& rng) {
 }
 
 Material lambertian() {
-  Material m;
-  m.base_color = {0.7f, 0.5f, 0.2f, 1};
-  m.metallic = 0;
-  m.ior = 1;
-  return m;
+  return Material{.base_color = {0.7f, 0.5f, 0.2f, 1}, .metallic = 0, .ior = 1};
 }
 
 // Triangles all over; every second with normals that lean, the others flat. With vertex colours.
@@ -53,8 +46,7 @@ Mesh heap(uint64_t seed) {
 Scene heaps() {
   Scene scene;
   scene.materials = {lambertian()};
-  Image image;
-  image.width = image.height = 2;
+  Image image{.width = 2, .height = 2};
   for (int i = 0; i < 16; i++) image.texels8.push_back(uint8_t(40 + 13 * i));
   scene.images = {image};
   scene.textures.resize(1);
@@ -75,8 +67,7 @@ int for_each_hit(const World& world, const See& see) {
   Rng rng(5);
   int hits = 0;
   for (int i = 0; i < 4000; i++) {
-    Ray ray;
-    ray.origin = 3.0f * normalize(in_box(rng));
+    Ray ray{.origin = 3.0f * normalize(in_box(rng))};
     ray.direction = normalize(in_box(rng) - ray.origin);
     Hit hit = world.intersect(ray);
     if (!hit.valid()) continue;
@@ -85,8 +76,6 @@ int for_each_hit(const World& world, const See& see) {
   }
   return hits;
 }
-
-}  // namespace
 
 TEST(Lambert, SurfacesAreThoseOfTheLongWay) {
   Scene scene = heaps();
@@ -174,3 +163,6 @@ TEST(Lambert, MaterialsWithMoreToThemAreNot) {
   EXPECT_FALSE(is([](Material& m) { m.sheen_color = vec3(0.1f); }));
   EXPECT_FALSE(is([](Material& m) { m.normal_texture.texture = 0; }));
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -8,25 +8,19 @@
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
+namespace wellspring::test {
+namespace {
 
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
+using namespace scenes;
 
 // Rays leave a textured lamp where it emits light: as much light as without that choice, less
 // scattered.
 TEST(Emission, RaysLeaveWhereThePictureShines) {
   Scene scene = make_plane_with_rect_light(1);
-  Image image;
-  image.width = image.height = 16;
+  Image image{.width = 16, .height = 16};
   for (int i = 0; i < 256; i++)
     image.texels.push_back(i % 16 < 2 ? vec4(8, 8, 8, 1) : vec4(0, 0, 0, 1));
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = 0;
-  scene.textures.push_back(texture);
-  scene.materials.back().emission_texture.texture = 0;
+  scene.materials.back().emission_texture.texture = add_texture(scene, image);
   World world(scene);
   Lights lights = make_lights(world);
   ASSERT_FALSE(lights.tables->pictures.empty());
@@ -46,3 +40,6 @@ TEST(Emission, RaysLeaveWhereThePictureShines) {
   // Half of the variance or less: at 20,000 degrees of freedom no chance would do that.
   EXPECT_LT(std::pow(by_picture.error(), 2), 0.5 * std::pow(evenly.error(), 2));
 }
+
+}  // namespace
+}  // namespace wellspring::test

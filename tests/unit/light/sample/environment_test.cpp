@@ -10,21 +10,16 @@
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 struct Sky {
   Scene scene;
   EnvironmentLight light;
   Sky(int width, int height, const std::function<vec3(int, int)>& texel, SunDisc sun = {}) {
-    Image image;
-    image.width = width;
-    image.height = height;
+    Image image{.width = width, .height = height};
     for (int y = 0; y < height; y++)
       for (int x = 0; x < width; x++) image.texels.push_back(vec4(texel(x, y), 1));
     scene.images.push_back(std::move(image));
@@ -84,8 +79,6 @@ void expect_sampled(const EnvironmentLight& sky, const char* what, int fine = 96
   expect_chi_squared(counts, expected, what);
   EXPECT_NEAR(light.mean(), exact, significance_z * light.error() + 2e-3 * exact) << what;
 }
-
-}  // namespace
 
 TEST(Environment, PolesAndTheSeam) {
   Sky top(32, 16, [](int, int y) { return y == 0 ? vec3(50) : vec3(0.1f); });
@@ -242,8 +235,10 @@ TEST(Accumulation, AMillionSamplesDoNotDrift) {
   scene.environment.radiance = vec3(0.1f, 1e-3f, 300.7f);
   World world(scene);
   View view = make_view_towards(scene, {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 1, 1, 1);
-  StillSettings settings;
-  settings.spp = 1'000'000;
-  Frame frame = render_still(*find_technique("direct"), world, make_lights(world), view, settings);
+  Frame frame =
+      render_still(*find_technique("direct"), world, make_lights(world), view, {.spp = 1'000'000});
   EXPECT_EQ(frame.color[0], scene.environment.radiance);
 }
+
+}  // namespace
+}  // namespace wellspring::test

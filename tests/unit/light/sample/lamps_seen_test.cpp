@@ -10,10 +10,7 @@
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 enum RoofLamp : size_t { sun, below, above, lamps };
@@ -45,12 +42,7 @@ struct Place {
       learn_lamps_seen(transport, std::span(&eye, 1), {.cell = 0.5f});
 };
 
-SurfacePlace on_floor(float x, float z) {
-  SurfacePlace place;
-  place.position = {x, 0, z};
-  place.extent = 4;
-  return place;
-}
+SurfacePlace on_floor(float x, float z) { return SurfacePlace{.position = {x, 0, z}, .extent = 4}; }
 
 // Averages the light that arrives from a drawn lamp, over many draws.
 Mean estimate(const Place& p, const LampsSeen* lamps, const SurfacePlace& place, int count) {
@@ -82,8 +74,6 @@ double exact(const Place& p, const SurfacePlace& place) {
   }
   return sum;
 }
-
-}  // namespace
 
 TEST(LampsSeen, SharesAreWhatArrives) {
   Place p;
@@ -168,3 +158,6 @@ TEST(LampsSeen, TheSameEachTimeAndNoneWhereThereIsNoChoice) {
   EXPECT_EQ(learn_lamps_seen({world, *lights.tables}, std::span(&p.eye, 1)), nullptr);
   EXPECT_EQ(learn_lamps_seen(p.transport, {}), nullptr);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -3,14 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "light/material/bsdf_types.h"
-#include "light/sample/lights.h"
 #include "light/sample/sample_light.h"
+#include "scenes/lit_world.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 constexpr int lamps = 12;
@@ -76,29 +73,22 @@ Mean estimate(const Transport& transport, const Floor& floor, const LobeHint& lo
   return mean;
 }
 
-}  // namespace
-
 TEST(LightChoice, HighlightsAreFoundAndCountOnce) {
   for (float roughness : {0.15f, 0.3f, 0.6f})
     for (float metallic : {0.0f, 1.0f}) {
       Floor floor = glossy_floor(roughness, metallic);
       double exact = 0;
       for (int i = 0; i < lamps; i++) {
-        Scene alone = ring(i);
-        World world(alone);
-        Lights lights = make_lights(world);
+        auto [alone, world, lights] = scenes::LitWorld(ring(i));
         Sampler sampler(1);
         exact += double(reflected(floor, sample_punctual_light({world, *lights.tables}, floor.place,
                                                                {0, 1, 0}, false, sampler)));
       }
-      Scene scene = ring();
-      World world(scene);
-      Lights lights = make_lights(world);
-      LobeHint lobe;
-      lobe.diffuse = luminance(floor.bsdf.diffuse);
-      lobe.specular = metallic > 0 ? 0.5f : 1 - floor.bsdf.coat_passes;
-      lobe.alpha = floor.bsdf.alpha;
-      lobe.view = to_world(floor.bsdf, floor.bsdf.view);
+      auto [scene, world, lights] = scenes::LitWorld(ring());
+      LobeHint lobe{.diffuse = luminance(floor.bsdf.diffuse),
+                    .specular = metallic > 0 ? 0.5f : 1 - floor.bsdf.coat_passes,
+                    .view = to_world(floor.bsdf, floor.bsdf.view),
+                    .alpha = floor.bsdf.alpha};
       Mean known = estimate({world, *lights.tables}, floor, lobe);
       Mean unknown = estimate({world, *lights.tables}, floor, {});
       EXPECT_LE(std::abs(known.mean() - exact), significance_z * known.error() + 1e-5 * exact)
@@ -110,3 +100,6 @@ TEST(LightChoice, HighlightsAreFoundAndCountOnce) {
           << roughness << " " << metallic;
     }
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -8,13 +8,10 @@
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 vec3 random_place(Rng& rng, float size) {
   return {size * (rng.uniform() - 0.5f), size * (rng.uniform() - 0.5f),
@@ -32,8 +29,7 @@ std::vector<LightBounds> random_lights(int count, uint64_t seed, bool ranges = f
   Rng rng(seed);
   std::vector<LightBounds> lights;
   for (int i = 0; i < count; i++) {
-    LightBounds b;
-    b.low = random_place(rng, 10);
+    LightBounds b{.low = random_place(rng, 10)};
     b.high = b.low + 0.2f * vec3(rng.uniform(), rng.uniform(), rng.uniform());
     if (i % 3 == 0) b.high = b.low;
     b.axis = random_axis(rng);
@@ -60,8 +56,6 @@ bool reaches(const LightBounds& b, vec3 point, vec3 place, vec3 normal) {
   bool in_cone = angle < std::acos(b.cos_reach) - 0.01f;
   return in_cone && distance < b.range && (normal == vec3(0) || dot(line, normal) > 0.01f);
 }
-
-}  // namespace
 
 TEST(LightTree, PicksAreAsProbableAsItSaysAndAddUpToOne) {
   for (int count : {1, 2, 8, 9, 104, 3000}) {
@@ -209,8 +203,7 @@ TEST(LightTree, ManyLampsBehindAWallAreSampledWithoutBias) {
   for (int i = 0; i < 120; i++)
     add_quad(scene, lamp, {float(i % 12) - 6, 2.0f + 0.1f * float(i % 7), float(i / 12) - 5},
              {0.3f, 0, 0}, {0, 0, i % 3 ? 0.3f : -0.3f}, "lamp");
-  add_quad(scene, add_material(scene, diffuse(vec3(0))), {0.7f, 0, -9}, {0, 9, 0}, {0, 0, 18},
-           "wall");
+  add_quad(scene, diffuse(vec3(0)), {0.7f, 0, -9}, {0, 9, 0}, {0, 0, 18}, "wall");
   World world(scene);
   Lights tree = make_lights(world);
   ASSERT_GE(tree.tables->emitter_choice.nodes.size(), 240u / lane_count);
@@ -218,8 +211,7 @@ TEST(LightTree, ManyLampsBehindAWallAreSampledWithoutBias) {
   std::vector<float> power;
   for (const EmitterTriangle& e : plain->emitters) power.push_back(e.area);
   plain->emitter_choice = make_emitter_tree(plain->emitters, power, LightChoice::by_strength);
-  TransportSettings settings;
-  settings.max_depth = 2;
+  TransportSettings settings{.max_depth = 2};
   Ray ray = ray_towards({0, 1, 3}, {0.2f, 0, 0.3f});
   Mean by_place, by_power;
   for (uint64_t seed = 1; seed <= 40; seed++) {
@@ -232,3 +224,6 @@ TEST(LightTree, ManyLampsBehindAWallAreSampledWithoutBias) {
   EXPECT_LT(by_place.error(), 0.02 * by_place.mean());
   EXPECT_LT(by_place.error(), by_power.error()) << "half the samples do better";
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -5,13 +5,10 @@
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 Surface place_at(vec3 position, vec3 normal = {0, 1, 0}) {
   Surface s;
@@ -22,9 +19,7 @@ Surface place_at(vec3 position, vec3 normal = {0, 1, 0}) {
 
 // A picture of the sky: dim, with a bright patch and some colour.
 void add_sky(Scene& scene, int width, int height) {
-  Image image;
-  image.width = width;
-  image.height = height;
+  Image image{.width = width, .height = height};
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++) {
       bool sun = x > width / 2 && x < width * 3 / 4 && y > height / 8 && y < height / 3;
@@ -34,8 +29,6 @@ void add_sky(Scene& scene, int width, int height) {
   scene.images.push_back(std::move(image));
   scene.environment = {vec3(1), int(scene.images.size()) - 1};
 }
-
-}  // namespace
 
 TEST(AliasTable, PicksInProportion) {
   std::vector<float> weights = {1, 0, 5, 0.25f, 3, 0, 10, std::nanf(""), -4};
@@ -81,9 +74,7 @@ TEST(Lights, EmittersArePickedByPowerAndPlaceAndTheirDensitiesAgree) {
   for (int i = 0; i < total; i++) {
     LightSample light = sample_area_light({world, *lights.tables}, from, sampler);
     ASSERT_GT(light.pdf, 0);
-    Ray ray;
-    ray.origin = from.position;
-    ray.direction = light.direction;
+    Ray ray{.origin = from.position, .direction = light.direction};
     Hit hit = world.intersect(ray);
     ASSERT_TRUE(hit.valid());
     Surface met = eval_surface(world, ray, hit);
@@ -113,7 +104,7 @@ TEST(Lights, SingleSidedEmittersShineToTheirFrontOnly) {
     Scene scene = empty_scene();
     Material m = emitter(vec3(1));
     m.double_sided = double_sided;
-    add_quad(scene, add_material(scene, m), {0, 1, 0}, {1, 0, 0}, {0, 0, 1});  // faces down
+    add_quad(scene, m, {0, 1, 0}, {1, 0, 0}, {0, 0, 1});  // faces down
     World world(scene);
     Lights lights = make_lights(world);
     Sampler sampler(3);
@@ -167,9 +158,7 @@ TEST(Lights, SkyIsSampledByItsBrightness) {
 
 TEST(Lights, SkyPictureIsTheRightWayRound) {
   Scene scene = empty_scene();
-  Image image;
-  image.width = 4;
-  image.height = 2;
+  Image image{.width = 4, .height = 2};
   image.texels.assign(8, vec4(0));
   image.texels[2] = vec4(1, 0, 0, 1);  // upper half, the column right of the middle
   scene.images.push_back(image);
@@ -190,9 +179,9 @@ TEST(Lights, ManyPunctualLightsAreSampledWithoutBias) {
     double exact = 0;
     Surface from = place_at({0, 0, 0});
     for (int i = 0; i < count; i++) {
-      PunctualLight light;
-      light.position = {rng.uniform() * 6 - 3, 1 + rng.uniform(), rng.uniform() * 6 - 3};
-      light.intensity = vec3(rng.uniform() * 5);
+      PunctualLight light{
+          .position = {rng.uniform() * 6 - 3, 1 + rng.uniform(), rng.uniform() * 6 - 3},
+          .intensity = vec3(rng.uniform() * 5)};
       scene.lights.push_back(light);
       float d2 = dot(light.position, light.position);
       exact += double(light.intensity.x * light.position.y / (d2 * std::sqrt(d2)));
@@ -228,20 +217,14 @@ TEST(Lights, WhatCannotShineIsLeftOut) {
 // right.
 TEST(Lights, TexturedEmittersAreUnbiased) {
   Scene scene = make_plane_with_rect_light(1);
-  Image image;
-  image.width = image.height = 16;
+  Image image{.width = 16, .height = 16};
   for (int i = 0; i < 256; i++)
     image.texels.push_back(i % 16 < 4 ? vec4(8, 8, 8, 1) : vec4(0, 0, 0, 1));
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = 0;
-  scene.textures.push_back(texture);
-  scene.materials.back().emission_texture.texture = 0;
+  scene.materials.back().emission_texture.texture = add_texture(scene, image);
   World world(scene);
   Lights lights = make_lights(world);
   Ray ray = ray_towards({0.4f, 0.6f, 0}, {0.3f, 0, 0.1f});
-  TransportSettings direct;
-  direct.max_depth = 2;
+  TransportSettings direct{.max_depth = 2};
   Mean with_choice = trace_mean("path", world, lights, ray, 40000, direct);
   // Without any choice of emitters every bit of light is found by scattering.
   auto blind = std::make_shared<LightTables>(*lights.tables);
@@ -252,3 +235,6 @@ TEST(Lights, TexturedEmittersAreUnbiased) {
   expect_same_mean(with_choice, by_scattering, "textured emitter");
   EXPECT_GT(with_choice.mean(), 0.05);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -8,13 +8,10 @@
 #include "unit/light/technique/slabs.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 std::vector<int> listed(const MediumStack& stack) {
   return {stack.material, stack.material + stack.count};
@@ -31,8 +28,6 @@ Scene make_onion() {
   scene.environment.radiance = vec3(1);
   return scene;
 }
-
-}  // namespace
 
 TEST(Media, TheLatestOfAMaterialIsLeft) {
   MediumStack stack;
@@ -62,7 +57,7 @@ TEST(Media, APlaceKnowsWhatIsAroundIt) {
     EXPECT_EQ(listed(find_media(transport, {0, -9, 0})), (std::vector<int>{}));
   }
   Scene other = empty_scene();
-  add_mesh(other, sphere_mesh(add_material(other, tinted_glass(1.2f, 0.5)), 3), "alone");
+  add_sphere(other, tinted_glass(1.2f, 0.5), 3, "alone");
   World second(other);
   Lights tables = make_lights(second);
   EXPECT_EQ(listed(find_media({second, *tables.tables}, {0, -9, 0})), (std::vector<int>{}));
@@ -100,8 +95,8 @@ TEST(Media, EqualIndicesAreInvisible) {
   auto picture = [](bool nested) {
     Scene scene = empty_scene();
     for (int i = 0; i < 6; i++)  // stripes
-      add_quad(scene, add_material(scene, emitter(vec3(1 + float(i % 3)))), {-3 + float(i), -3, -2},
-               {1, 0, 0}, {0, 6, 0}, "backdrop");
+      add_quad(scene, emitter(vec3(1 + float(i % 3))), {-3 + float(i), -3, -2}, {1, 0, 0},
+               {0, 6, 0}, "backdrop");
     scene.environment.radiance = vec3(0.5f);
     int outer = add_material(scene, glass(1.5f, 0, 1)),
         inner = add_material(scene, glass(1.5f, 0, 1));
@@ -112,8 +107,7 @@ TEST(Media, EqualIndicesAreInvisible) {
   Scene with = picture(true), without = picture(false);
   Family family;
   const Technique& path = *find_technique("path");
-  TransportSettings deep;
-  deep.max_depth = 40;
+  TransportSettings deep{.max_depth = 40};
   auto estimate = [&](const Scene& scene, vec3 target, uint64_t seed) {
     World world(scene);
     View view = make_view_towards(scene, {0, 0.3, 0.5}, dvec3(target), {0, 1, 0}, 0.08f, 8, 8);
@@ -133,7 +127,7 @@ TEST(Media, LightPassesStacksAsTheEyeDoes) {
   add_slab(scene, glass, -0.5f, 0.5f);
   add_slab(scene, water, -0.2f, 0.3f, 1.5f);
   int dark = add_material(scene, emitter(vec3(1)));
-  for (float z : {-3.0f, 3.0f}) add_quad(scene, dark, {-9, -9, z}, {18, 0, 0}, {0, 18, 0});
+  for (float z : {-3.0f, 3.0f}) add_wall(scene, dark, z, 9, "quad");
   World world(scene);
   Lights lights = make_lights(world);
   Transport transport{world, *lights.tables};
@@ -180,3 +174,6 @@ TEST(Media, LightPassesStacksAsTheEyeDoes) {
   }
   expect_family(family, 0.15);
 }
+
+}  // namespace
+}  // namespace wellspring::test

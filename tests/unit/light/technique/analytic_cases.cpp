@@ -27,10 +27,7 @@ constexpr Claim claimed[] = {
 };
 
 PunctualLight point_light(vec3 position, float intensity) {
-  PunctualLight light;
-  light.position = position;
-  light.intensity = vec3(intensity);
-  return light;
+  return PunctualLight{.position = position, .intensity = vec3(intensity)};
 }
 
 // A floor of albedo 0.5 seen at `p`.
@@ -130,10 +127,9 @@ void add_points(std::vector<AnalyticCase>& cases) {
   light.range = 0.9f;
   cases.push_back({"point light out of range", make_plane_with_punctual(light), at_floor({0, 0, 0}),
                    0, punctual_light});
-  PunctualLight sun;
-  sun.type = PunctualType::directional;
-  sun.direction = normalize(vec3(1, -2, 0.5f));
-  sun.intensity = vec3(5);
+  PunctualLight sun{.type = PunctualType::directional,
+                    .direction = normalize(vec3(1, -2, 0.5f)),
+                    .intensity = vec3(5)};
   cases.push_back({"directional light", make_plane_with_punctual(sun), at_floor({0, 0, 0}),
                    albedo * over_pi * 5 * double(-sun.direction.y), punctual_light});
   PunctualLight spot = point_light({0, 2, 0}, 8);
@@ -176,9 +172,7 @@ void add_skies(std::vector<AnalyticCase>& cases) {
       {"uniform sky over a plane", scene, at_floor({0, 0, 0}), albedo * sky, sky_light});
   cases.push_back({"uniform sky", scene, ray_towards({0, 1, 0}, {1, 2, 0}), sky, seen_lights});
   // Bright in one quarter; the expected value by quadrature of the same picture.
-  Image image;
-  image.width = 32;
-  image.height = 16;
+  Image image{.width = 32, .height = 16};
   for (int i = 0; i < 32 * 16; i++)
     image.texels.push_back(vec4(i % 32 < 8 ? vec3(20) : vec3(0.1f), 1));
   scene.images.push_back(image);
@@ -208,8 +202,7 @@ void add_suns(std::vector<AnalyticCase>& cases) {
     for (float sky : {0.0f, 0.7f}) {
       Scene scene = empty_scene();
       add_floor(scene, float(albedo));
-      SunDisc sun;
-      sun.direction = normalize(vec3(1, 1.2f, 0.4f));
+      SunDisc sun{.direction = normalize(vec3(1, 1.2f, 0.4f))};
       double size = double(pi) * std::pow(std::sin(double(radius)), 2);
       sun.radiance = vec3(float(2 / size));
       sun.angular_radius = radius;

@@ -17,9 +17,7 @@ Ray at_ground(vec3 p) { return ray_towards(p + vec3(0.3f, 0.5f, 0.8f), p); }
 void add_panes(std::vector<AnalyticCase>& cases) {
   TransportSettings two;  // light that the panes mirror back at the floor is left out
   two.max_depth = 2;
-  PunctualLight point;
-  point.position = {0.5f, 2, 0};
-  point.intensity = vec3(6);
+  PunctualLight point{.position = {0.5f, 2, 0}, .intensity = vec3(6)};
   for (int count : {1, 3}) {
     Scene scene = make_plane_with_punctual(point);
     Material clear = glass(1.5f, 0, 0);
@@ -34,8 +32,7 @@ void add_panes(std::vector<AnalyticCase>& cases) {
                      punctual_light | panes, two});
   }
   Scene scene = make_plane_with_rect_light(10);
-  add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-5, 0.7f, 5}, {10, 0, 0}, {0, 0, -10},
-           "pane");
+  add_quad(scene, glass(1.5f, 0, 0), {-5, 0.7f, 5}, {10, 0, 0}, {0, 0, -10}, "pane");
   double irradiance = 0;  // quadrature over the lamp with each direction's own loss
   constexpr int n = 400;
   for (int i = 0; i < n; i++)
@@ -48,9 +45,9 @@ void add_panes(std::vector<AnalyticCase>& cases) {
                    area_light | panes, two, 512});
   // Seen straight through two panes with what lies in front mirrored in them.
   Scene vitrine = empty_scene();
-  add_quad(vitrine, add_material(vitrine, glass(1.5f, 0, 0)), {-5, -5, 0}, {10, 0, 0}, {0, 10, 0});
-  add_quad(vitrine, add_material(vitrine, emitter(vec3(3))), {-9, -9, -4}, {18, 0, 0}, {0, 18, 0});
-  add_quad(vitrine, add_material(vitrine, emitter(vec3(50))), {-9, 9, 4}, {18, 0, 0}, {0, -18, 0});
+  add_wall(vitrine, glass(1.5f, 0, 0), 0, 5, "quad");
+  add_wall(vitrine, emitter(vec3(3)), -4, 9, "quad");
+  add_quad(vitrine, emitter(vec3(50)), {-9, 9, 4}, {18, 0, 0}, {0, -18, 0});
   cases.push_back({"a pane's view and mirror image", vitrine, ray_towards({0, 0, 2}, {0, 0, 0}),
                    0.96 * 3 + 0.04 * 50, seen_lights | panes});
 }
@@ -62,10 +59,9 @@ void add_slabs(std::vector<AnalyticCase>& cases) {
     m.attenuation_color = vec3(0.4f);
     m.attenuation_distance = 0.25f;
     Scene scene = empty_scene();
-    add_mesh(scene, box_mesh(add_material(scene, m), {2, 2, 0.5f}), "slab");
+    add_box(scene, m, {2, 2, 0.5f}, "slab");
     scene.environment.radiance = vec3(1);
-    TransportSettings deep;
-    deep.max_depth = 100;
+    TransportSettings deep{.max_depth = 100};
     double r = std::pow((double(index) - 1) / (double(index) + 1), 2), a = 0.4 * 0.4;
     double through = (1 - r) * (1 - r) * a / (1 - r * r * a * a);
     double back = r + (1 - r) * (1 - r) * r * a * a / (1 - r * r * a * a);
@@ -100,10 +96,13 @@ void add_mirrors(std::vector<AnalyticCase>& cases) {
   double e =
       polygon_irradiance({0, 0, 0}, {0, 1, 0}, {{1, 3, 2}, {3, 3, 2}, {3, 3, -2}, {1, 3, -2}});
   // Its own back would hide what is nearer or further than this.
-  TransportSettings three;
-  three.max_depth = 3;
-  cases.push_back({"a lamp's image in a mirror", image, at_ground({0, 0, 0}), 9 * e * gray * by_pi,
-                   area_light | caustics, three, 2560});
+  cases.push_back({"a lamp's image in a mirror",
+                   image,
+                   at_ground({0, 0, 0}),
+                   9 * e * gray * by_pi,
+                   area_light | caustics,
+                   {.max_depth = 3},
+                   2560});
 }
 
 }  // namespace
@@ -132,8 +131,7 @@ std::vector<AnalyticCase> interreflection_cases() {
       }
       std::string name =
           (sphere ? "closed sphere of albedo " : "closed box of albedo ") + std::to_string(a);
-      TransportSettings settings;
-      settings.max_depth = 1000;
+      TransportSettings settings{.max_depth = 1000};
       cases.push_back({name, scene, ray, 1 / (1 - double(a)), interreflection | area_light,
                        settings,
                        a > 0.7f   ? 3072

@@ -22,15 +22,12 @@ struct Parts {
 };
 
 // A lamp of radiance 1 behind it all; everything else is dark.
-void add_backdrop(Scene& scene) {
-  add_quad(scene, add_material(scene, emitter(vec3(1))), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
-}
+void add_backdrop(Scene& scene) { add_wall(scene, emitter(vec3(1)), -3, 9, "quad"); }
 
 void add_case(std::vector<AnalyticCase>& cases, const std::string& name, Parts parts,
               const std::vector<Layer>& layers) {
   add_backdrop(parts.scene);
-  TransportSettings deep;
-  deep.max_depth = 100;
+  TransportSettings deep{.max_depth = 100};
   // Through the middle, where the triangles of all faces meet, and beside it.
   for (vec2 p : {vec2(0, 0), vec2(0.1f, 0.23f)})
     cases.push_back({"stacked slabs, " + name, parts.scene,
@@ -42,8 +39,7 @@ void add_case(std::vector<AnalyticCase>& cases, const std::string& name, Parts p
 void add_inner_eye(std::vector<AnalyticCase>& cases, const std::string& name, Parts parts,
                    double index, double kept, const std::vector<Layer>& around) {
   add_backdrop(parts.scene);
-  TransportSettings deep;
-  deep.max_depth = 100;
+  TransportSettings deep{.max_depth = 100};
   Slab side = see_through(index, around);
   double r = side.reflects * kept * kept, t = side.passes * kept;
   cases.push_back({"stacked slabs, eye within: " + name, parts.scene,

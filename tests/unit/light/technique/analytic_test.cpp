@@ -3,13 +3,10 @@
 #include "unit/light/technique/analytic_cases.h"
 #include "unit/light/judge.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 bool claims(const Technique& technique, const AnalyticCase& c) {
   const Claim* claim = find_claim(technique.name);
@@ -50,8 +47,7 @@ void judge_cases(const std::vector<AnalyticCase>& cases) {
         view.tan_half_fov = c.tan_half_fov;
         view.width = view.height = 16;
       }
-      Effort effort;
-      effort.spp = c.spp;
+      Effort effort{.spp = c.spp};
       // Pixels of a pass do not know of each other: what the eye chooses among is drawn at random,
       // and so is direct light where it is no point lights'.
       const bool by_itself = std::string_view(technique.name) == "multires_splatting";
@@ -69,8 +65,6 @@ void judge_cases(const std::vector<AnalyticCase>& cases) {
   }
   expect_family(family);
 }
-
-}  // namespace
 
 TEST(Analytic, EveryTechniqueSaysWhatItClaims) {
   for (const Technique& technique : techniques())
@@ -94,3 +88,6 @@ TEST(Analytic, DirectLeavesOutInterreflection) {
     EXPECT_LT(e.mean + 5 * e.error, c.expected) << c.name;
   }
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -6,12 +6,10 @@
 #include "light/technique/technique.h"
 #include "scenes/build.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 Material shining(vec3 color, bool double_sided) {
   Material m = diffuse(color);
@@ -27,7 +25,7 @@ Scene red_before_green() {
   const int red = add_material(scene, shining({1, 0, 0}, false));
   const int green = add_material(scene, shining({0, 1, 0}, false));
   add_quad(scene, red, {-1, -1, 0}, {0, 2, 0}, {2, 0, 0}, "red");
-  add_quad(scene, green, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, "green");
+  add_wall(scene, green, -1, 1, "green");
   return scene;
 }
 
@@ -35,15 +33,11 @@ vec3 look(const Technique& technique, const Scene& scene, dvec3 eye, dvec3 targe
   const World world(scene);
   Lights lights = make_lights(world);
   const View view = make_view_towards(scene, eye, target, {0, 1, 0}, 0.1f, 8, 8);
-  StillSettings settings;
-  settings.spp = 4;
-  const Frame frame = render_still(technique, world, lights, view, settings);
+  const Frame frame = render_still(technique, world, lights, view, {.spp = 4});
   vec3 sum(0);
   for (const vec3& color : frame.color) sum += color;
   return sum / float(frame.color.size());
 }
-
-}  // namespace
 
 TEST(BackFacesSeen, EveryTechniqueLooksThroughThem) {
   for (const Technique& technique : techniques()) {
@@ -60,7 +54,7 @@ TEST(BackFacesSeen, APaneBeforeThemChangesNothing) {
   for (const Technique& technique : techniques()) {
     Scene scene = red_before_green();
     const int pane = add_material(scene, glass(1.0f, 0, 0));
-    add_quad(scene, pane, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, "pane");
+    add_wall(scene, pane, 1, 1, "pane");
     const vec3 seen = look(technique, scene, {0, 0, 3}, {0, 0, 0});
     EXPECT_GT(seen.y, 0.9f) << technique.name;
     EXPECT_LT(seen.x, 0.01f) << technique.name;
@@ -76,3 +70,6 @@ TEST(BackFacesSeen, AMirrorShowsThem) {
   EXPECT_GT(seen.x, 0.9f);
   EXPECT_LT(seen.y, 0.01f);
 }
+
+}  // namespace
+}  // namespace wellspring::test

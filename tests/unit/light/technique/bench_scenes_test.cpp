@@ -8,12 +8,10 @@
 #include "scenes/scenes.h"
 #include "world/load/scene_load.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using enum wellspring::light::TransportPart;
-
+namespace wellspring::test {
 namespace {
+
+using enum light::TransportPart;
 
 Scene load(const std::string& name) {
   Scene scene =
@@ -34,8 +32,6 @@ std::vector<vec3> corners(const Scene& scene) {
             vec3(scene.origin));
   return all;
 }
-
-}  // namespace
 
 TEST(BenchScenes, TheCornellBoxIsTheOneInCode) {
   Scene file = load("cornell_box"), code = scenes::make_cornell_box();
@@ -80,3 +76,6 @@ TEST(BenchScenes, TheConferenceRoomHas104Lights) {
   }
   EXPECT_EQ(triangles, 2u * 104u);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -11,13 +11,10 @@
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 Material flint(float roughness) {
   Material m = glass(1.6f, roughness, 1);
@@ -33,8 +30,7 @@ Mesh prism_mesh(int material) {
     float z = end ? -half : half;
     p[0] = {-side, 0, z}, p[1] = {side, 0, z}, p[2] = {0, height, z};
   }
-  Mesh mesh;
-  mesh.material = material;
+  Mesh mesh{.material = material};
   for (int i = 0; i < 3; i++) {
     int k = (i + 1) % 3;
     append_quad(mesh, a[i], b[i] - a[i], a[k] - a[i]);
@@ -57,11 +53,9 @@ Scene make_prism_scene(Material prism, Material wall = diffuse(vec3(0.7f))) {
   Scene scene = empty_scene();
   int white = add_material(scene, diffuse(vec3(0.6f)));
   add_quad(scene, white, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, "floor");
-  add_quad(scene, add_material(scene, std::move(wall)), {0.9f, 0, 1}, {0, 0, -2}, {0, 1.4f, 0},
-           "wall");
+  add_quad(scene, std::move(wall), {0.9f, 0, 1}, {0, 0, -2}, {0, 1.4f, 0}, "wall");
   add_mesh(scene, prism_mesh(add_material(scene, std::move(prism))), "prism", at({0, 0.35f, 0}));
-  add_quad(scene, add_material(scene, emitter(vec3(6))), {-0.9f, 0.2f, 0.5f}, {0, 0, -1},
-           {-0.15f, 0.45f, 0}, "lamp");
+  add_quad(scene, emitter(vec3(6)), {-0.9f, 0.2f, 0.5f}, {0, 0, -1}, {-0.15f, 0.45f, 0}, "lamp");
   return scene;
 }
 
@@ -73,11 +67,10 @@ Colors estimate_colors(const char* name, const World& world, const Lights& light
   std::array<std::vector<double>, 6> replicates;
   for (auto& r : replicates) r.resize(size_t(effort.replicates));
   parallel_for(effort.replicates, [&](int i) {
-    StillSettings settings;
-    settings.spp = effort.spp;
-    settings.seed = mix64(effort.seed * 1000003 + uint64_t(i));
-    settings.transport = transport;
-    Frame frame = render_still(*find_technique(name), world, lights, view, settings);
+    Frame frame = render_still(*find_technique(name), world, lights, view,
+                               {.spp = effort.spp,
+                                .seed = mix64(effort.seed * 1000003 + uint64_t(i)),
+                                .transport = transport});
     for (int c = 0; c < 6; c++) {
       double sum = 0;
       for (size_t p = 0; p < frame.color.size(); p++) {
@@ -91,8 +84,6 @@ Colors estimate_colors(const char* name, const World& world, const Lights& light
   for (size_t c = 0; c < 6; c++) colors[c] = make_estimate(replicates[c]);
   return colors;
 }
-
-}  // namespace
 
 // The wall alone, with a spectrum on it; the prism before it, with what is seen through it; both
 // again in a mirror, and through rough glass. Photons only move light about, which between the
@@ -109,8 +100,7 @@ TEST(Dispersion, EveryTechniqueBringsTheSameColors) {
       {"in a mirror", make_prism_scene(flint(0), metal(vec3(0.9f), 0)), {0, 0.6, 1}, {0.9, 0.4, 0}},
       {"frosted", make_prism_scene(flint(0.6f)), {-0.3, 0.8, 1.2}, {0.2, 0.4, 0}},
   };
-  TransportSettings settings;
-  settings.max_depth = 6;
+  TransportSettings settings{.max_depth = 6};
   settings.instant.photons = 300;
   settings.instant.photon_radius = 0.02f;
   for (auto& c : cases) {
@@ -190,10 +180,9 @@ TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
   Material glass_of_prism = flint(0);
   Scene scene = make_prism_scene(glass_of_prism);
   scene.instances.pop_back();  // the lamp
-  PunctualLight sun;
-  sun.type = PunctualType::directional;
-  sun.direction = normalize(vec3(1, 0.35f, 0));
-  sun.intensity = vec3(3);
+  PunctualLight sun{.type = PunctualType::directional,
+                    .direction = normalize(vec3(1, 0.35f, 0)),
+                    .intensity = vec3(3)};
   scene.lights.push_back(sun);
   World world(scene);
   Lights lights = make_lights(world);
@@ -223,3 +212,6 @@ TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
   EXPECT_LT(sine.x + 0.02, sine.y);
   EXPECT_LT(sine.y + 0.02, sine.z);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -12,12 +12,10 @@
 #include "world/raster/raster.h"
 #include "world/surface.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 // A ball with ridges a fifth of a millimetre apart and faces as small, each with its own normal.
 Mesh find_mesh(int material) {
@@ -37,11 +35,9 @@ struct Survey {
     add_quad(scene, soil, middle + vec3(-wide, 0, wide), {2 * wide, 0, 0}, {0, 0, -2 * wide},
              "ground");
     add_mesh(scene, find_mesh(stone), "find", at(vec3(place) + vec3(0, 0.01f, 0)));
-    PunctualLight sun;
-    sun.type = PunctualType::directional;
-    sun.direction = normalize(vec3(-1, -1.2f, -0.4f));
-    sun.intensity = vec3(3);
-    scene.lights.push_back(sun);
+    scene.lights.push_back({.type = PunctualType::directional,
+                            .direction = normalize(vec3(-1, -1.2f, -0.4f)),
+                            .intensity = vec3(3)});
   }
   View view(int side) const {  // from about ten centimetres; exact in floats where it is
     return make_view_towards(scene, place + dvec3(0.015625, 0.0625, 0.078125),
@@ -67,13 +63,9 @@ Difference difference(const Frame& a, const Frame& b) {
 
 Frame render(const Survey& survey, const char* technique, int spp) {
   World world(survey.scene);
-  StillSettings settings;
-  settings.spp = spp;
   return render_still(*find_technique(technique), world, make_lights(world), survey.view(96),
-                      settings);
+                      {.spp = spp});
 }
-
-}  // namespace
 
 TEST(FarFinds, RaysMeetTheSameTrianglesWithTheSameNormals) {
   Survey far = far_find(), near = near_find();
@@ -146,16 +138,13 @@ TEST(FarFinds, NoPlaceShadowsItself) {
     float u = 2 * (float(i) + 0.5f) / 20000 - 1, turn = float(i) * 2.39996f;
     vec3 n(std::sqrt(1 - u * u) * std::cos(turn), u, std::sqrt(1 - u * u) * std::sin(turn));
     if (n.y < 0) continue;  // the ground is below
-    Ray ray;
-    ray.origin = middle + n * 0.05f;
-    ray.direction = -n;
+    Ray ray{.origin = middle + n * 0.05f, .direction = -n};
     Hit hit = world.intersect(ray);
     ASSERT_EQ(hit.instance, 1u);
     Surface s = eval_surface(world, ray, hit);
     vec3 side = normalize(cross(n, std::abs(n.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0)));
     for (float slant : {0.05f, 0.3f, 1.0f}) {
-      Ray leaving;
-      leaving.direction = normalize(slant * s.geometric_normal + (1 - slant) * side);
+      Ray leaving{.direction = normalize(slant * s.geometric_normal + (1 - slant) * side)};
       leaving.origin = offset_origin(s, leaving.direction);
       leaving.t_max = 0.005f;
       shadowed += world.occluded(leaving);
@@ -189,3 +178,6 @@ TEST(FarFinds, AreReadFromFilesAsFineAsTheyAre) {
       cross(find.positions[t.y] - find.positions[t.x], find.positions[t.z] - find.positions[t.x]));
   EXPECT_LT(glm::length(eval_face(world, 1, 1234) - wanted), 1e-3f);
 }
+
+}  // namespace
+}  // namespace wellspring::test

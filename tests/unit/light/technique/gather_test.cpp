@@ -9,7 +9,7 @@
 #include "light/technique/technique.h"
 #include "light/walk/known_light.h"
 #include "light/walk/walk.h"
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 
 namespace wellspring::test {
 namespace {
@@ -60,8 +60,7 @@ TEST(Gather, KeptLightIsWhatThePathTracerFinds) {
 TEST(Gather, AgreesWithPathInTheCornellBox) {
   Prepared p(scenes::make_cornell_box(), vec3(0, 0.27f, 0.3f));
   View view = scenes::cornell_view(p.scene, 48, 48);
-  StillSettings settings;
-  settings.spp = 64;
+  StillSettings settings{.spp = 64};
   dvec3 reference =
       mean_of(render_still(*find_technique("path"), p.world, p.lights, view, settings));
   dvec3 gathered =
@@ -75,17 +74,13 @@ TEST(Gather, AgreesWithPathInTheCornellBox) {
 TEST(Gather, HighlightsMetByChanceAreNoSparks) {
   Scene scene = scenes::make_cornell_box();
   scene.materials[3].emission = vec3(0);  // its lamp
-  PunctualLight lamp;
-  lamp.position = {0.1f, 0.5f, -0.1f};
-  lamp.intensity = vec3(0.2f);
-  scene.lights.push_back(lamp);
+  scene.lights.push_back({.position = {0.1f, 0.5f, -0.1f}, .intensity = vec3(0.2f)});
   int gold = scenes::add_material(scene, scenes::metal({1, 0.8f, 0.4f}, 0.15f));
   scenes::add_mesh(scene, scenes::sphere_mesh(gold, 0.07f), "ball",
                    scenes::at({0.1f, 0.3f, -0.1f}));
   Prepared p(std::move(scene), vec3(0, 0.27f, 0.3f));
   View view = scenes::cornell_view(p.scene, 24, 24);
-  StillSettings settings;
-  settings.spp = 2048;
+  StillSettings settings{.spp = 2048};
   Frame truth = render_still(*find_technique("path"), p.world, p.lights, view, settings);
   settings.seed = 2;
   settings.spp = 16;
@@ -107,26 +102,20 @@ TEST(Gather, HighlightsMetByChanceAreNoSparks) {
 }
 
 TEST(Gather, WhereNothingIsKnownItIsPathBitForBit) {
-  Scene scene = scenes::make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = scenes::LitWorld(scenes::make_cornell_box());
   View view = scenes::cornell_view(scene, 16, 16);
-  StillSettings settings;
-  settings.spp = 2;
+  StillSettings settings{.spp = 2};
   Frame a = render_still(*find_technique("path"), world, lights, view, settings);
   Frame b = render_still(*find_technique("gather"), world, lights, view, settings);
   EXPECT_EQ(a.color, b.color);
 }
 
 TEST(Gather, NoPlacesNoGeometryNoHarm) {
-  Scene scene = scenes::empty_scene();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = scenes::LitWorld(scenes::empty_scene());
   vec3 place(0);
   find_technique("gather")->prepare(world, {}, lights);
   find_technique("gather")->prepare(world, std::span(&place, 1), lights);
-  StillSettings settings;
-  settings.spp = 1;
+  StillSettings settings{.spp = 1};
   View view;
   Frame frame = render_still(*find_technique("gather"), world, lights, view, settings);
   EXPECT_EQ(frame.color[0], vec3(0));
@@ -172,8 +161,7 @@ TEST(Gather, AMirrorShowsKeptLightWithoutNoise) {
   scenes::add_quad(scene, mirror, {-0.2f, 0.1f, -0.3f}, {0.4f, 0, 0}, {0, 0.3f, 0}, "mirror");
   Prepared p(std::move(scene), vec3(0, 0.27f, 0.3f));
   const Transport transport{p.world, *p.lights.tables, p.lights.known.get()};
-  WalkRules rules;
-  rules.reads_maps = true;
+  WalkRules rules{.reads_maps = true};
   auto look = [&](uint64_t seed) {
     Request request;
     request.ray.origin = vec3(-0.2f, 0.25f, 0);

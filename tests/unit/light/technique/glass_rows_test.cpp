@@ -7,13 +7,10 @@
 #include "unit/light/statistics.h"
 #include "unit/light/technique/slabs.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 // Panes of clear glass, a centimetre thick, one behind the other towards -Z.
 void add_panes(Scene& scene, int count, float roughness = 0) {
@@ -29,11 +26,7 @@ Scene white_panes(int count, float roughness = 0) {
 }
 const Ray along = ray_towards({0.1f, 0.23f, 3}, {0.12f, 0.2f, 0});
 
-TransportSettings edges(int count) {
-  TransportSettings settings;
-  settings.max_depth = count;
-  return settings;
-}
+TransportSettings edges(int count) { return TransportSettings{.max_depth = count}; }
 
 // Returns a picture's mean by any technique, also by one that draws passes with lights of its own.
 Mean picture_mean(const Technique& technique, const Scene& scene, int max_depth) {
@@ -41,16 +34,12 @@ Mean picture_mean(const Technique& technique, const Scene& scene, int max_depth)
   Lights lights = make_lights(world);
   View view = make_view_towards(scene, {0.1, 0.23, 3}, {0.12, 0.2, 0}, {0, 1, 0}, 0.01f, 8, 8);
   if (technique.prepare) technique.prepare(world, std::span(&view.position, 1), lights);
-  StillSettings settings;
-  settings.spp = 24;
-  settings.transport = edges(max_depth);
+  StillSettings settings{.spp = 24, .transport = edges(max_depth)};
   Mean mean;
   for (vec3 c : render_still(technique, world, lights, view, settings).color)
     mean.add(double(luminance(c)));
   return mean;
 }
-
-}  // namespace
 
 TEST(GlassRows, ClearPanesInWhiteAreWhiteByEveryTechnique) {
   for (const Technique& technique : techniques())
@@ -76,7 +65,7 @@ TEST(GlassRows, ALampIsAsBrightAsTheStackLetsThrough) {
     for (int i = 0; i < 2 * count; i++) layers.push_back({i % 2 ? 1.0 : 1.5, 1});
     Scene scene = empty_scene();
     add_panes(scene, count);
-    add_quad(scene, add_material(scene, emitter(vec3(1))), {-3, -3, -9}, {6, 0, 0}, {0, 6, 0});
+    add_wall(scene, emitter(vec3(1)), -9, 3, "quad");
     World world(scene);
     for (const char* technique : {"path", "direct", "gather"})
       expect_mean(trace_mean(technique, world, make_lights(world), ahead, 8192, edges(6)),
@@ -112,7 +101,7 @@ TEST(GlassRows, GlassInsideGlassCountsNoEdgesEither) {
     add_slab(scene, clear, z - 0.1f, z + 0.1f, 4);
     for (double index : {1.5, 1.33, 1.5, 1.33, 1.5, 1.0}) layers.push_back({index, 1});
   }
-  add_quad(scene, add_material(scene, emitter(vec3(1))), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
+  add_wall(scene, emitter(vec3(1)), -3, 9, "quad");
   World world(scene);
   const Ray ahead = ray_towards({0.1f, 0.23f, 3}, {0.1f, 0.23f, 0});
   for (int depth : {1, 2, 6})
@@ -123,9 +112,12 @@ TEST(GlassRows, GlassInsideGlassCountsNoEdgesEither) {
 // Mirrors and matt walls are counted as before: two edges are direct light.
 TEST(GlassRows, WhatIsNoGlassIsCountedAsBefore) {
   Scene scene = make_furnace(0.5f);
-  add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 1)), vec3(0.5f)), "block");
+  add_box(scene, glass(1.5f, 0, 1), vec3(0.5f), "block");
   World world(scene);
   Ray past = ray_towards({0.9f, 0.8f, 0.9f}, {1, 0.8f, 0.8f});
   Mean mean = trace_mean("path", world, make_lights(world), past, 8192, edges(2));
   EXPECT_NEAR(mean.mean(), 1.5, 0.02);
 }
+
+}  // namespace
+}  // namespace wellspring::test

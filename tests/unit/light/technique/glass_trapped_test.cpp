@@ -6,34 +6,25 @@
 
 #include "light/walk/light_walk.h"
 #include "light/walk/walk.h"
+#include "scenes/lit_world.h"
 #include "unit/light/statistics.h"
 #include "unit/light/technique/slabs.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 // Slanting so towards all faces of a block of glass that it is totally reflected by each of them.
 const vec3 slanting = normalize(vec3(0.6f, 0.55f, -0.58f));
 
 Scene block_in_light(float keeps_per_metre) {
   Scene scene = empty_scene();
-  add_mesh(scene,
-           box_mesh(add_material(scene, tinted_glass(1.5f, double(keeps_per_metre))), vec3(1)),
-           "block");
+  add_box(scene, tinted_glass(1.5f, double(keeps_per_metre)), vec3(1), "block");
   scene.environment.radiance = vec3(1);
   return scene;
 }
-Ray inside_block() {
-  Ray ray;
-  ray.origin = {0.1f, -0.07f, 0.03f};
-  ray.direction = slanting;
-  return ray;
-}
+Ray inside_block() { return Ray{.origin = {0.1f, -0.07f, 0.03f}, .direction = slanting}; }
 
 struct Counted {
   uint64_t most = 0, all = 0;
@@ -45,9 +36,7 @@ Counted count_rays(const World& world, const Lights& lights, Ray ray, int sample
   Transport transport{world, *lights.tables};
   trace_sample(transport, rules, {ray});  // the media around the eye are found once
   for (int i = 0; i < samples; i++) {
-    Request request;
-    request.ray = ray;
-    request.seed = sample_seed(3, 0, 0, uint32_t(i));
+    Request request{.ray = ray, .seed = sample_seed(3, 0, 0, uint32_t(i))};
     const uint64_t before = rays_traced();
     counted.light.add(double(luminance(trace_sample(transport, rules, request).radiance())));
     const uint64_t rays = rays_traced() - before;
@@ -56,8 +45,6 @@ Counted count_rays(const World& world, const Lights& lights, Ray ray, int sample
   }
   return counted;
 }
-
-}  // namespace
 
 TEST(GlassTrapped, TotalReflectionEndsByRoulette) {
   Scene scene = block_in_light(1);
@@ -77,15 +64,11 @@ TEST(GlassTrapped, DarkGlassEndsSooner) {
 }
 
 TEST(GlassTrapped, LightFromALampEndsToo) {
-  Scene scene = block_in_light(1);
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(block_in_light(1));
   Transport transport{world, *lights.tables};
   for (uint32_t i = 0; i < 64; i++) {
     Sampler sampler(5, i);
-    LightWalk walk;
-    walk.ray = inside_block();
-    walk.flux = vec3(1);
+    LightWalk walk{.ray = inside_block(), .flux = vec3(1)};
     Arrival arrival;
     int steps = 0;
     while (arrive(transport, walk, arrival) &&
@@ -112,15 +95,12 @@ TEST(GlassTrapped, TwoHundredPanesEndAndStayWithinWhite) {
 }
 
 TEST(GlassTrapped, FaintestLightEndsAtOnceAndStaysFinite) {
-  Scene scene = block_in_light(1);
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(block_in_light(1));
   Transport transport{world, *lights.tables};
   for (float faint : {1e-30f, 1e-42f, 0x1p-149f}) {
     uint64_t before = rays_traced();
     for (uint32_t i = 0; i < 32; i++) {
-      Walk walk;
-      walk.ray = inside_block();
+      Walk walk{.ray = inside_block()};
       walk.ray.direction = {0, 0, -1};
       walk.throughput = vec3(faint);
       walk.glass = 20;  // has been through some
@@ -136,12 +116,10 @@ TEST(GlassTrapped, FaintestLightEndsAtOnceAndStaysFinite) {
 
 TEST(GlassTrapped, OnlyWhatMeetsGlassPays) {
   Scene bare = empty_scene();
-  add_quad(bare, add_material(bare, diffuse(vec3(0.6f))), {-4, -4, -2}, {8, 0, 0}, {0, 8, 0});
-  PunctualLight sun;
-  sun.type = PunctualType::directional;
-  sun.direction = normalize(vec3(-0.2f, -0.3f, -1));
-  sun.intensity = vec3(2);
-  bare.lights.push_back(sun);
+  add_wall(bare, diffuse(vec3(0.6f)), -2, 4, "quad");
+  bare.lights.push_back({.type = PunctualType::directional,
+                         .direction = normalize(vec3(-0.2f, -0.3f, -1)),
+                         .intensity = vec3(2)});
   Scene glazed = bare;
   int clear = add_material(glazed, glass(1.5f, 0, 0.01f));
   for (int i = 0; i < 6; i++)
@@ -150,9 +128,7 @@ TEST(GlassTrapped, OnlyWhatMeetsGlassPays) {
   Lights dark = make_lights(without), lights = make_lights(with);
   auto cost = [&](const World& world, const Lights& own, vec3 target, vec3& seen) {
     WalkRules rules;
-    Request request;
-    request.ray = ray_towards({target.x, 0, 3}, target);
-    request.seed = 11;
+    Request request{.ray = ray_towards({target.x, 0, 3}, target), .seed = 11};
     uint64_t before = rays_traced();
     seen = trace_sample({world, *own.tables}, rules, request).radiance();
     return rays_traced() - before;
@@ -163,3 +139,6 @@ TEST(GlassTrapped, OnlyWhatMeetsGlassPays) {
   EXPECT_GT(luminance(a), 0.1f);
   EXPECT_GT(cost(with, lights, {-3, 0.1f, -2}, b), cost(without, dark, {-3, 0.1f, -2}, a));
 }
+
+}  // namespace
+}  // namespace wellspring::test

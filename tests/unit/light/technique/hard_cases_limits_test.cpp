@@ -5,16 +5,13 @@
 #include <limits>
 
 #include "unit/light/judge.h"
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 constexpr float denormal = 1e-40f;
 
@@ -22,8 +19,7 @@ constexpr float denormal = 1e-40f;
 void expect_light(const Scene& scene, const View& view, const char* what) {
   World world(scene);
   const Lights lights = make_lights(world);
-  StillSettings settings;
-  settings.spp = 4;
+  StillSettings settings{.spp = 4};
   for (const Technique& technique : techniques()) {
     Lights own = lights;
     if (technique.prepare) technique.prepare(world, std::span(&view.position, 1), own);
@@ -34,18 +30,15 @@ void expect_light(const Scene& scene, const View& view, const char* what) {
   EXPECT_EQ(lights.bad_samples->load(), 0u) << what;
 }
 
-}  // namespace
-
 // Every technique drops what is no light, shows black in its place and counts it.
 TEST(HardCases, EveryTechniqueCountsWhatItDrops) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   for (vec3 radiance : {vec3(infinity, 1, 1), vec3(std::nanf(""), 1, 1), vec3(1, -1, 1)}) {
     Scene scene = empty_scene();
-    add_quad(scene, add_material(scene, emitter(radiance)), {-9, -9, 0}, {18, 0, 0}, {0, 18, 0});
+    add_wall(scene, emitter(radiance), 0, 9, "quad");
     World world(scene);
     View view = make_view_towards(scene, {0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 1.0f, 8, 8);
-    StillSettings settings;
-    settings.spp = 3;
+    StillSettings settings{.spp = 3};
     for (const Technique& technique : techniques()) {
       Lights lights = make_lights(world);
       Frame frame = render_still(technique, world, lights, view, settings);
@@ -57,10 +50,8 @@ TEST(HardCases, EveryTechniqueCountsWhatItDrops) {
 
 TEST(HardCases, OrdinaryScenesDropNothing) {
   Scene scene = make_cornell_box();
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0.2f, 1)), 0.08f, 16), "glass",
-           at({0.1f, 0.3f, -0.1f}));
-  add_mesh(scene, sphere_mesh(add_material(scene, metal(vec3(0.9f), 0.1f)), 0.08f, 16), "metal",
-           at({-0.1f, 0.45f, -0.1f}));
+  add_sphere(scene, glass(1.5f, 0.2f, 1), 0.08f, "glass", at({0.1f, 0.3f, -0.1f}), 16);
+  add_sphere(scene, metal(vec3(0.9f), 0.1f), 0.08f, "metal", at({-0.1f, 0.45f, -0.1f}), 16);
   expect_light(scene, cornell_view(scene, 48, 48), "ordinary");
 }
 
@@ -71,11 +62,8 @@ TEST(HardCases, NumbersThatAreNearlyNothing) {
   int lamp = add_material(scene, emitter(vec3(5)));
   add_quad(scene, lamp, {0.1f, 0.2f, 0}, {denormal, 0, 0}, {0, 0.1f, 0}, "thin");
   add_quad(scene, lamp, {0.1f, 0.3f, 0}, {1e-20f, 0, 0}, {0, 1e-20f, 0}, "small");
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, denormal)), 1e-18f, 8), "dust",
-           at({0, 0.3f, 0}));
-  PunctualLight light;
-  light.position = {0, 0.4f, 0};
-  light.intensity = vec3(denormal);
+  add_sphere(scene, glass(1.5f, 0, denormal), 1e-18f, "dust", at({0, 0.3f, 0}), 8);
+  PunctualLight light{.position = {0, 0.4f, 0}, .intensity = vec3(denormal)};
   scene.lights.push_back(light);
   light.range = denormal;
   light.intensity = vec3(1);
@@ -91,9 +79,7 @@ TEST(HardCases, NumbersThatAreNearlyNothing) {
 
 // A single pixel is the mean of the picture that covers the same angle.
 TEST(HardCases, PictureOfOnePixel) {
-  Scene scene = make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_cornell_box());
   View many = cornell_view(scene, 16, 16), one = cornell_view(scene, 1, 1);
   expect_light(scene, one, "one pixel");
   Family family;
@@ -110,8 +96,7 @@ TEST(HardCases, PictureOfOnePixel) {
 TEST(HardCases, ThousandsOfInstances) {
   Scene whole = make_plane_with_rect_light(10), tiled = whole;
   tiled.instances.erase(tiled.instances.begin());
-  Mesh tile;
-  tile.material = whole.meshes[0].material;
+  Mesh tile{.material = whole.meshes[0].material};
   append_quad(tile, {0, 0, 0.4f}, {0.4f, 0, 0}, {0, 0, -0.4f});
   tiled.meshes.push_back(tile);
   for (int i = 0; i < 100; i++)
@@ -136,9 +121,11 @@ TEST(HardCases, AMillionSamplesDoNotDrift) {
   Scene scene = empty_scene();
   scene.environment.radiance = {0.1f, 0.3f, 1000.1f};
   World world(scene);
-  StillSettings settings;
-  settings.spp = 1000000;
+  StillSettings settings{.spp = 1000000};
   View view = make_view_towards(scene, {0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 1, 1, 1);
   Frame frame = render_still(*find_technique("path"), world, make_lights(world), view, settings);
   EXPECT_EQ(frame.color[0], scene.environment.radiance);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -9,18 +9,16 @@
 #include <nlohmann/json.hpp>
 
 #include "unit/light/judge.h"
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 #include "unit/light/statistics.h"
 #include "world/load/scene_load.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-using nlohmann::json;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
+
+using nlohmann::json;
 
 // The benchmark's Cornell box under one more node that scales and moves all of it.
 Scene load_moved_box(double scale, dvec3 place) {
@@ -64,9 +62,7 @@ std::vector<Estimate> estimate_tiles(const Technique& technique, const Scene& sc
   int tiles = across * across, side = view.width / across;
   std::vector<std::vector<double>> sums(size_t(tiles), std::vector<double>(replicates, 0));
   parallel_for(replicates, [&](int r) {
-    StillSettings settings;
-    settings.spp = spp;
-    settings.seed = mix64(seed + uint64_t(r));
+    StillSettings settings{.spp = spp, .seed = mix64(seed + uint64_t(r))};
     settings.transport.max_depth = 4;
     Frame frame = render_still(technique, world, lights, view, settings);
     for (int y = 0; y < view.height; y++)
@@ -97,8 +93,6 @@ void expect_same_pictures(const Scene& a, const View& view_a, const Scene& b, co
   expect_family(family, 0.6);  // a rough check of each tile, the dark and noisy ones too
 }
 
-}  // namespace
-
 TEST(HardCases, MovedAThousandKilometres) {
   Scene here = load_moved_box(1, {0, 0, 0}), there = load_moved_box(1, {1e6, -1e6, 1e6});
   EXPECT_GT(length(there.origin), 1e6);
@@ -126,8 +120,7 @@ TEST(HardCases, WallsOfSlivers) {
   for (Mesh& mesh : cut.meshes) {
     if (mesh.triangles.size() != 2) continue;
     vec3 a = mesh.positions[0], u = mesh.positions[1] - a, v = mesh.positions[3] - a;
-    Mesh slivers;
-    slivers.material = mesh.material;
+    Mesh slivers{.material = mesh.material};
     for (int i = 0; i < 40; i++) {
       float t0 = float(i) / 40, t1 = i % 2 ? float(i + 1) / 40 : t0 + 1e-6f, t2 = float(i + 1) / 40;
       append_quad(slivers, a + t0 * u, (t1 - t0) * u, v);
@@ -146,19 +139,14 @@ TEST(HardCases, WallsOfSlivers) {
 // formula.
 TEST(HardCases, GrazingLight) {
   Family family;
-  PunctualLight low;
-  low.position = {1, 1e-4f, 0};
-  low.intensity = vec3(1000);
-  PunctualLight sun;
-  sun.type = PunctualType::directional;
-  sun.direction = normalize(vec3(1, -3e-4f, 0));
-  sun.intensity = vec3(1000);
+  PunctualLight low{.position = {1, 1e-4f, 0}, .intensity = vec3(1000)};
+  PunctualLight sun{.type = PunctualType::directional,
+                    .direction = normalize(vec3(1, -3e-4f, 0)),
+                    .intensity = vec3(1000)};
   for (const auto& [light, expected] :
        {std::pair(low, 0.5 / double(pi) * 1000 * 1e-4 / std::pow(1 + 1e-8, 1.5)),
         std::pair(sun, 0.5 / double(pi) * 1000 * double(-sun.direction.y))}) {
-    Scene scene = make_plane_with_punctual(light);
-    World world(scene);
-    Lights lights = make_lights(world);
+    auto [scene, world, lights] = LitWorld(make_plane_with_punctual(light));
     for (const Technique& technique : techniques())
       family.add(std::string(technique.name) + ", grazing",
                  estimate_radiance(technique, world, lights,
@@ -168,3 +156,6 @@ TEST(HardCases, GrazingLight) {
   }
   expect_family(family);
 }
+
+}  // namespace
+}  // namespace wellspring::test

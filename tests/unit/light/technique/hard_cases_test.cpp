@@ -3,16 +3,13 @@
 // known.
 #include <limits>
 
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN(),
                 infinity = std::numeric_limits<float>::infinity();
@@ -21,8 +18,7 @@ constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN(),
 void expect_clean(const Scene& scene, const View& view, const char* what) {
   World world(scene);
   Lights lights = make_lights(world);
-  StillSettings settings;
-  settings.spp = 4;
+  StillSettings settings{.spp = 4};
   for (const Technique& technique : techniques()) {
     Frame frame = render_still(technique, world, lights, view, settings);
     for (vec3 c : frame.color)
@@ -33,8 +29,6 @@ void expect_clean(const Scene& scene, const View& view, const char* what) {
 
 View small_view(const Scene& scene) { return cornell_view(scene, 24, 24); }
 
-}  // namespace
-
 TEST(HardCases, LightsWithoutAreaOrPower) {
   Scene scene = make_cornell_box();
   int lamp = add_material(scene, emitter(vec3(5))), dark = add_material(scene, emitter(vec3(0)));
@@ -42,22 +36,18 @@ TEST(HardCases, LightsWithoutAreaOrPower) {
   add_quad(scene, lamp, {0, 0.2f, 0}, {0, 0, 0}, {0, 0, 0}, "dot");
   add_quad(scene, lamp, {0, 0.2f, -0.2f}, {0.1f, 0, 0}, {0, 0, 1e-9f}, "sliver");
   add_quad(scene, dark, {0, 0.3f, -0.2f}, {0.1f, 0, 0}, {0, 0, 0.1f}, "dark");
-  PunctualLight off;
-  off.intensity = vec3(0);
-  scene.lights.push_back(off);
+  scene.lights.push_back({.intensity = vec3(0)});
   expect_clean(scene, small_view(scene), "lights without area or power");
 }
 
 TEST(HardCases, PointLightOnTheSurfaceItself) {
-  PunctualLight light;
-  light.position = {0, 0, 0};
+  PunctualLight light{.position = {0, 0, 0}};
   Scene scene = make_plane_with_punctual(light);
   expect_clean(scene, make_view_towards(scene, {0, 1, 0.01}, {0, 0, 0}, {0, 0, -1}, 0.01f, 9, 9),
                "touching light");
   World world(scene);
   Lights lights = make_lights(world);
-  Request request;
-  request.ray = ray_towards({0, 1, 0}, {0, 0, 0});
+  Request request{.ray = ray_towards({0, 1, 0}, {0, 0, 0})};
   EXPECT_TRUE(is_finite(find_technique("path")->trace(world, lights, {}, request).radiance()));
 }
 
@@ -69,16 +59,14 @@ TEST(HardCases, EveryRoughnessAndIndex) {
           Scene scene = make_cornell_box();
           Material m = glass(ior, roughness, thickness);
           m.metallic = metallic;
-          add_mesh(scene, sphere_mesh(add_material(scene, m), 0.1f, 12), "ball",
-                   at({0, 0.3f, -0.1f}));
+          add_sphere(scene, m, 0.1f, "ball", at({0, 0.3f, -0.1f}), 12);
           expect_clean(scene, cornell_view(scene, 12, 12), "roughness and index");
         }
 }
 
 TEST(HardCases, CameraOnAWallAndInsideGlass) {
   Scene scene = make_cornell_box();
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.2f), "ball",
-           at({0, 0.3f, 0.8f}));
+  add_sphere(scene, glass(1.5f, 0, 1), 0.2f, "ball", at({0, 0.3f, 0.8f}));
   expect_clean(scene, small_view(scene), "eye inside glass");
   expect_clean(scene, make_view_towards(scene, {0, 0.2, -0.56}, {0, 0.2, 0}, {0, 1, 0}, 1, 16, 16),
                "eye on a wall");
@@ -89,18 +77,15 @@ TEST(HardCases, CameraOnAWallAndInsideGlass) {
 
 TEST(HardCases, TexelsThatAreNoNumbers) {
   Scene scene = make_cornell_box();
-  Image image;
-  image.width = image.height = 2;
-  image.texels = {vec4(not_a_number), vec4(infinity), vec4(-infinity), vec4(0.5f)};
-  scene.images.push_back(image);
-  Texture texture;
-  texture.image = 0;
-  scene.textures.push_back(texture);
+  Image image{.width = 2,
+              .height = 2,
+              .texels = {vec4(not_a_number), vec4(infinity), vec4(-infinity), vec4(0.5f)}};
+  int texture = add_texture(scene, image);
   for (Material& m : scene.materials) {
-    m.base_color_texture.texture = 0;
-    m.metallic_roughness_texture.texture = 0;
-    m.normal_texture.texture = 0;
-    m.emission_texture.texture = 0;
+    m.base_color_texture.texture = texture;
+    m.metallic_roughness_texture.texture = texture;
+    m.normal_texture.texture = texture;
+    m.emission_texture.texture = texture;
   }
   scene.environment = {vec3(1), 0};
   expect_clean(scene, small_view(scene), "texels");
@@ -117,8 +102,8 @@ TEST(HardCases, LampInTheCeilingPlane) {
 TEST(HardCases, LampInsideALens) {
   Scene scene = empty_scene();
   add_floor(scene, 0.5f);
-  add_mesh(scene, sphere_mesh(add_material(scene, emitter(vec3(5))), 0.1f), "lamp", at({0, 1, 0}));
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.2f), "lens", at({0, 1, 0}));
+  add_sphere(scene, emitter(vec3(5)), 0.1f, "lamp", at({0, 1, 0}));
+  add_sphere(scene, glass(1.5f, 0, 1), 0.2f, "lens", at({0, 1, 0}));
   expect_clean(scene, make_view_towards(scene, {0, 1, 2}, {0, 0.7, 0}, {0, 1, 0}, 1, 20, 20),
                "lamp in a lens");
   World world(scene);
@@ -148,9 +133,7 @@ TEST(HardCases, ManyPanesInARow) {
 }
 
 TEST(HardCases, RaysThatAreNoRays) {
-  Scene scene = make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_cornell_box());
   for (vec3 direction : {vec3(0), vec3(not_a_number), vec3(infinity, 0, 0)})
     for (vec3 origin : {vec3(0, 0.2f, 0.8f), vec3(not_a_number), vec3(1e17f)})
       for (const Technique& technique : techniques()) {
@@ -165,3 +148,6 @@ TEST(HardCases, EmptyScene) {
   Scene scene = empty_scene();
   expect_clean(scene, make_view_towards(scene, {0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 1, 4, 4), "empty");
 }
+
+}  // namespace
+}  // namespace wellspring::test

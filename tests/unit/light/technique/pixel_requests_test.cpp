@@ -6,10 +6,7 @@
 #include <cstring>
 #include <vector>
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 View slanted_view() {
@@ -66,3 +63,4 @@ TEST(PixelRequests, LieInTheirPixelsEverywhere) {
 }
 
 }  // namespace
+}  // namespace wellspring::test

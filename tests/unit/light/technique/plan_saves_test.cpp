@@ -12,14 +12,11 @@
 #include "light/sample/light_tables.h"
 #include "scenes/scenes.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-using enum wellspring::light::TransportPart;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
+using enum light::TransportPart;
 
 // Memory of what was built for sampling lights.
 size_t light_table_bytes(const LightTables& t) {
@@ -48,9 +45,7 @@ struct BothWays {
     return make_view_towards(scene, {0.1, 0.5, 0.9}, {0, 0.25, 0}, {0, 1, 0}, 1.0f, width, height);
   }
   Frame render(const Lights& lights, const char* technique = "path") const {
-    StillSettings settings;
-    settings.spp = 4;
-    return render_still(*find_technique(technique), world, lights, view(24, 16), settings);
+    return render_still(*find_technique(technique), world, lights, view(24, 16), {.spp = 4});
   }
   void expect_same_bits() const {
     for (const char* technique : {"path", "direct"}) {
@@ -75,18 +70,7 @@ struct BothWays {
 };
 
 Image picture_of(std::vector<vec4> texels, int width) {
-  Image image;
-  image.width = width;
-  image.height = int(texels.size()) / width;
-  image.texels = std::move(texels);
-  return image;
-}
-int add_texture(Scene& scene, Image image) {
-  scene.images.push_back(std::move(image));
-  Texture texture;
-  texture.image = int(scene.images.size()) - 1;
-  scene.textures.push_back(texture);
-  return int(scene.textures.size()) - 1;
+  return Image{.width = width, .height = int(texels.size()) / width, .texels = std::move(texels)};
 }
 
 // Floor, lamp, and a ball and a screen in front of it of one material.
@@ -97,8 +81,6 @@ Scene scene_with(const Material& material) {
   add_quad(scene, m, {-0.5f, 0, 0.1f}, {0.4f, 0, 0}, {0, 0.5f, 0}, "screen");
   return scene;
 }
-
-}  // namespace
 
 TEST(PlanSaves, ShadowRaysThatOnlyAskWhetherAnythingIsBetween) {
   Scene scene = scene_with(glass(1.5f, 0.5f, 0));  // thin and rough: declared, but no pane
@@ -174,7 +156,7 @@ TEST(PlanSaves, TablesOfEmittersThatLightNobody) {
   Scene scene = empty_scene();
   Material scan = diffuse({0.7f, 0.6f, 0.5f});
   scan.unlit = true;
-  add_mesh(scene, sphere_mesh(add_material(scene, scan), 0.4f, 32), "scan");
+  add_sphere(scene, scan, 0.4f, "scan", mat4(1), 32);
   BothWays both(scene, area_lights);
   EXPECT_TRUE(both.planned.tables->emitters.empty());
   EXPECT_EQ(both.forced.tables->emitters.size(), both.scene.meshes[0].triangles.size());
@@ -217,7 +199,7 @@ TEST(PlanSaves, ASkyThatIsBlack) {
 TEST(PlanSaves, LightThatNothingKeeps) {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(1);
-  add_mesh(scene, sphere_mesh(add_material(scene, metal({0.9f, 0.8f, 0.7f}, 0)), 0.3f, 12), "ball");
+  add_sphere(scene, metal({0.9f, 0.8f, 0.7f}, 0), 0.3f, "ball", mat4(1), 12);
   add_quad(scene, 1, {-2, -0.3f, 2}, {4, 0, 0}, {0, 0, -4}, "mirror floor");
   BothWays both(scene, kept_light);
   const Technique& gather = *find_technique("gather");
@@ -271,3 +253,6 @@ TEST(PlanSaves, TheWholeFullPlan) {
                     estimate_radiance(*find_technique(name), world, full, view, {}, {48, 64, 9}));
   expect_family(family, 0.02);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -13,12 +13,10 @@
 #include "image/image.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-namespace fs = std::filesystem;
-
+namespace wellspring::test {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Answer {
   int status;
@@ -57,8 +55,6 @@ struct RenderProgram : testing::Test {
     return answer;
   }
 };
-
-}  // namespace
 
 TEST_F(RenderProgram, ListsTechniques) {
   Answer answer = run("--list-techniques");
@@ -247,3 +243,6 @@ TEST_F(RenderProgram, WrongInputIsStatus1AndNamed) {
         << "the file is named: " << answer.text;
   }
 }
+
+}  // namespace
+}  // namespace wellspring::test

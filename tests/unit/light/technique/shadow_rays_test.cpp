@@ -7,10 +7,7 @@
 #include "light/sample/lights.h"
 #include "light/sample/sample_light.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 // A square of so many cells a side in the plane z, a metre around the axis.
@@ -44,10 +41,7 @@ Scene row_of_panes(int panes, int cells = 1) {
   for (int i = 1; i <= panes; i++) scene.meshes.push_back(grid(float(i), cells));
   scene.instances.resize(size_t(panes));
   for (int i = 0; i < panes; i++) scene.instances[size_t(i)].mesh = i;
-  PunctualLight light;
-  light.position = {0.1f, 0.2f, float(panes) + 1};
-  light.intensity = vec3(1);
-  scene.lights.push_back(light);
+  scene.lights.push_back({.position = {0.1f, 0.2f, float(panes) + 1}, .intensity = vec3(1)});
   return scene;
 }
 
@@ -58,11 +52,7 @@ void add_plate(Scene& scene, float z) {
 }
 
 SurfacePlace floor_place() {
-  SurfacePlace place;
-  place.position = {0.13f, 0.17f, 0};
-  place.geometric_normal = {0, 0, 1};
-  place.extent = 1;
-  return place;
+  return SurfacePlace{.position = {0.13f, 0.17f, 0}, .geometric_normal = {0, 0, 1}, .extent = 1};
 }
 
 vec3 visibility(const World& world) {
@@ -78,9 +68,8 @@ vec3 visibility(const World& world) {
 // Computes the light by Fresnel's formulas and the tint alone.
 vec3 expected(const World& world, int panes) {
   SurfacePlace from = floor_place();
-  Ray ray;
-  ray.origin = from.position;
-  ray.direction = normalize(world.scene().lights[0].position - from.position);
+  Ray ray{.origin = from.position,
+          .direction = normalize(world.scene().lights[0].position - from.position)};
   Surface pane = eval_surface(world, ray, world.intersect(ray));
   vec3 once = pane_transmittance(pane, world.scene().materials[0], ray.direction), all(1);
   for (int i = 0; i < panes; i++) all *= once;
@@ -90,8 +79,6 @@ vec3 expected(const World& world, int panes) {
 void expect_near(vec3 a, vec3 b) {
   for (int i = 0; i < 3; i++) EXPECT_NEAR(a[i], b[i], 1e-4f * b[i]);
 }
-
-}  // namespace
 
 TEST(Visibility, EveryPaneTintsOnce) {
   // More than PanesPassed holds, too; finely divided ones, whose tree splits triangles.
@@ -145,9 +132,8 @@ TEST(Visibility, SplitTrianglesAreToldOnce) {
     vec3 along = 40.0f * vec3(std::cos(angle), std::sin(angle), 0);
     vec3 across = 0.3f * vec3(-std::sin(angle), std::cos(angle), 0);
     vec3 middle(0.12f, 0.18f, 1 + 0.01f * float(i));
-    Mesh mesh;
-    mesh.positions = {middle - along - across, middle + along - across, middle + along + across,
-                      middle - along + across};
+    Mesh mesh{.positions = {middle - along - across, middle + along - across,
+                            middle + along + across, middle - along + across}};
     mesh.normals.assign(4, vec3(0, 0, 1));
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     scene.instances.emplace_back().mesh = i;
@@ -155,10 +141,8 @@ TEST(Visibility, SplitTrianglesAreToldOnce) {
   }
   World world(scene);
   SurfacePlace from = floor_place();
-  Ray ray;
-  ray.origin = from.position;
-  ray.direction = scene.lights[0].position - from.position;
-  ray.t_max = 1;
+  Ray ray{
+      .origin = from.position, .direction = scene.lights[0].position - from.position, .t_max = 1};
   PanesPassed panes;
   EXPECT_FALSE(world.occluded(ray, panes));
   EXPECT_FALSE(panes.more);
@@ -166,3 +150,6 @@ TEST(Visibility, SplitTrianglesAreToldOnce) {
   EXPECT_TRUE(world.occluded(ray));  // to those who do not ask, glass is opaque
   expect_near(visibility(world), expected(world, count));
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -6,23 +6,20 @@
 #include "unit/light/statistics.h"
 #include "world/surface.h"
 
-using namespace wellspring;
+namespace wellspring::test {
+namespace {
 
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
+using namespace scenes;
 
 TEST(Strategies, GlassSlabInUniformLightIsInvisible) {
   for (float roughness : {0.0f, 0.5f}) {
     Scene scene = empty_scene();
-    add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, roughness, 1)), vec3(2)), "cube");
+    add_box(scene, glass(1.5f, roughness, 1), vec3(2), "cube");
     scene.environment.radiance = vec3(1);
     World world(scene);
     Lights lights = make_lights(world);
-    TransportSettings settings;
-    settings.max_depth = 500;
-    Mean mean =
-        trace_mean("path", world, lights, ray_towards({0.5f, 0.4f, 3}, {0, 0, 0}), 60000, settings);
+    Mean mean = trace_mean("path", world, lights, ray_towards({0.5f, 0.4f, 3}, {0, 0, 0}), 60000,
+                           {.max_depth = 500});
     EXPECT_NEAR(mean.mean(), 1, 0.01 + 4 * mean.error()) << roughness;
     EXPECT_LT(mean.error(), 0.02) << roughness;
   }
@@ -32,16 +29,12 @@ TEST(Strategies, UnlitShowsItsBaseColor) {
   Scene scene = empty_scene();
   Material m = diffuse({0.2f, 0.4f, 0.6f});
   m.unlit = true;
-  add_quad(scene, add_material(scene, m), {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
-  PunctualLight point;
-  point.position = {0, 0, 1};
-  point.intensity = vec3(100);
-  scene.lights.push_back(point);
+  add_wall(scene, m, 0, 1, "quad");
+  scene.lights.push_back({.position = {0, 0, 1}, .intensity = vec3(100)});
   World world(scene);
   Lights lights = make_lights(world);
   for (const Technique& technique : techniques()) {
-    Request request;
-    request.ray = ray_towards({0, 0, 2}, {0, 0, 0});
+    Request request{.ray = ray_towards({0, 0, 2}, {0, 0, 0})};
     vec3 c = technique.trace(world, lights, {}, request).radiance();
     EXPECT_LT(length(c - vec3(0.2f, 0.4f, 0.6f)), 1e-6f) << technique.name;
   }
@@ -56,8 +49,7 @@ TEST(Strategies, StrategiesAgree) {
     World world(scene);
     Lights lights = make_lights(world);
     Ray ray = ray_towards({0.2f, 0.4f, 0.9f}, {0.2f, 0, 0});
-    TransportSettings settings;
-    settings.max_depth = 2;
+    TransportSettings settings{.max_depth = 2};
     Mean combined = trace_mean("path", world, lights, ray, 60000, settings);
     auto blind = std::make_shared<LightTables>(*lights.tables);
     blind->emitter_choice = {};
@@ -86,3 +78,6 @@ TEST(Strategies, StrategiesAgree) {
         << "combining is no worse than the better of both";
   }
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -4,28 +4,22 @@
 #include <cstring>
 #include <oneapi/tbb/global_control.h>
 
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 #include "unit/light/statistics.h"
 #include "world/surface.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 // A hall in small: floor with a gloss, a mirror ball, a glass ball, a pane, a lamp and a spot.
 Scene make_mixed_scene() {
   Scene scene = make_cornell_box();
   scene.meshes[0].material = add_material(scene, plastic({0.6f, 0.5f, 0.4f}, 0.1f));
-  add_mesh(scene, sphere_mesh(add_material(scene, metal({0.9f, 0.8f, 0.6f}, 0)), 0.06f),
-           "mirror ball", at({0.09f, 0.23f, -0.17f}));
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.06f), "glass ball",
-           at({0.15f, 0.06f, -0.02f}));
-  add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-0.28f, 0, -0.1f}, {0.2f, 0, 0},
-           {0, 0.4f, 0}, "pane");
+  add_sphere(scene, metal({0.9f, 0.8f, 0.6f}, 0), 0.06f, "mirror ball", at({0.09f, 0.23f, -0.17f}));
+  add_sphere(scene, glass(1.5f, 0, 1), 0.06f, "glass ball", at({0.15f, 0.06f, -0.02f}));
+  add_quad(scene, glass(1.5f, 0, 0), {-0.28f, 0, -0.1f}, {0.2f, 0, 0}, {0, 0.4f, 0}, "pane");
   PunctualLight spot;
   spot.type = PunctualType::spot;
   spot.position = {0.2f, 0.5f, -0.1f};
@@ -37,17 +31,13 @@ Scene make_mixed_scene() {
 
 Sample trace_one(const char* technique, const World& world, const Lights& lights, Ray ray,
                  uint64_t seed = 1, TransportSettings settings = {}) {
-  Request request;
-  request.ray = ray;
-  request.seed = seed;
+  Request request{.ray = ray, .seed = seed};
   return find_technique(technique)->trace(world, lights, settings, request);
 }
 
 bool same_bits(const std::vector<vec3>& a, const std::vector<vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0;
 }
-
-}  // namespace
 
 TEST(Technique, ListIsExplicit) {
   ASSERT_GE(techniques().size(), 2u);
@@ -60,12 +50,9 @@ TEST(Technique, ListIsExplicit) {
 }
 
 TEST(Technique, SameBitsWhateverTheThreadCount) {
-  Scene scene = make_mixed_scene();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_mixed_scene());
   View view = cornell_view(scene, 33, 25);
-  StillSettings settings;
-  settings.spp = 3;
+  StillSettings settings{.spp = 3};
   for (const Technique& technique : techniques()) {
     Frame four = render_still(technique, world, lights, view, settings);
     oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
@@ -79,13 +66,9 @@ TEST(Technique, SameBitsWhateverTheThreadCount) {
 }
 
 TEST(Technique, AnySampleCanBeReplayedBitForBit) {
-  Scene scene = make_mixed_scene();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_mixed_scene());
   View view = cornell_view(scene, 16, 12);
-  StillSettings settings;
-  settings.spp = 5;
-  settings.seed = 77;
+  StillSettings settings{.spp = 5, .seed = 77};
   for (const Technique& technique : techniques()) {
     if (technique.finish_pass) continue;  // pixels are not their own samples' mean
     Frame frame = render_still(technique, world, lights, view, settings);
@@ -101,9 +84,7 @@ TEST(Technique, AnySampleCanBeReplayedBitForBit) {
 }
 
 TEST(Technique, ManyRequestsAtOnceAreTheSameAsOneByOne) {
-  Scene scene = make_mixed_scene();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_mixed_scene());
   View view = cornell_view(scene, 40, 40);
   std::vector<Request> requests;
   for (int i = 0; i < 1000; i++) requests.push_back(pixel_request(view, 3, i % 40, i / 40, 0));
@@ -123,9 +104,7 @@ TEST(Technique, ManyRequestsAtOnceAreTheSameAsOneByOne) {
 TEST(Technique, DiffuseSurfacesAreSplitIntoAlbedoAndSmoothLight) {
   Scene scene = make_plane_with_rect_light(10);
   scene.materials[1].base_color = {0.8f, 0.4f, 0.2f, 1};
-  PunctualLight point;
-  point.position = {0, 3, 0};
-  point.intensity = vec3(9);
+  PunctualLight point{.position = {0, 3, 0}, .intensity = vec3(9)};
   World only_lamp(scene);
   Lights lamp = make_lights(only_lamp);
   Ray ray = ray_towards({0.1f, 0.5f, 0.8f}, {0, 0, 0});
@@ -149,9 +128,7 @@ TEST(Technique, DiffuseSurfacesAreSplitIntoAlbedoAndSmoothLight) {
 }
 
 TEST(Technique, FirstSurfaceIsDescribed) {
-  Scene scene = make_mixed_scene();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_mixed_scene());
   Sample s =
       trace_one("path", world, lights, ray_towards({0, 0.275f, 0.8f}, {0.05f, 0.5f, -0.56f}));
   EXPECT_EQ(s.flags, sample_hit | sample_sure);
@@ -187,11 +164,9 @@ TEST(Technique, FirstSurfaceIsDescribed) {
 // would find.
 TEST(Technique, APaneShowsWhatIsBehindAndItsMirrorImage) {
   Scene scene = empty_scene();
-  add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-5, -5, 0}, {10, 0, 0}, {0, 10, 0});
-  add_quad(scene, add_material(scene, emitter(vec3(3))), {-9, -9, -4}, {18, 0, 0}, {0, 18, 0},
-           "behind");
-  add_quad(scene, add_material(scene, emitter(vec3(50))), {-9, 9, 4}, {18, 0, 0}, {0, -18, 0},
-           "in front");
+  add_wall(scene, glass(1.5f, 0, 0), 0, 5, "quad");
+  add_wall(scene, emitter(vec3(3)), -4, 9, "behind");
+  add_quad(scene, emitter(vec3(50)), {-9, 9, 4}, {18, 0, 0}, {0, -18, 0}, "in front");
   World world(scene);
   Lights lights = make_lights(world);
   Ray ray = ray_towards({0, 0, 2}, {0, 0, 0});
@@ -252,9 +227,7 @@ TEST(Technique, MovingMeshesCarryTheirPlace) {
 }
 
 TEST(Technique, DirectKnowsNoLightBetweenRoughSurfaces) {
-  Scene scene = make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_cornell_box());
   Ray ceiling =
       ray_towards({0, 0.275f, 0.8f}, {0.2f, 0.55f, -0.3f});  // the lamp faces away from it
   EXPECT_EQ(trace_mean("direct", world, lights, ceiling, 500).mean(), 0);
@@ -262,9 +235,7 @@ TEST(Technique, DirectKnowsNoLightBetweenRoughSurfaces) {
 }
 
 TEST(Technique, MaxDepthCountsEdges) {
-  Scene scene = make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_cornell_box());
   TransportSettings settings;
   Ray floor = ray_towards({0, 0.275f, 0.8f}, {0, 0, -0.1f}),
       lamp = ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f});
@@ -292,8 +263,7 @@ TEST(Technique, ClampBoundsASampleAndKeepsItsHue) {
     Lights lights = make_lights(world);
     Ray ray = ray_towards({0, 0.275f, 0.8f}, {-0.15f, 0, -0.1f});
     for (const char* technique : {"path", "gather"}) {
-      TransportSettings bound;
-      bound.clamp = 0.01f;
+      TransportSettings bound{.clamp = 0.01f};
       int bounded_samples = 0;
       for (uint64_t seed = 1; seed <= 32; seed++) {
         vec3 whole = trace_one(technique, world, lights, ray, seed, {}).radiance();
@@ -316,7 +286,7 @@ TEST(Technique, ClampBoundsASampleAndKeepsItsHue) {
 TEST(Technique, BadSamplesAreBlackAndCounted) {
   Scene scene = empty_scene();
   Material m = emitter({std::numeric_limits<float>::infinity(), 1, 1});
-  add_quad(scene, add_material(scene, m), {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  add_wall(scene, m, 0, 1, "quad");
   scene.environment.radiance = {1, -1, 1};
   World world(scene);
   Lights lights = make_lights(world);
@@ -328,11 +298,8 @@ TEST(Technique, BadSamplesAreBlackAndCounted) {
 }
 
 TEST(Technique, PicturePlanesAndSizes) {
-  Scene scene = make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
-  StillSettings settings;
-  settings.spp = 1;
+  auto [scene, world, lights] = LitWorld(make_cornell_box());
+  StillSettings settings{.spp = 1};
   Frame frame =
       render_still(*find_technique("direct"), world, lights, cornell_view(scene, 1, 1), settings);
   EXPECT_EQ(frame.color.size(), 1u);
@@ -348,3 +315,6 @@ TEST(Technique, PicturePlanesAndSizes) {
       render_still(*find_technique("direct"), world, lights, cornell_view(scene, 4, 4), settings),
       std::invalid_argument);
 }
+
+}  // namespace
+}  // namespace wellspring::test

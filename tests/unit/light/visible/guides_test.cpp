@@ -8,21 +8,17 @@
 
 #include "scenes/scenes.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 const vec3 red(0.8f, 0.1f, 0.2f), green(0.1f, 0.7f, 0.2f);
 
 Guide guide_of(const Scene& scene, vec3 origin, vec3 direction) {
   World world(scene);
-  world.commit();
   Lights lights = make_lights(world);
-  Ray ray;
-  ray.origin = origin, ray.direction = normalize(direction);
+  Ray ray{.origin = origin, .direction = normalize(direction)};
   Guide guide;
   eval_guides(world, lights, std::span(&ray, 1), std::span(&guide, 1));
   return guide;
@@ -35,11 +31,9 @@ void expect_near(vec3 is, vec3 wanted, float error) {
 // A wall at z = -3, seen from the origin.
 Scene with_wall(const Material& material) {
   Scene scene = empty_scene();
-  add_quad(scene, add_material(scene, material), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0}, "wall");
+  add_wall(scene, material, -3);
   return scene;
 }
-
-}  // namespace
 
 TEST(Guides, TellColourAndNormalOfWhatIsMatt) {
   Guide guide = guide_of(with_wall(diffuse(red)), {0, 0, 0}, {0.2f, 0.1f, -1});
@@ -54,8 +48,7 @@ TEST(Guides, TellColourOfBluntMetal) {
 
 TEST(Guides, FollowMirrorsToWhatTheyShow) {
   Scene scene = with_wall(metal(vec3(0.9f), 0));
-  add_quad(scene, add_material(scene, diffuse(green)), {-9, -9, 5}, {0, 18, 0}, {18, 0, 0},
-           "behind");
+  add_quad(scene, diffuse(green), {-9, -9, 5}, {0, 18, 0}, {18, 0, 0}, "behind");
   Guide guide = guide_of(scene, {0, 0, 0}, {0.1f, 0, -1});
   expect_near(guide.albedo, 0.9f * green, 0.05f);
   expect_near(guide.normal, {0, 0, -1}, 1e-3f);
@@ -67,7 +60,7 @@ TEST(Guides, LookThroughPanesAndSolidGlass) {
     Material clear = glass(1.5f, 0, thickness);
     int material = add_material(scene, clear);
     if (thickness > 0) add_mesh(scene, box_mesh(material, {4, 4, 1}), "block", at({0, 0, -1.5f}));
-    else add_quad(scene, material, {-4, -4, -1}, {8, 0, 0}, {0, 8, 0}, "pane");
+    else add_wall(scene, material, -1, 4, "pane");
     Guide guide = guide_of(scene, {0, 0, 0}, {0.1f, 0.05f, -1});
     expect_near(guide.albedo, red, 0.12f);
     expect_near(guide.normal, {0, 0, 1}, 1e-2f);
@@ -76,8 +69,7 @@ TEST(Guides, LookThroughPanesAndSolidGlass) {
 
 TEST(Guides, MirrorsThatFaceEachOtherEnd) {
   Scene scene = with_wall(metal(vec3(0.95f), 0));
-  add_quad(scene, add_material(scene, metal(vec3(0.95f), 0)), {-9, -9, 3}, {0, 18, 0}, {18, 0, 0},
-           "other");
+  add_quad(scene, metal(vec3(0.95f), 0), {-9, -9, 3}, {0, 18, 0}, {18, 0, 0}, "other");
   Guide guide = guide_of(scene, {0, 0, 0}, {0, 0, -1});
   EXPECT_TRUE(is_finite(guide.albedo));
   EXPECT_GT(guide.albedo.x, 0.5f);
@@ -97,10 +89,9 @@ TEST(Guides, LampsAndSkyCountWithTheirColourAtMostWhite) {
 
 TEST(Guides, OfAPictureAreAntialiased) {
   Scene scene = empty_scene();
-  add_quad(scene, add_material(scene, diffuse(red)), {-9, -9, -3}, {9, 0, 0}, {0, 18, 0}, "left");
-  add_quad(scene, add_material(scene, diffuse(green)), {0, -9, -3}, {9, 0, 0}, {0, 18, 0}, "right");
+  add_quad(scene, diffuse(red), {-9, -9, -3}, {9, 0, 0}, {0, 18, 0}, "left");
+  add_quad(scene, diffuse(green), {0, -9, -3}, {9, 0, 0}, {0, 18, 0}, "right");
   World world(scene);
-  world.commit();
   Lights lights = make_lights(world);
   View view = make_view_towards(scene, {0, 0, 0}, {0, 0, -3}, {0, 1, 0}, 1.0f, 5, 3);
   GuidePlanes guides = make_guides(world, lights, view, 64);
@@ -112,14 +103,11 @@ TEST(Guides, OfAPictureAreAntialiased) {
 
 TEST(Guides, AreFiniteOnBadTriangles) {
   Scene scene = with_wall(diffuse(red));
-  Mesh broken;
-  broken.material = 0;
-  broken.positions = {{-1, -1, -2}, {-1, -1, -2}, {1, 1, -2}, {NAN, 0, -2}};
+  Mesh broken{.positions = {{-1, -1, -2}, {-1, -1, -2}, {1, 1, -2}, {NAN, 0, -2}}, .material = 0};
   broken.normals.assign(4, vec3(0, 0, 1));
   broken.triangles = {{0, 1, 2}, {0, 2, 3}};
   add_mesh(scene, broken, "broken");
   World world(scene);
-  world.commit();
   Lights lights = make_lights(world);
   View view = make_view_towards(scene, {0, 0, 0}, {0, 0, -3}, {0, 1, 0}, 1.0f, 33, 17);
   GuidePlanes guides = make_guides(world, lights, view, 2);
@@ -149,9 +137,12 @@ TEST(Guides, SeeThroughAnyNumberOfPanes) {
 // A ray that total reflection keeps in a block of glass for ever has an end.
 TEST(Guides, EndWhereGlassKeepsARay) {
   Scene scene = empty_scene();
-  add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 1)), vec3(1)), "block");
+  add_box(scene, glass(1.5f, 0, 1), vec3(1), "block");
   scene.environment.radiance = vec3(1);
   Guide guide = guide_of(scene, {0.1f, -0.07f, 0.03f}, {0.6f, 0.55f, -0.58f});
   EXPECT_EQ(guide.albedo, vec3(0));
   EXPECT_NEAR(glm::length(guide.normal), 1, 1e-4f);
 }
+
+}  // namespace
+}  // namespace wellspring::test

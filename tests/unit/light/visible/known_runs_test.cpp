@@ -20,11 +20,10 @@ constexpr int width = 100, height = 75;
 Scene make_hall() {
   Scene scene = make_cornell_box();
   add_mesh(scene, sphere_mesh(1, 0.09f, 12), "ball", at({0.12f, 0.4f, -0.1f}));
-  add_mesh(scene, sphere_mesh(add_material(scene, metal(vec3(0.9f), 0.02f)), 0.07f), "mirror",
-           at({-0.15f, 0.07f, -0.08f}));
+  add_sphere(scene, metal(vec3(0.9f), 0.02f), 0.07f, "mirror", at({-0.15f, 0.07f, -0.08f}));
   Material sheet = diffuse(vec3(0.5f));
   sheet.double_sided = true;
-  add_quad(scene, add_material(scene, sheet), {-0.25f, 0.3f, -0.3f}, {0, 0.2f, 0}, {0.2f, 0, 0},
+  add_quad(scene, sheet, {-0.25f, 0.3f, -0.3f}, {0, 0.2f, 0}, {0.2f, 0, 0},
            "sheet");  // seen from behind
   return scene;
 }
@@ -51,8 +50,7 @@ void for_each_known(const World& world, const IlluminationMap& map, const View& 
     RunKnown told;
     const uint64_t bits = run.known(map, surface, told);
     for (int i = 0; i < run.count; i++) {
-      KnownPixel pixel;
-      pixel.ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
+      KnownPixel pixel{.ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f)};
       pixel.hit = world.intersect(pixel.ray);
       if (!(bits >> i & 1) || !pixel.hit.valid()) continue;
       pixel.at = eval_surface(world, pixel.ray, pixel.hit);
@@ -69,7 +67,6 @@ TEST(KnownRuns, AreLitAsThePlacesThatRaysMeet) {
   Mesh moving = sphere_mesh(1, 0.06f, 12);
   for (vec3& p : moving.positions) p += vec3(0, 0.15f, 0);
   World world(scene, {moving}, {uint32_t(scene.objects.size() - 1)});
-  world.commit();
   Lights lights = make_lights(world);
   VisibilityPass visibility(world, lights);
   auto map = test::paint_map(world, 0.03f, {[](vec3 p) { return vec3(1) + p; }});
@@ -116,8 +113,7 @@ struct ReliefWall {
     Material m = diffuse(vec3(0.5f));
     m.double_sided = true;
     m.normal_scale = scale;
-    Image image;
-    image.width = size, image.height = 1;
+    Image image{.width = size, .height = 1};
     for (int i = 0; i < size; i++)
       for (int code :
            {i < size / 2 ? 191 : 89, i < size / 2 ? 110 : 179, i < size / 2 ? 237 : 238, 255})
@@ -125,7 +121,7 @@ struct ReliefWall {
     scene.images.push_back(image);
     scene.textures.push_back({.image = 0});
     m.normal_texture.texture = 0;
-    add_quad(scene, add_material(scene, m), {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, "wall");
+    add_wall(scene, m, 0, 1);
     Mesh& mesh = scene.meshes.back();
     mesh.uv[0].clear();
     for (vec3 p : mesh.positions) mesh.uv[0].push_back({0.5f + 0.5f * p.x, 0.5f - 0.5f * p.y});
@@ -168,7 +164,7 @@ TEST(KnownRuns, OnBentMeshesAreLitAsSamplesAre) {
     Scene scene = empty_scene();
     Material sheet = diffuse(vec3(0.5f));
     sheet.double_sided = true;
-    add_mesh(scene, sphere_mesh(add_material(scene, sheet), 1, 24), "ball");
+    add_sphere(scene, sheet, 1, "ball", mat4(1), 24);
     scene.lights.push_back(
         test::point_light(away > 0 ? vec3(2, 2, 3) : vec3(0.4f, 0.3f, 0), vec3(9)));
     test::Baked baked(scene, {.gather_nodes = 300, .direct_nodes = 300});
@@ -195,10 +191,7 @@ TEST(KnownRuns, OfManyKindsSideBySideAreLitAsSamplesAre) {
   Scene scene = empty_scene();
   Material m = diffuse(vec3(0.5f));
   const int smooth = add_material(scene, m);
-  Image image;
-  image.width = image.height = 1;
-  image.texels8 = {191, 110, 237, 255};
-  scene.images.push_back(image);
+  scene.images.push_back({.width = 1, .height = 1, .texels8 = {191, 110, 237, 255}});
   scene.textures.push_back({.image = 0});
   m.normal_texture.texture = 0;
   const int rough = add_material(scene, m);

@@ -5,53 +5,35 @@
 #include <cmath>
 
 #include "light/technique/technique.h"
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 #include "unit/light/statistics.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 // One of everything: Lambertian, glossy, mirror, rough metal, brushed, unlit, a lamp, a pane; and
 // sky where there is no wall.
 Scene make_assembly(bool solid) {
-  Scene scene = empty_scene();
-  scene.environment.radiance = {0.2f, 0.3f, 0.5f};
-  add_quad(scene, add_material(scene, plastic({0.6f, 0.5f, 0.4f}, 0.1f)), {-3, -1, 3}, {6, 0, 0},
-           {0, 0, -6}, "floor");
   Material brushed = metal({0.7f, 0.6f, 0.5f}, 0.3f), unlit = diffuse({0.3f, 0.8f, 0.2f});
   brushed.anisotropy = 0.8f;
   unlit.unlit = true;
-  Material balls[] = {diffuse({0.2f, 0.4f, 0.6f}),
-                      metal({0.9f, 0.8f, 0.6f}, 0),
-                      metal({0.8f, 0.5f, 0.4f}, 0.6f),
-                      brushed,
-                      unlit,
-                      emitter({3, 2, 1})};
-  float x = -2.5f;
-  for (const Material& ball : balls)
-    add_mesh(scene, sphere_mesh(add_material(scene, ball), 0.45f), "ball",
-             glm::translate(mat4(1), vec3(x++, 0, -1)));
+  Scene scene =
+      make_row_of_balls({diffuse({0.2f, 0.4f, 0.6f}), metal({0.9f, 0.8f, 0.6f}, 0),
+                         metal({0.8f, 0.5f, 0.4f}, 0.6f), brushed, unlit, emitter({3, 2, 1})},
+                        -2.5f);
   Material pane = glass(1.5f, 0, 0);
   pane.base_color = {0.5f, 0.9f, 0.7f, 1};
-  add_quad(scene, add_material(scene, pane), {-1.6f, -0.9f, 0}, {1.5f, 0, 0}, {0, 1.5f, 0}, "pane");
-  if (solid)
-    add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.4f), "glass",
-             glm::translate(mat4(1), vec3(1, 0.9f, -1)));
+  add_quad(scene, pane, {-1.6f, -0.9f, 0}, {1.5f, 0, 0}, {0, 1.5f, 0}, "pane");
+  if (solid) add_sphere(scene, glass(1.5f, 0, 1), 0.4f, "glass", at(vec3(1, 0.9f, -1)));
   return scene;
 }
 
 class See : public testing::TestWithParam<bool> {};
 
-}  // namespace
-
 TEST_P(See, AgreesWithTheSamplesOfTechniques) {
-  Scene scene = make_assembly(GetParam());
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_assembly(GetParam()));
   View view = make_view_towards(scene, {0, 0.3, 4}, {0, 0, 0}, {0, 1, 0}, 1.2f, 96, 54);
   std::vector<Ray> rays;
   for (int y = 0; y < view.height; y++)
@@ -64,8 +46,7 @@ TEST_P(See, AgreesWithTheSamplesOfTechniques) {
   const Technique& path = *find_technique("path");
   int nothing = 0, glowing = 0;
   for (size_t i = 0; i < rays.size(); i++) {
-    Request request;
-    request.ray = rays[i];
+    Request request{.ray = rays[i]};
     Sample dark = path.trace(world, lights, emission, request),
            lit = path.trace(world, lights, {}, request);
     bool hit = lit.flags & sample_hit;
@@ -105,14 +86,13 @@ TEST(SeeRays, WhatPanesAndSurfacesEmitIsLightAndToldByItself) {
   pane.emission = {0.3f, 0.2f, 0.1f};
   pane.double_sided = true;
   board.emission = {1, 2, 4};
-  add_quad(scene, add_material(scene, pane), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, "pane");
-  add_quad(scene, add_material(scene, board), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0}, "board");
+  add_wall(scene, pane, -1, 1, "pane");
+  add_wall(scene, board, -2, 1, "board");
   World world(scene);
   Lights lights = make_lights(world);
   Request request;
   request.ray.direction = {0, 0, -1};
-  TransportSettings emission;
-  emission.max_depth = 1;
+  TransportSettings emission{.max_depth = 1};
   const Technique& path = *find_technique("path");
   Sample dark = path.trace(world, lights, emission, request),
          lit = path.trace(world, lights, {}, request);
@@ -129,15 +109,15 @@ TEST(SeeRays, WhatPanesAndSurfacesEmitIsLightAndToldByItself) {
 }
 
 TEST(SeeRays, NoneAndBrokenOnesDoNoHarm) {
-  Scene scene = make_assembly(false);
-  World world(scene);
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_assembly(false));
   see(world, lights, {}, {});
-  Ray broken;
-  broken.direction = vec3(NAN);
+  Ray broken{.direction = vec3(NAN)};
   std::vector<Ray> rays(100, broken);
   std::vector<PrimaryHit> seen(rays.size());
   see(world, lights, rays, seen);
   for (const PrimaryHit& s : seen) EXPECT_EQ(s.object, 0u);
   EXPECT_THROW(see(world, lights, rays, std::span(seen).first(3)), std::invalid_argument);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -94,9 +94,8 @@ TEST(Shine, ALampThatIsSeenGlintsWhereItIsMirrored) {
              side = normalize(cross(up, lamp_place));
   Material lamp = scenes::emitter(vec3(50));
   lamp.double_sided = true;
-  scenes::add_quad(eye.scene, scenes::add_material(eye.scene, lamp),
-                   lamp_place - 0.5f * lamp_side * (up + side), lamp_side * up, lamp_side * side,
-                   "lamp");
+  scenes::add_quad(eye.scene, lamp, lamp_place - 0.5f * lamp_side * (up + side), lamp_side * up,
+                   lamp_side * side, "lamp");
   eye.begin(0.05f);
   expect_follows(eye);
 }

@@ -7,33 +7,21 @@
 #include <cmath>
 
 #include "base/rng.h"
-#include "scenes/scenes.h"
+#include "scenes/lit_world.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
 
+using namespace scenes;
+
 Image checks(int size, bool srgb) {
-  Image image;
-  image.width = image.height = size;
-  image.srgb = srgb;
+  Image image{.width = size, .height = size, .srgb = srgb};
   for (int y = 0; y < size; y++)
     for (int x = 0; x < size; x++) {
       bool white = (x / 4 + y / 4) % 2;
       for (uint8_t c : {white ? 230 : 40, white ? 200 : 90, 120, 255}) image.texels8.push_back(c);
     }
   return image;
-}
-
-int add_texture(Scene& scene, Image image) {
-  scene.images.push_back(std::move(image));
-  Texture texture;
-  texture.image = int(scene.images.size()) - 1;
-  scene.textures.push_back(texture);
-  return int(scene.textures.size()) - 1;
 }
 
 struct Drawn {
@@ -109,21 +97,14 @@ Scene make_shelf() {
   }
   Material window = glass(1.5f, 0, 0);
   window.emission = vec3(0.5f, 1, 2);
-  add_quad(scene, add_material(scene, window), {1.2f, -0.8f, -2.2f}, {0.5f, 0, 0}, {0, 0.9f, 0});
-  add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-2, -0.5f, -2}, {2, 0, 0.1f},
-           {0, 0.6f, 0});
-  add_mesh(scene, sphere_mesh(add_material(scene, diffuse(vec3(0.3f, 0.8f, 0.5f))), 0.3f), "ball",
-           at({0.4f, 0.1f, -2}));
+  add_quad(scene, window, {1.2f, -0.8f, -2.2f}, {0.5f, 0, 0}, {0, 0.9f, 0});
+  add_quad(scene, glass(1.5f, 0, 0), {-2, -0.5f, -2}, {2, 0, 0.1f}, {0, 0.6f, 0});
+  add_sphere(scene, diffuse(vec3(0.3f, 0.8f, 0.5f)), 0.3f, "ball", at({0.4f, 0.1f, -2}));
   return scene;
 }
 
-}  // namespace
-
 TEST(SeePicture, SeesWhatRaysSee) {
-  Scene scene = make_shelf();
-  World world(scene);
-  world.commit();
-  Lights lights = make_lights(world);
+  auto [scene, world, lights] = LitWorld(make_shelf());
   VisibilityPass visibility(world, lights);
   for (vec2 middle : {vec2(0), vec2(-0.1f, -0.08f)}) {
     View view = make_view(scene, {0, 0.1, 0}, 0, 0, 0.7f, 241, 160);
@@ -191,7 +172,6 @@ TEST(SeePicture, SmallTrianglesSideBySideKeepTheirReflectance) {
         uv = from + uv * turns;
     }
   World world(scene);
-  world.commit();
   VisibilityPass visibility(world, make_lights(world));
   Drawn drawn = draw(visibility, make_view(scene, {0, 0, 0}, 0, 0, 0.55f, 150, 84));
   double off = 0;
@@ -205,9 +185,8 @@ TEST(SeePicture, SmallTrianglesSideBySideKeepTheirReflectance) {
 
 TEST(SeePicture, DepthIsAlongTheViewingAxis) {
   Scene scene = empty_scene();
-  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
+  add_wall(scene, diffuse(vec3(0.5f)), -3, 9, "quad");
   World world(scene);
-  world.commit();
   Lights lights = make_lights(world);
   VisibilityPass visibility(world, lights);
   Drawn drawn = draw(visibility, make_view(scene, {0, 0, 0}, 0, 0, 1.2f, 64, 48));
@@ -220,10 +199,9 @@ TEST(SeePicture, PicturesFarAwayAreTheirMean) {
   Scene scene = empty_scene();
   Material m = diffuse(vec3(1));
   m.base_color_texture.texture = add_texture(scene, checks(64, true));
-  int made = add_quad(scene, add_material(scene, m), {-6, -6, -10}, {12, 0, 0}, {0, 12, 0});
+  int made = add_wall(scene, m, -10, 6, "quad");
   for (vec2& uv : scene.meshes[size_t(scene.instances[size_t(made)].mesh)].uv[0]) uv *= 40.0f;
   World world(scene);
-  world.commit();
   Lights lights = make_lights(world);
   VisibilityPass visibility(world, lights);
   float mean = 0.5f * (decode_srgb(230) + decode_srgb(40));
@@ -240,11 +218,9 @@ TEST(SeePicture, PicturesFarAwayAreTheirMean) {
 TEST(SeePicture, AnEyeInSolidGlassIsServedByRays) {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(1, 2, 3);
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 1), "ball");
-  add_quad(scene, add_material(scene, emitter(vec3(5))), {-0.2f, -0.2f, -0.5f}, {0.4f, 0, 0},
-           {0, 0.4f, 0}, "within");
+  add_sphere(scene, glass(1.5f, 0, 1), 1, "ball");
+  add_wall(scene, emitter(vec3(5)), -0.5f, 0.2f, "within");
   World world(scene);
-  world.commit();
   Lights lights = make_lights(world);
   VisibilityPass visibility(world, lights);
   EXPECT_TRUE(visibility.rasterises(make_view(scene, {0, 0, 2}, 0, 0, 1, 8, 8)));
@@ -278,3 +254,6 @@ TEST(SeePicture, AnEyeInSolidGlassIsServedByRays) {
       view, offset, [&](const VisibleRun&) { moving++; }, RasterShows::moving);
   EXPECT_EQ(moving, 0);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -34,13 +34,11 @@ struct LitRoom {
   }
   static Scene make_scene(bool pane) {
     Scene scene = make_cornell_box();
-    add_mesh(scene, sphere_mesh(add_material(scene, plastic({0.3f, 0.5f, 0.7f}, 0.4f)), 0.09f),
-             "coated", at({0.12f, 0.35f, -0.1f}));
-    add_mesh(scene, sphere_mesh(add_material(scene, metal(vec3(0.9f), 0.02f)), 0.07f), "mirror",
-             at({-0.15f, 0.07f, -0.08f}));
+    add_sphere(scene, plastic({0.3f, 0.5f, 0.7f}, 0.4f), 0.09f, "coated",
+               at({0.12f, 0.35f, -0.1f}));
+    add_sphere(scene, metal(vec3(0.9f), 0.02f), 0.07f, "mirror", at({-0.15f, 0.07f, -0.08f}));
     if (pane)
-      add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-0.3f, 0, 0.1f}, {0.6f, 0, 0},
-               {0, 0.3f, 0}, "pane");
+      add_quad(scene, glass(1.5f, 0, 0), {-0.3f, 0, 0.1f}, {0.6f, 0, 0}, {0, 0.3f, 0}, "pane");
     scene.lights.push_back(test::point_light({0.05f, 0.45f, -0.1f}, {0.3f, 0.25f, 0.2f}));
     return scene;
   }

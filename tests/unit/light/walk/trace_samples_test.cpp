@@ -12,13 +12,10 @@
 #include "unit/light/statistics.h"
 #include "world/surface.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 struct Lighting {
   const char* name;
@@ -56,23 +53,18 @@ Scene make_room(const Lighting& lighting) {
   Scene scene = make_cornell_box();
   for (Material& m : scene.materials)
     if (m.emission != vec3(0) && !lighting.emitter) m = diffuse(vec3(0.5f));
-  Image image;
-  image.width = image.height = 2;
+  Image image{.width = 2, .height = 2};
   for (int i = 0; i < 16; i++) image.texels8.push_back(uint8_t(40 + 13 * i));
   scene.images = {image};
   scene.textures.resize(1);
   scene.textures[0].image = 0;
   Material painted = diffuse(vec3(0.9f));
   painted.base_color_texture.texture = 0;
-  add_mesh(scene, sphere_mesh(add_material(scene, painted), 0.08f, 16), "painted",
-           at({-0.15f, 0.08f, -0.1f}));
-  add_mesh(scene, sphere_mesh(add_material(scene, plastic({0.3f, 0.5f, 0.7f}, 0.3f)), 0.06f),
-           "glossy", at({0.09f, 0.23f, -0.17f}));
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.05f), "glass",
-           at({0.15f, 0.06f, -0.02f}));
+  add_sphere(scene, painted, 0.08f, "painted", at({-0.15f, 0.08f, -0.1f}), 16);
+  add_sphere(scene, plastic({0.3f, 0.5f, 0.7f}, 0.3f), 0.06f, "glossy", at({0.09f, 0.23f, -0.17f}));
+  add_sphere(scene, glass(1.5f, 0, 1), 0.05f, "glass", at({0.15f, 0.06f, -0.02f}));
   if (lighting.pane)
-    add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-0.2f, 0.4f, -0.4f}, {0, 0, 0.4f},
-             {0.4f, 0, 0}, "pane");
+    add_quad(scene, glass(1.5f, 0, 0), {-0.2f, 0.4f, -0.4f}, {0, 0, 0.4f}, {0.4f, 0, 0}, "pane");
   if (lighting.sky) scene.environment.radiance = {0.4f, 0.5f, 0.7f};
   scene.lights = lighting.lamps;
   return scene;
@@ -95,8 +87,6 @@ struct Room {
     return ball;
   }
 };
-
-}  // namespace
 
 TEST(TraceSamples, EachIsTheSameAloneAndAmongOthers) {
   for (const Lighting& lighting : lightings()) {
@@ -158,8 +148,7 @@ TEST(TraceSamples, LanesSayWhatTheLongWaySays) {
   for (const Lighting& lighting : lightings()) {
     Room room(lighting);
     for (int scatterings : {1, 1 << 30}) {
-      WalkRules rules;
-      rules.scatterings = scatterings;
+      WalkRules rules{.scatterings = scatterings};
       Transport transport{room.world, *room.lights.tables};
       ASSERT_TRUE(transport.tables.any_lambertian);
       std::vector<Sample> samples(room.requests.size());
@@ -189,8 +178,7 @@ TEST(TraceSamples, DepthsAreCountedTheSame) {
   Room room(lightings()[6]);
   Transport transport{room.world, *room.lights.tables};
   for (int depth : {0, 1, 2, 3}) {
-    WalkRules rules;
-    rules.max_depth = depth;
+    WalkRules rules{.max_depth = depth};
     std::vector<Sample> samples(room.requests.size());
     trace_samples(transport, rules, room.requests, samples);
     Mean off;
@@ -279,3 +267,6 @@ TEST(Lanes, RowsBecomeColumns) {
   for (int i = 0; i < lane_count; i++)
     for (int k = 0; k < lane_count; k++) EXPECT_EQ(row[i][k], float(10 * k + i));
 }
+
+}  // namespace
+}  // namespace wellspring::test

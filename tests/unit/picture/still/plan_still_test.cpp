@@ -8,12 +8,10 @@
 
 #include "scenes/scenes.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 View view_of(int width, int height) {
   Scene scene = empty_scene();
@@ -25,8 +23,6 @@ std::map<uint32_t, int> counts_of(const std::vector<Request>& requests) {
   for (const Request& request : requests) counts[request.pixel]++;
   return counts;
 }
-
-}  // namespace
 
 TEST(PlanStill, AQuarterOfASampleIsOneInEverySquare) {
   View view = view_of(64, 36);
@@ -115,3 +111,6 @@ TEST(PlanStill, CellsHaveAsManySamplesAsTheyCount) {
   EXPECT_EQ(plan_still(view, 7, 900, 3, image, kept, requests), 7u + 96 * 36);
   EXPECT_TRUE(requests.empty());
 }
+
+}  // namespace
+}  // namespace wellspring::test

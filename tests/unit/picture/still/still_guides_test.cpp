@@ -8,32 +8,16 @@
 
 #include "unit/picture/drawn_visit.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
 
-Scene make_assembly() {
-  Scene scene = empty_scene();
-  scene.environment.radiance = {0.2f, 0.3f, 0.5f};
-  add_quad(scene, add_material(scene, plastic({0.6f, 0.5f, 0.4f}, 0.1f)), {-3, -1, 3}, {6, 0, 0},
-           {0, 0, -6}, "floor");
-  const Material balls[] = {diffuse({0.2f, 0.4f, 0.6f}), metal({0.9f, 0.8f, 0.6f}, 0),
-                            metal({0.8f, 0.5f, 0.4f}, 0.7f), emitter({3, 0.2f, 0.1f}),
-                            glass(1.5f, 0, 1)};
-  float x = -2;
-  for (const Material& ball : balls)
-    add_mesh(scene, sphere_mesh(add_material(scene, ball), 0.45f), "ball",
-             glm::translate(mat4(1), vec3(x++, 0, -1)));
-  return scene;
-}
-
-}  // namespace
+using namespace scenes;
 
 TEST(StillGuides, AgreeWithThoseOfRays) {
-  const Stage stage(make_assembly());
+  const Stage stage(make_row_of_balls(
+      {diffuse({0.2f, 0.4f, 0.6f}), metal({0.9f, 0.8f, 0.6f}, 0), metal({0.8f, 0.5f, 0.4f}, 0.7f),
+       emitter({3, 0.2f, 0.1f}), glass(1.5f, 0, 1)},
+      -2));
   View view = make_view_towards(stage.scene, {0, 0.5, 4}, {0, -0.2, 0}, {0, 1, 0}, 1.0f, 160, 90);
   std::vector<uint8_t> followed;
   GuidePlanes drawn, traced = make_guides(*stage.world, stage.lights, view, 16);
@@ -60,8 +44,7 @@ TEST(StillGuides, AgreeWithThoseOfRays) {
 TEST(StillGuides, OfWhatStandsStillLeaveOutWhatMoves) {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(0.5f);
-  add_quad(scene, add_material(scene, diffuse({0.1f, 0.6f, 0.1f})), {-9, -9, -3}, {18, 0, 0},
-           {0, 18, 0}, "wall");
+  add_wall(scene, diffuse({0.1f, 0.6f, 0.1f}), -3);
   int red = add_material(scene, diffuse({0.8f, 0.1f, 0.1f}));
   scene.objects.push_back("moving");
   const Stage stage(std::move(scene), sphere_mesh(red, 1));
@@ -78,3 +61,6 @@ TEST(StillGuides, OfWhatStandsStillLeaveOutWhatMoves) {
   EXPECT_NEAR(all.albedo[middle].x, 0.8f, 0.05f);
   EXPECT_NEAR(still.albedo[middle].x, 0.1f, 0.05f);
 }
+
+}  // namespace
+}  // namespace wellspring::test

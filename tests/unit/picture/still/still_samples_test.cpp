@@ -9,10 +9,7 @@
 #include "base/rng.h"
 #include "cache/packing.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 constexpr int width = 93, height = 61, pixels = width * height;  // sizes that no square divides
@@ -73,8 +70,6 @@ void draw_wrongly(Picture& p) {
     p.frame.color[size_t(i)] = 1.1f * truth_at(x == 40 ? 41 : x, i / width);
   }
 }
-
-}  // namespace
 
 TEST(MeanShare, WhatIsDrawnWrongBecomesTheMeanOfItsSamples) {
   double before = 1;
@@ -172,3 +167,6 @@ TEST(StillSamples, MeansAndDeviationsAreThoseOfTheSamples) {
   // square).
   EXPECT_NEAR(deviation, 0.99, 4 * 0.1 / std::sqrt(double(height)) + 0.002);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -8,23 +8,19 @@
 #include "unit/folder.h"
 #include "unit/show/show_stage.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using nlohmann::json;
-
+namespace wellspring::test {
 namespace {
+
+using nlohmann::json;
 
 Exhibit make_exhibit(const test::Folder& folder) {
   Exhibit exhibit = make_tiny_exhibit();
-  BookPage topic;
-  topic.id = "well";
-  topic.title = {{"en", "The well"}, {"de", "Der Brunnen"}};
-  topic.text = {{{"en", "Deep."}}, {{"en", "Old."}}};
-  topic.image = "book/well.jpg";
-  topic.alt = {{"en", "A well"}};
-  BookPage partner;
-  partner.id = "guild";
+  BookPage topic{.id = "well",
+                 .title = {{"en", "The well"}, {"de", "Der Brunnen"}},
+                 .text = {{{"en", "Deep."}}, {{"en", "Old."}}},
+                 .image = "book/well.jpg",
+                 .alt = {{"en", "A well"}}};
+  BookPage partner{.id = "guild"};
   partner.link = "https://example.org";
   BookPresentation presentation{"p", {{"en", "P"}}, {}};
   presentation.slides.resize(2);
@@ -46,14 +42,10 @@ struct Desk {
   std::map<std::string, PageFile> pages;
   ReportBoard board;
   HttpReply ask(const std::string& path) {
-    AnswerSources sources;
-    sources.exhibits = {{&exhibit, &board, {}, nullptr}};
-    sources.pages = &pages;
+    AnswerSources sources{.exhibits = {{&exhibit, &board, {}, nullptr}}, .pages = &pages};
     return answer(sources, {"GET", path, {}, "", "", ""});
   }
 };
-
-}  // namespace
 
 TEST(Book, IsDescribedWithAddresses) {
   Desk desk;
@@ -120,3 +112,6 @@ TEST(Book, WelcomeNamesTheSounds) {
       {"id": "fire", "kind": "fire", "position": [1, 2, 3], "gain": 0.5, "radius": 6},
       {"id": "hum", "file": "/api/v1/exhibits/tiny/files/hum.ogg", "gain": 1, "radius": 8}])"));
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -165,8 +165,7 @@ TEST_F(Cameras, WhoStaysBeforeOneKeepsTheirNumberWhenAnotherGoes) {
   wait(lost_camera_listed);
   auto left = connect_camera("left");
   auto right = connect_camera("right");
-  Person person;
-  person.id = 7;
+  Person person{.id = 7};
   seen.state = Presence::person;
   seen.people = {person};
   speak(*right, "right");

@@ -31,10 +31,7 @@ struct FollowHouse : KioskHouse {
     return count;
   }
   uint32_t announce(LocalText text, double seconds = 60, bool urgent = false) {
-    Announcement announcement;
-    announcement.text = std::move(text);
-    announcement.seconds = seconds;
-    announcement.urgent = urgent;
+    Announcement announcement{.text = std::move(text), .seconds = seconds, .urgent = urgent};
     return arrivals.announce(announcement);
   }
 };

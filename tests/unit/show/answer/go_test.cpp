@@ -13,8 +13,7 @@ namespace {
 
 // A box on the floor between two corners, seen from outside.
 void add_box(Scene& scene, const std::string& name, vec3 low, vec3 high, int material = 0) {
-  Mesh box;
-  box.material = material;
+  Mesh box{.material = material};
   vec3 size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
   add_quad(box, low, y, x), add_quad(box, low + z, x, y);
   add_quad(box, low, z, y), add_quad(box, low + x, y, z);
@@ -32,9 +31,7 @@ struct GoTest : testing::Test, ShowStage {
   // The tiny room, with a statue in its corner behind the wall, in a case of glass.
   Exhibit make_room() {
     Exhibit exhibit = make_tiny_exhibit(origin);
-    Material glass;
-    glass.metallic = 0, glass.roughness = 0, glass.transmission = 1;
-    exhibit.scene.materials.push_back(glass);
+    exhibit.scene.materials.push_back({.metallic = 0, .roughness = 0, .transmission = 1});
     add_box(exhibit.scene, "statue", {-3.2f, 0.8f, -3.2f}, {-2.9f, 1.3f, -2.9f});
     add_box(exhibit.scene, "case", {-3.4f, 0.0f, -3.4f}, {-2.7f, 1.8f, -2.7f}, 2);
     PointOfInterest& statue = exhibit.points.emplace_back();

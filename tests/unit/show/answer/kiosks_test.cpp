@@ -320,10 +320,7 @@ TEST_F(Kiosks, OfNoExhibitLiveAsLongAsSomebodyIsConnected) {
 }
 
 TEST_F(Kiosks, AreAsTheExhibitSays) {
-  KioskSettings settings;
-  settings.name = "hall";
-  settings.viewpoint = "corner";
-  settings.volume = 0.4f;
+  KioskSettings settings{.name = "hall", .viewpoint = "corner", .volume = 0.4f};
   settings.times.leave_untouched = 5;
   set_up({settings});
   const size_t hall = page("");

@@ -39,10 +39,7 @@ struct ObjectsTest : testing::Test {
     sources.pages = &pages;
   }
   HttpReply ask(const std::string& path, const std::string& accept = "") {
-    HttpQuestion question;
-    question.method = "GET";
-    question.path = path;
-    question.accept = accept;
+    HttpQuestion question{.method = "GET", .path = path, .accept = accept};
     return answer(sources, question);
   }
 };
@@ -90,9 +87,8 @@ TEST_F(ObjectsTest, WhatIsToldCanBeRead) {
   line.marks.push_back({StoryMarkKind::gesture, 3, "wave", 1, {}});
   exhibit.stories = {
       {"tale", {{"en", "A tale"}}, {{"en", {line, {.text = "And ended."}}}}, {}, -1}};
-  TourStop stop;
-  stop.viewpoint = int(exhibit.viewpoints.size()) - 1;
-  stop.way_text = {{"de", {{.text = "Komm mit."}}}};
+  TourStop stop{.viewpoint = int(exhibit.viewpoints.size()) - 1,
+                .way_text = {{"de", {{.text = "Komm mit."}}}}};
   exhibit.tours = {{"round", {{"en", "Round"}}, {stop}}};
   json all = json::parse(ask("/api/v1/exhibits/tiny/transcript").body);
   EXPECT_EQ(all["stories"], json::parse(R"([{"id": "tale", "title": {"en": "A tale"},

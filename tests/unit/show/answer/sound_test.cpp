@@ -256,8 +256,7 @@ TEST(VoiceWithSpeech, ResumesWithTheWordThatWasBroken) {
 
 TEST(VoiceWithSpeech, MarksBecomeEventsAtTheirWordsOnce) {
   Voice voice;
-  StoryText story;
-  story.id = "s";
+  StoryText story{.id = "s"};
   story.text["en"] =
       read_story("<emotion name='joy' weight='0.5'/>one <emphasis>two</emphasis> three.", "a")
           .lines;
@@ -287,8 +286,7 @@ TEST(VoiceWithSpeech, MarksBecomeEventsAtTheirWordsOnce) {
 }
 
 TEST(VoiceWithSpeech, SkippingLeavesTheFaceAsIfAllHadBeenTold) {
-  StoryText story;
-  story.id = "s";
+  StoryText story{.id = "s"};
   story.text["en"] =
       read_story("<emotion name='sadness'/><look at='well'/>First. Second. Third.", "a").lines;
   Voice voice;

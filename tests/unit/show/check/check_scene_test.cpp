@@ -14,9 +14,8 @@
 #include "unit/show/exhibit/room_package.h"
 #include "unit/show/tiny_exhibit.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
+namespace wellspring::test {
+namespace {
 
 TEST(CheckScene, AGoodRoomIsGood) {
   RoomPackage package;
@@ -216,3 +215,6 @@ TEST(ExhibitLight, LightScaleIsOnLampsAndEmissionOfTheFile) {
   EXPECT_TRUE(found);
   EXPECT_EQ(exhibit.scene.environment.radiance, vec3(0.5f));
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -30,10 +30,8 @@ using States = std::vector<VisitorDrawState>;
 
 // Returns a walking visitor whose last picture was sent, and whose next is not due for a second.
 VisitorDrawState walker() {
-  VisitorDrawState state;
-  state.welcomed = state.can_take = true;
-  state.drawn_at = state.shown_at = now;
-  state.moved_at = now;
+  VisitorDrawState state{
+      .welcomed = true, .can_take = true, .drawn_at = now, .shown_at = now, .moved_at = now};
   return state;
 }
 
@@ -463,8 +461,7 @@ TEST(Decide, nobody_goes_without_a_picture_for_much_longer_than_others) {
 }
 
 TEST(Demand, counts_who_waits_for_a_picture_and_not_who_gains_by_samples) {
-  RendererState renderer;
-  renderer.can_reconstruct = true;
+  RendererState renderer{.can_reconstruct = true};
   const States states{due(walker()), due(reconstructed()), walker(), due(stander())};
   EXPECT_EQ(find_demand(now, states, renderer), (Demand{2, false}));
 }
@@ -474,8 +471,7 @@ TEST(Demand, the_storyteller_moves_where_what_moves_is_due) {
 }
 
 TEST(Demand, nobody_waits_while_the_renderer_is_busy) {
-  RendererState renderer;
-  renderer.idle = false;
+  RendererState renderer{.idle = false};
   const States states{due(walker()), moving_due(listener())};
   EXPECT_EQ(find_demand(now, states, renderer), Demand{});
 }

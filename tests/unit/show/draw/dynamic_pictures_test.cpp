@@ -15,8 +15,7 @@ namespace {
 
 // A torch that is carried to and fro, ten metres in as many seconds.
 ChangingLight torch() {
-  ChangingLight light;
-  light.name = "torch";
+  ChangingLight light{.name = "torch"};
   light.light.intensity = vec3(14, 9, 4);
   light.light.position = {-1, 1.5f, 2};
   light.track = {{0, {-1, 1.5f, 2}}, {4, {1, 2.2f, 1}}, {8, {-1, 1.5f, 2}}};
@@ -37,8 +36,7 @@ struct DynamicPictures : testing::Test, ShowStage {
   // Returns the picture with the light that the lights add at a time, straight and scattered once.
   Image8 lit_truth(double time) {
     const View& view = visitor().place.last_view;
-    StillSettings settings;
-    settings.spp = 64;
+    StillSettings settings{.spp = 64};
     settings.transport = show->settings.transport;
     Frame sum = render_still(*show->stage.still_technique, *show->stage.world, show->stage.lights,
                              view, settings);

@@ -3,7 +3,10 @@
 // a hand on the renderer.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <future>
+#include <thread>
 #include <utility>
 
 #include "base/rng.h"
@@ -225,9 +228,7 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
 TEST_F(LatePictures, AreOutdatedByCameraCutsAndByMotionAfterRest) {
   begin();
   Visitor unseen;
-  PictureJob job;
-  job.kind = PictureKind::still;
-  job.expected = unseen.place.last_view;
+  PictureJob job{.expected = unseen.place.last_view, .kind = PictureKind::still};
   unseen.place.last_view.position.x += 1;
   EXPECT_FALSE(is_outdated(*show, job, unseen));  // there is nothing else to show
   unseen.place.camera_cuts++;
@@ -350,7 +351,21 @@ TEST_F(LatePictures, TheShowEndsWhileOneIsDrawn) {
     say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})", size_t(i));
   for (int i = 0; i < 20; i++) step_on();
   while (!show->drawing->renderer.drawn) step_on();
+  show.reset();  // sanitizers tell whether the drawing reads what is gone
+}
+
+TEST_F(LatePictures, TheShowEndsAfterWhatTheRendererIsAtWorkOn) {
+  begin();
+  hold_renderer();
+  std::atomic<bool> released = false;
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    released = true;
+    held.set_value();
+  });
   show.reset();
+  EXPECT_TRUE(released);
+  later.join();
 }
 
 TEST_F(LatePictures, ReportSaysWhatWasDrawnAndWarped) {

@@ -13,8 +13,7 @@ namespace {
 // Walking and turning, for which pictures are made wider, and at rest. Large pictures are drawn in
 // between, in memory that all share.
 TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
-  ShowStage stage;
-  stage.tick_seconds = 0.05;
+  ShowStage stage{.tick_seconds = 0.05};
   stage.begin(make_tiny_exhibit(), settings_for("direct"));
   stage.join(1280, 720), stage.join(1920, 1080);
   size_t most[2] = {}, walking = 0;

@@ -160,8 +160,7 @@ TEST_F(Moving, NoGhostStaysWhereSheStood) {
   const size_t sent = pictures().size();
   ASSERT_TRUE(step_until([&] { return pictures().size() > sent; }));
   const Image8 after = last_image();
-  ShowStage without;
-  without.tick_seconds = 0.01;
+  ShowStage without{.tick_seconds = 0.01};
   without.begin(make_tiny_exhibit(), settings_for("direct"));
   without.join(192, 128);
   ASSERT_TRUE(without.step_until([&] { return without.show->totals.drawn > 20; }, 600));

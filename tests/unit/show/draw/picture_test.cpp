@@ -13,13 +13,10 @@ namespace {
 Exhibit make_cubed(bool glass) {
   Exhibit exhibit = make_tiny_exhibit();
   exhibit.tours.clear();  // it stands in their way
-  Material material;
-  material.metallic = 0;
-  material.roughness = 0;
+  Material material{.metallic = 0, .roughness = 0};
   if (glass) material.transmission = 1, material.thickness = 1;
   exhibit.scene.materials.push_back(material);
-  Mesh cube;
-  cube.material = int(exhibit.scene.materials.size()) - 1;
+  Mesh cube{.material = int(exhibit.scene.materials.size()) - 1};
   vec3 corner(-3, 0.6f, 2), x(2, 0, 0), y(0, 2, 0), z(0, 0, 2);
   add_quad(cube, corner, y, x), add_quad(cube, corner + z, x, y);
   add_quad(cube, corner, z, y), add_quad(cube, corner + x, y, z);

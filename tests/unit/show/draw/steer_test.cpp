@@ -192,9 +192,7 @@ TEST_F(Steering, AHeadBeforeAKioskTellsWhereItsEyesAre) {
   begin();
   steps(10);
   const SeenPicture& seen = *visitor().looks.seen;
-  Person person;
-  person.position = vec3(0, 0, viewing_distance);
-  person.confidence = 1;
+  Person person{.position = vec3(0, 0, viewing_distance), .confidence = 1};
   auto hints_of = [&](float yaw, float pitch) {
     person.rotation = vec3(yaw, pitch, 0);
     show->kiosks.eyes.clear();

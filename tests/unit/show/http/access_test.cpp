@@ -16,9 +16,7 @@ using nlohmann::json;
 const std::string admin = "the token of the house", kiosk = "the token of a kiosk";
 
 HttpQuestion ask(const std::string& path, const std::string& token = "", bool local = false) {
-  HttpQuestion question;
-  question.method = "GET";
-  question.path = path;
+  HttpQuestion question{.method = "GET", .path = path};
   if (!token.empty()) question.authorization = "Bearer " + token;
   question.local = local;
   return question;

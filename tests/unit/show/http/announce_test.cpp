@@ -22,11 +22,10 @@ struct Announce : testing::Test {
     return uint32_t(put.size());
   }};
   HttpReply post(const std::string& body, const std::string& authorization = "Bearer " + token) {
-    HttpQuestion question;
-    question.method = "POST";
-    question.path = "/api/v1/admin/announce";
-    question.authorization = authorization;
-    question.body = body;
+    HttpQuestion question{.method = "POST",
+                          .path = "/api/v1/admin/announce",
+                          .authorization = authorization,
+                          .body = body};
     return answer_announce(desk, access_of(rules, question), question);
   }
 };
@@ -105,8 +104,7 @@ TEST_F(Announce, WithoutATokenNobodyMay) {
 }
 
 TEST_F(Announce, IsPosted) {
-  HttpQuestion question;
-  question.method = "GET";
+  HttpQuestion question{.method = "GET"};
   const HttpReply reply = answer_announce(desk, access_of(rules, question), question);
   EXPECT_EQ(reply.status, 405);
   EXPECT_EQ(reply.headers.at("Allow"), "POST");

@@ -8,9 +8,7 @@ namespace wellspring::test {
 namespace {
 
 TEST(Metrics, tell_what_the_cameras_see_and_what_the_storyteller_is_about) {
-  ShowReport report;
-  report.audience = Presence::motion;
-  report.mood = Mood::telling;
+  ShowReport report{.audience = Presence::motion, .mood = Mood::telling};
   const std::string text = write_metrics(report);
   for (const char* line :
        {"wellspring_audience{state=\"absent\"} 0\n", "wellspring_audience{state=\"motion\"} 1\n",

@@ -22,11 +22,10 @@ struct StillDeskTest : testing::Test {
   std::unique_ptr<StillDesk> desk;                 // the last member: its thread tells
 
   void begin(double most_seconds, double cheap_seconds = 4) {
-    StillLimits limits;
-    limits.most_seconds = most_seconds;
-    limits.cheap_seconds = cheap_seconds;
-    limits.most_waiting = 100000;
-    limits.address_pictures = 1;
+    StillLimits limits{.most_seconds = most_seconds,
+                       .cheap_seconds = cheap_seconds,
+                       .address_pictures = 1,
+                       .most_waiting = 100000};
     desk = std::make_unique<StillDesk>(limits);
   }
   static StillJob job(int spp, float yaw = 0) {

@@ -11,8 +11,7 @@ namespace wellspring::test {
 namespace {
 
 HttpReply take_along(const std::string& address, std::map<std::string, std::string> query = {}) {
-  HttpQuestion question;
-  question.query = std::move(query);
+  HttpQuestion question{.query = std::move(query)};
   return answer_qr(make_tiny_exhibit(), address, question);
 }
 

@@ -124,16 +124,14 @@ TEST_F(Window, WhoLooksAtTheGuestLooksOutOfThePicture) {
   for (vec3 head : {vec3(0.1f, 0.05f, 0.65f), vec3(-0.12f, -0.06f, 0.55f)}) {
     eye = {};
     go({head}, 5);
-    Person person;
-    person.position = head;
+    Person person{.position = head};
     const Guest guest = place_person(person, rest, 1, distance());
     EXPECT_LT(glm::length(guest.head - now().position), 1e-3f);
   }
   // From afar the eye is in the head's direction, seen from the middle of the screen.
   eye = {};
   go({vec3(0.3f, -0.2f, 2)}, 5);
-  Person person;
-  person.position = vec3(0.3f, -0.2f, 2);
+  Person person{.position = vec3(0.3f, -0.2f, 2)};
   const vec3 to_head = place_person(person, rest, 1, distance()).head - on_screen({}),
              to_eye = now().position - on_screen({});
   EXPECT_GT(dot(normalize(to_head), normalize(to_eye)), 1 - 1e-6f);

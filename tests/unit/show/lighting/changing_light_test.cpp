@@ -41,10 +41,7 @@ int most_flashes(const std::vector<float>& values, float greatest) {
 }
 
 ChangingLight flame(const std::string& name, float depth, float hz) {
-  ChangingLight light;
-  light.name = name;
-  light.flicker = {depth, hz};
-  return light;
+  return ChangingLight{.name = name, .flicker = {depth, hz}};
 }
 
 // The counter must see flashes where there are some.

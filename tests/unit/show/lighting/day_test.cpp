@@ -11,10 +11,10 @@ namespace {
 // Towards -Z and up: the south of the scene at noon.
 PunctualLight sun_at(double elevation_deg, double azimuth_deg = 0) {
   const double e = glm::radians(elevation_deg), a = glm::radians(azimuth_deg);
-  PunctualLight sun;
-  sun.type = PunctualType::directional;
-  sun.direction = -vec3(std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e));
-  sun.intensity = vec3(12, 11, 9);
+  PunctualLight sun{
+      .type = PunctualType::directional,
+      .direction = -vec3(std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e)),
+      .intensity = vec3(12, 11, 9)};
   return sun;
 }
 

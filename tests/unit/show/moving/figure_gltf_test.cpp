@@ -100,8 +100,7 @@ Asset mapped(json material) {
 
 // One flat texel, as a PNG of stored bytes.
 std::string flat_normals() {
-  Frame frame;
-  frame.width = frame.height = 2;
+  Frame frame{.width = 2, .height = 2};
   frame.color.assign(4, vec3(0.5f, 0.5f, 1));
   TempFolder folder;
   std::string path = folder.write("flat.png", "");
@@ -238,8 +237,7 @@ TEST(FigureOfGltf, ExpressionsMovePictures) {
       asset.add_floats("VEC2", 2, uv);
   asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"]["surprised"]
             ["textureTransformBinds"] = {{{"material", 0}, {"offset", {0.5, 0}}}};
-  Frame halves;
-  halves.width = 8, halves.height = 4;
+  Frame halves{.width = 8, .height = 4};
   for (int i = 0; i < 32; i++)
     halves.color.push_back(i % 8 < 4 ? vec3(0.8f, 0.05f, 0.05f) : vec3(0.05f, 0.8f, 0.05f));
   TempFolder folder;

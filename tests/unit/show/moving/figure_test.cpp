@@ -8,8 +8,7 @@ namespace {
 
 // Two parts that share two vertices; everything follows one joint.
 Character make_character() {
-  Character character;
-  character.name = "Two parts";
+  Character character{.name = "Two parts"};
   character.joints.resize(1);
   character.joints[0].name = "humanoid_root";
   character.appearances = {

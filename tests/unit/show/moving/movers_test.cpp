@@ -92,9 +92,7 @@ TEST(Movers, MistakesAreNamedWithTheirPlace) {
 }
 
 TEST(Play, GoesToItsEndAndBackFromWhereItIs) {
-  ExhibitAnimation door;
-  door.start = ExhibitAnimation::Start::touch;
-  door.seconds = 2;
+  ExhibitAnimation door{.start = ExhibitAnimation::Start::touch, .seconds = 2};
   Play play;
   EXPECT_EQ(time_of(door, play, 50), 0);
   EXPECT_FALSE(is_running(door, play, 50));
@@ -106,8 +104,7 @@ TEST(Play, GoesToItsEndAndBackFromWhereItIs) {
   set_on(door, false, 200, play);
   set_on(door, true, 201, play);
   EXPECT_NEAR(time_of(door, play, 201.25), 1.25, 1e-9);
-  ExhibitAnimation clock;
-  clock.seconds = 2;
+  ExhibitAnimation clock{.seconds = 2};
   EXPECT_NEAR(time_of(clock, {}, 1e6 + 0.5), 0.5, 1e-6);
   EXPECT_TRUE(is_running(clock, {}, 1e6));
 }

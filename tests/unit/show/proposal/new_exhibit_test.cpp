@@ -9,10 +9,7 @@
 #include "unit/show/exhibit/room_package.h"
 #include "world/view.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-
+namespace wellspring::test {
 namespace {
 
 struct Made {
@@ -36,8 +33,6 @@ struct Made {
     return all;
   }
 };
-
-}  // namespace
 
 TEST(NewExhibit, ARoomIsSeenFromInsideAtEyeHeight) {
   Made made(room_asset());
@@ -161,3 +156,6 @@ TEST(NewExhibit, WhatCannotBeIsRefusedAndLeavesNothing) {
   EXPECT_THROW(make_new_exhibit(content, "mine", model), LoadError);
   EXPECT_EQ(folder.read("content/mine/exhibit.json"), before);
 }
+
+}  // namespace
+}  // namespace wellspring::test

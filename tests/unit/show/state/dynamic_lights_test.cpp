@@ -15,8 +15,7 @@ namespace {
 using nlohmann::json;
 
 ChangingLight flame(const char* name, int lamp) {
-  ChangingLight light;
-  light.name = name;
+  ChangingLight light{.name = name};
   light.light.intensity = vec3(2);
   light.lamp = lamp;
   light.flicker = {0.4f, 4};

@@ -7,8 +7,7 @@ namespace wellspring::test {
 namespace {
 
 Keyframe gray_keyframe(int width, int height, uint8_t value) {
-  View view;
-  view.width = width, view.height = height;
+  View view{.width = width, .height = height};
   Image8 image{width, height, std::vector<uint8_t>(3 * size_t(width * height), value)};
   Keyframe keyframe;
   make_keyframe(view, image, std::vector<float>(size_t(width * height), 1.0f), keyframe);

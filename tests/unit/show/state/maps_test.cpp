@@ -238,10 +238,7 @@ TEST_F(Maps, BetterOnesFadeIn) {
 
 // A ball of bronze before the visitor of the first viewpoint.
 void add_bronze(Exhibit& exhibit) {
-  Material bronze;
-  bronze.metallic = 1;
-  bronze.roughness = 0.1f;
-  exhibit.scene.materials.push_back(bronze);
+  exhibit.scene.materials.push_back({.metallic = 1, .roughness = 0.1f});
   Mesh ball = scenes::sphere_mesh(int(exhibit.scene.materials.size()) - 1, 0.5f);
   for (vec3& p : ball.positions) p += vec3(-2, 1.4f, 1);
   exhibit.scene.meshes.push_back(ball);

@@ -321,8 +321,7 @@ TEST_F(Judged, GraveOnesComeFirst) {
 }
 
 TEST(Status, TellsFindingsAndTablesAsJson) {
-  ShowReport report;
-  report.time = 100;
+  ShowReport report{.time = 100};
   StatusDesk desk("castle");
   desk.see(report);
   auto status = nlohmann::json::parse(write_status({desk.tell()}, {}, true));
@@ -352,8 +351,7 @@ TEST(Status, TellsFindingsAndTablesAsJson) {
 }
 
 TEST(Status, OfSeveralExhibitsTellsWhatIsAlikeOnceAndWhatFailed) {
-  ShowReport report;
-  report.denoiser_problem = "no weights";
+  ShowReport report{.denoiser_problem = "no weights"};
   StatusDesk castle("castle"), hill("hill");
   castle.see(report);
   report.sums_problem = "full";

@@ -16,18 +16,13 @@ View straight_view() {
 }
 
 Observation person_at(vec3 position, uint32_t id = 1) {
-  Observation observation;
-  observation.state = Presence::person;
-  Person person;
-  person.id = id;
-  person.position = position;
-  observation.people.push_back(person);
+  Observation observation{.state = Presence::person};
+  observation.people.push_back({.id = id, .position = position});
   return observation;
 }
 
 TEST(Audience, TheScreenIsAWindow) {
-  Person person;
-  person.position = {0.2f, 0.1f, viewing_distance + 0.5f};
+  Person person{.position = {0.2f, 0.1f, viewing_distance + 0.5f}};
   Guest guest = place_person(person, straight_view(), 1);
   EXPECT_NEAR(guest.head.x, 1.2f, 1e-6);
   EXPECT_NEAR(guest.head.y, 2.1f, 1e-6);

@@ -15,9 +15,7 @@ namespace {
 
 // A rod from 0.1 m below the fist to 0.3 m above it, a flame on it, a light over that.
 ExhibitProp make_torch(Flicker flicker) {
-  ExhibitProp prop;
-  prop.id = "torch";
-  prop.flicker = flicker;
+  ExhibitProp prop{.id = "torch", .flicker = flicker};
   Material wood, flame;
   wood.double_sided = flame.double_sided = true;
   flame.emission = vec3(4);
@@ -29,9 +27,7 @@ ExhibitProp make_torch(Flicker flicker) {
   fire.material = 1;
   prop.scene.meshes = {rod, fire};
   prop.scene.instances = {{0, mat4(1), 1}, {1, mat4(1), 2}};
-  PunctualLight light;
-  light.position = {0, 0.45f, 0};
-  light.intensity = vec3(7, 4, 2);
+  PunctualLight light{.position = {0, 0.45f, 0}, .intensity = vec3(7, 4, 2)};
   prop.scene.lights = {light};
   return prop;
 }

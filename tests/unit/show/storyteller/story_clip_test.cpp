@@ -12,8 +12,7 @@ namespace wellspring::test {
 namespace {
 
 StoryText make_story() {
-  StoryText story;
-  story.id = "s";
+  StoryText story{.id = "s"};
   story.text["en"] = read_story(
                          "<emotion name='joy'/>Once <gesture name='open_arms'/>there was a well. "
                          "<emotion name='sadness'/>It <emphasis>had</emphasis> no water.",
@@ -38,8 +37,7 @@ TEST(StoryClip, ToldAgainItIsTheSame) {
   Character character =
       load_character(std::string(WELLSPRING_SOURCE) + "/content/castle/figures/storyteller.x3d");
   for (bool humanlike : {false, true}) {
-    ClipSettings settings;
-    settings.humanlike = humanlike;
+    ClipSettings settings{.humanlike = humanlike};
     auto first = act_story(exhibit, character, mat4(1), make_story(), {}, settings);
     auto second = act_story(exhibit, character, mat4(1), make_story(), {}, settings);
     ASSERT_GT(first.size(), 60u);

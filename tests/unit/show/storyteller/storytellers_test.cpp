@@ -46,9 +46,8 @@ struct StorytellersTest : testing::Test, ShowStage {
   std::string seen() {
     std::string who;
     for (const StorytellerPlace& storyteller_place : show->stage.exhibit.storytellers) {
-      Ray ray;
-      ray.origin = vec3(storyteller_place.position) + vec3(0.02f, 2, 0.02f);
-      ray.direction = vec3(0, -1, 0);
+      Ray ray{.origin = vec3(storyteller_place.position) + vec3(0.02f, 2, 0.02f),
+              .direction = vec3(0, -1, 0)};
       if (std::abs(show->stage.world->intersect(ray).t - 1.5f) < 0.1f) who += storyteller_place.id;
     }
     return who;

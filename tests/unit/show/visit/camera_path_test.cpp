@@ -66,12 +66,7 @@ void expect_ends(const CameraPath& path, const Viewpoint& from, const Viewpoint&
 }
 
 Viewpoint view(dvec3 position, float yaw, float pitch = 0, float fov = 1) {
-  Viewpoint result;
-  result.position = position;
-  result.yaw = yaw;
-  result.pitch = pitch;
-  result.fov = fov;
-  return result;
+  return Viewpoint{.position = position, .yaw = yaw, .pitch = pitch, .fov = fov};
 }
 
 TEST(CameraPath, KeepsItsLimitsBetweenAnyTwoViews) {

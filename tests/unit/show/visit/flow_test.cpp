@@ -63,8 +63,7 @@ TEST(Flow, ATripThatGrowsIsLearnedFromWhatNothingWasBefore) {
 }
 
 TEST(Flow, WhatWasNotSentIsNotWaitedFor) {
-  Flow flow;
-  flow.acknowledges = true;
+  Flow flow{.acknowledges = true};
   note_sent(flow, 1, 0), note_sent(flow, 2, 0.01);
   EXPECT_FALSE(may_send(flow, 0.02));
   note_unsent(flow, 2);

@@ -44,9 +44,7 @@ size_t most_in_flight(const std::vector<SimulatedPicture>& pictures) {
 }
 
 TEST(GiveWay, ALineThatCarriesAllGetsAll) {
-  SimulatedLine line;
-  line.rate = [](double) { return 2000 * megabit; };
-  line.trip = 0.002;
+  SimulatedLine line{.rate = [](double) { return 2000 * megabit; }, .trip = 0.002};
   const auto pictures = between(simulate(line, {}, 5), 1, 5);
   ASSERT_GT(pictures.size(), 200u);
   for (const SimulatedPicture& one : pictures) {
@@ -59,9 +57,7 @@ TEST(GiveWay, ALineThatCarriesAllGetsAll) {
 TEST(GiveWay, LagStaysWithinTwoRoundTripsAndATenthOfASecond) {
   for (double rate : {20.0, 5.0, 1.0})
     for (double trip : {0.02, 0.08, 0.2}) {
-      SimulatedLine line;
-      line.rate = [&](double) { return rate * megabit; };
-      line.trip = trip;
+      SimulatedLine line{.rate = [&](double) { return rate * megabit; }, .trip = trip};
       const auto pictures = between(simulate(line, {}, 20), 1, 20);
       SCOPED_TRACE(testing::Message() << rate << " Mbit/s, " << trip << " s");
       EXPECT_LE(longest_lag(pictures), 2 * trip + 0.1);
@@ -75,8 +71,7 @@ TEST(GiveWay, LagStaysWithinTwoRoundTripsAndATenthOfASecond) {
 }
 
 TEST(GiveWay, QualityFallsBeforeRateAndRateBeforeResolution) {
-  Flow quick;
-  quick.line_rate = 1e8;
+  Flow quick{.line_rate = 1e8};
   PicturePlan before{82, 60, 8};
   for (float at = 0; at <= 3; at += 0.1f) {
     GiveWay way;
@@ -98,9 +93,8 @@ TEST(GiveWay, QualityFallsBeforeRateAndRateBeforeResolution) {
 
 TEST(GiveWay, FullQualityIsBackWithinThreeSecondsOfTheLinesRecovery) {
   for (double trip : {0.02, 0.08}) {
-    SimulatedLine line;
-    line.rate = [](double t) { return (t > 3 && t < 15 ? 1 : 200) * megabit; };
-    line.trip = trip;
+    SimulatedLine line{.rate = [](double t) { return (t > 3 && t < 15 ? 1 : 200) * megabit; },
+                       .trip = trip};
     const auto pictures = simulate(line, {}, 20);
     EXPECT_EQ(between(pictures, 2, 3).back().plan.quality, 82);
     EXPECT_EQ(between(pictures, 14, 15).back().limit, Limit::network);
@@ -114,9 +108,7 @@ TEST(GiveWay, FullQualityIsBackWithinThreeSecondsOfTheLinesRecovery) {
 }
 
 TEST(GiveWay, OthersQueuesDoNotStopIt) {
-  SimulatedLine line;
-  line.rate = [](double) { return 5 * megabit; };
-  line.trip = 0.05;
+  SimulatedLine line{.rate = [](double) { return 5 * megabit; }, .trip = 0.05};
   line.others = [](double t) { return t > 3 && t < 8 ? 0.4 : 0.0; };  // somebody fills the buffer
   const auto pictures = simulate(line, {}, 14);
   EXPECT_LE(longest_gap(between(pictures, 1, 14)), 1.2);
@@ -127,9 +119,8 @@ TEST(GiveWay, OthersQueuesDoNotStopIt) {
 }
 
 TEST(GiveWay, ASlowDecoderIsNotTakenForASlowLine) {
-  SimulatedLine line;
-  line.rate = [](double) { return 500 * megabit; };
-  line.decode = [](double t) { return t < 10 ? 0.08 : 0.004; };
+  SimulatedLine line{.rate = [](double) { return 500 * megabit; },
+                     .decode = [](double t) { return t < 10 ? 0.08 : 0.004; }};
   const auto pictures = simulate(line, {}, 15);
   const SimulatedPicture slow = between(pictures, 8, 10).back();
   EXPECT_EQ(slow.limit, Limit::browser);
@@ -140,9 +131,8 @@ TEST(GiveWay, ASlowDecoderIsNotTakenForASlowLine) {
 }
 
 TEST(GiveWay, ASlowEncoderIsNotTakenForASlowLine) {
-  SimulatedLine line;
-  line.rate = [](double) { return 500 * megabit; };
-  line.encode = [](double t) { return t < 10 ? 0.06 : 0.004; };
+  SimulatedLine line{.rate = [](double) { return 500 * megabit; },
+                     .encode = [](double t) { return t < 10 ? 0.06 : 0.004; }};
   const auto pictures = simulate(line, {}, 15);
   EXPECT_EQ(between(pictures, 8, 10).back().limit, Limit::server);
   EXPECT_EQ(pictures.back().limit, Limit::none);
@@ -160,12 +150,8 @@ TEST(GiveWay, FailedProbesBecomeRare) {
 }
 
 TEST(GiveWay, TheVisitorsLimitsAreKept) {
-  SimulatedLine line;
-  line.rate = [](double) { return 1000 * megabit; };
-  FlowWishes wishes;
-  wishes.quality = 60;
-  wishes.rate = 12;
-  wishes.bandwidth = 1.5 * megabit;
+  SimulatedLine line{.rate = [](double) { return 1000 * megabit; }};
+  FlowWishes wishes{.quality = 60, .rate = 12, .bandwidth = 1.5 * megabit};
   const auto pictures = between(simulate(line, wishes, 11), 1, 11);
   double bytes = 0;
   for (const SimulatedPicture& one : pictures) {
@@ -186,9 +172,7 @@ TEST(GiveWay, NothingIsThrottledToZero) {
 }
 
 TEST(GiveWay, WithoutAnswersToPingsTwoInFlightStillHold) {
-  SimulatedLine line;
-  line.answers_pings = false;
-  line.rate = [](double) { return 1 * megabit; };
+  SimulatedLine line{.rate = [](double) { return 1 * megabit; }, .answers_pings = false};
   EXPECT_LE(most_in_flight(between(simulate(line, {}, 20), 12, 20)), max_in_flight);
 }
 

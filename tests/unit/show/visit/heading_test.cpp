@@ -11,14 +11,13 @@ namespace wellspring::test {
 namespace {
 
 View facing(float yaw, vec3 place = vec3(0)) {
-  View view;
-  view.width = 320, view.height = 180;
-  view.tan_half_fov = 0.52f;
-  view.position = place;
-  view.forward = vec3(-std::sin(yaw), 0, -std::cos(yaw));
-  view.right = vec3(std::cos(yaw), 0, -std::sin(yaw));
-  view.up = vec3(0, 1, 0);
-  return view;
+  return View{.position = place,
+              .right = vec3(std::cos(yaw), 0, -std::sin(yaw)),
+              .up = vec3(0, 1, 0),
+              .forward = vec3(-std::sin(yaw), 0, -std::cos(yaw)),
+              .tan_half_fov = 0.52f,
+              .width = 320,
+              .height = 180};
 }
 float yaw_of(const View& view) { return std::atan2(-view.forward.x, -view.forward.z); }
 

@@ -90,12 +90,11 @@ inline std::vector<SimulatedPicture> simulate(const SimulatedLine& line, const F
     due = std::clamp(due + 1 / plan.rate, now - 0.5 / plan.rate, now);
     const double scale = plan.eighths / 8.0;
     const double wobble = 1 + 0.1 * double(pictures.size() % 3);
-    SimulatedPicture picture;
-    picture.plan = plan;
-    picture.limit = limit(way);
-    picture.sent = now;
-    picture.bytes = wobble * wishes.pixels * std::pow(scale, 1.6) * line.bytes_per_pixel *
-                    double(size_of_quality(plan.quality));
+    SimulatedPicture picture{.sent = now,
+                             .bytes = wobble * wishes.pixels * std::pow(scale, 1.6) *
+                                      line.bytes_per_pixel * double(size_of_quality(plan.quality)),
+                             .plan = plan,
+                             .limit = limit(way)};
     const double work = scale * scale * (0.5 + 0.5 * plan.quality / 82.0);
     const uint32_t frame = uint32_t(pictures.size() + 1);
     note_sent(flow, frame, now);

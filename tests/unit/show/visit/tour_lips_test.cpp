@@ -32,10 +32,7 @@ struct TourLips : testing::Test, ShowStage {
     exhibit.shared_storyteller = true;
     // 2 m before the viewpoint where the tour begins.
     StorytellerPlace& storyteller_place = add_storyteller(exhibit, "anna", {-2, 0, 1});
-    Displacer open;
-    open.name = "viseme_aa";
-    open.vertices = {0};
-    open.displacements = {{0, 0.01f, 0}};
+    Displacer open{.name = "viseme_aa", .vertices = {0}, .displacements = {{0, 0.01f, 0}}};
     storyteller_place.character.displacers = {open};
     tick_seconds = 0.04;
     begin(std::move(exhibit), settings_for("direct"));
@@ -136,8 +133,7 @@ TEST_F(TourLips, ThePersonBeforeAKioskIsTheViewer) {
   const float camera = viewer_distance(*show, show->cast.teller);
   const View view = view_of(*show, visitor());
   for (float away : {0.6f, 1.6f, 4.6f}) {
-    Person person;
-    person.position = {0, 0, away};
+    Person person{.position = {0, 0, away}};
     audience.guests = {place_person(person, view, 0)};
     EXPECT_NEAR(viewer_distance(*show, show->cast.teller), camera + away - viewing_distance, 0.1f);
   }

@@ -18,8 +18,7 @@ bool loads(const std::string& path) {
       for (const vec3& n : mesh.normals) EXPECT_NEAR(length(n), 1, 1e-3f);
     }
     World world(scene);
-    Ray ray;
-    ray.origin = vec3(0.1f, 0.2f, 5);
+    Ray ray{.origin = vec3(0.1f, 0.2f, 5)};
     world.intersect(ray);
     return true;
   } catch (const LoadError& error) {
@@ -169,8 +168,7 @@ TEST(Refuse, FilesOutsideThePackage) {
   EXPECT_FALSE(loads(with("sub")));  // a folder
   EXPECT_FALSE(loads(with("missing.bin")));
   // A wider package allows what the file's own folder does not, up to its own edge.
-  SceneLoadOptions wider;
-  wider.package = (folder.path() / "package").string() + "/";
+  SceneLoadOptions wider{.package = (folder.path() / "package").string() + "/"};
   json root = asset.finished(true);
   root["buffers"][0]["uri"] = "deep.bin";
   EXPECT_NO_THROW(load_scene(folder.write("package/sub/test.gltf", root.dump()), wider));

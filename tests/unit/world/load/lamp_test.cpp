@@ -16,20 +16,14 @@ struct Row {
   Scene scene;
   Row() {
     scene.objects = {"", "bulb", "bulb far", "strip", "screen"};
-    Material emitting;
-    emitting.name = "glow";
-    emitting.base_color = vec4(0.2f, 0.2f, 0.2f, 1);
-    emitting.metallic = 0;
-    emitting.emission = vec3(3, 2, 1);
-    Material unlit;
-    unlit.name = "screen";
-    unlit.unlit = true;
-    unlit.base_color = vec4(0.5f, 0.6f, 0.7f, 1);
-    Material dull;
-    dull.name = "stone";
+    Material emitting{.name = "glow",
+                      .base_color = vec4(0.2f, 0.2f, 0.2f, 1),
+                      .metallic = 0,
+                      .emission = vec3(3, 2, 1)};
+    Material unlit{.name = "screen", .base_color = vec4(0.5f, 0.6f, 0.7f, 1), .unlit = true};
+    Material dull{.name = "stone"};
     scene.materials = {emitting, unlit, dull};
-    Mesh square;
-    square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    Mesh square{.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
     square.normals.assign(4, vec3(0, 0, 1));
     square.triangles = {{0, 1, 2}, {0, 2, 3}};
     Mesh screen = square;

@@ -13,11 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SceneLoadOptions moving_options() {
-  SceneLoadOptions options;
-  options.motion = true;
-  return options;
-}
+SceneLoadOptions moving_options() { return SceneLoadOptions{.motion = true}; }
 
 std::vector<double> only(const SceneMotion& motion, size_t clip, double time) {
   std::vector<double> times(motion.clips.size(), -1);
@@ -154,6 +150,7 @@ TEST(SceneMotion, RealFilesMoveAsTheyDoWhenTheyAreLoadedAtThatTime) {
   const fs::path data = fs::path(WELLSPRING_DATA) / "1_gltf";
   if (!fs::exists(data)) GTEST_SKIP() << "no corpus at " << data;
   int compared = 0;
+  std::string missing;
   for (const char* name :
        {"khronos/BoxAnimated/glTF-Binary/BoxAnimated.glb",
         "khronos/CesiumMilkTruck/glTF-Binary/CesiumMilkTruck.glb",
@@ -165,13 +162,15 @@ TEST(SceneMotion, RealFilesMoveAsTheyDoWhenTheyAreLoadedAtThatTime) {
         "khronos/AnimatedTriangle/glTF/AnimatedTriangle.gltf", "ozz/interpolation_test.gltf"}) {
     SCOPED_TRACE(name);
     const std::string path = (data / name).string();
-    if (!fs::exists(path)) continue;
+    if (!fs::exists(path)) {
+      missing += std::string(" ") + name;
+      continue;
+    }
     const Scene rest = load_scene(path, moving_options());
     ASSERT_FALSE(rest.motions.empty());
     const double end = gltf::length_of(rest.motions[0].of->clips[0]);
     for (double time : {0.13 * end, 0.5 * end, 0.91 * end}) {
-      SceneLoadOptions options;
-      options.time = time;
+      SceneLoadOptions options{.time = time};
       const Scene whole = load_scene(path, options);
       ASSERT_EQ(whole.instances.size(), rest.instances.size());
       for (size_t m = 0; m < rest.motions[0].of->movers.size(); m++) {
@@ -192,6 +191,7 @@ TEST(SceneMotion, RealFilesMoveAsTheyDoWhenTheyAreLoadedAtThatTime) {
     }
   }
   EXPECT_GT(compared, 20);
+  if (!missing.empty()) GTEST_SKIP() << "not all files are here:" << missing;
 }
 
 }  // namespace

@@ -10,12 +10,10 @@
 #include "world/raster/raster.h"
 #include "world/raster/raster_edges.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 // Coverage of every pixel by an instance, as edges tell it from one sampling place, and as they do
 // not.
@@ -26,8 +24,7 @@ struct Coverage {
 Coverage coverage_by(Raster& raster, const View& view, uint32_t instance) {
   Coverage c;
   c.plain.resize(size_t(view.width) * size_t(view.height));
-  RasterSettings settings;
-  settings.edges = true;
+  RasterSettings settings{.edges = true};
   raster.draw(view, settings, [&](const RasterRun& run) {
     for (int i = 0; i < run.count; i++)
       c.plain[size_t(run.y * view.width + run.x + i)] = run.instance[i] == instance;
@@ -87,9 +84,8 @@ CoverageError look_at(const Mesh& mesh) {
   grating.material = grey;
   grating.normals.assign(grating.positions.size(), {0, 0, 1});
   add_mesh(scene, grating, "grating");
-  add_quad(scene, grey, {-9, -9, -7}, {18, 0, 0}, {0, 18, 0}, "wall");
+  add_wall(scene, grey, -7);
   World world(scene);
-  world.commit();
   Raster raster(world);
   View view = make_view(scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.5f), 240, 240);
   return compare_coverage(world, view, coverage_by(raster, view, 0), 0);
@@ -102,8 +98,6 @@ void add_face(Mesh& mesh, vec3 a, vec3 u, vec3 v) {  // with vertices of its own
 }
 constexpr float pixel = 1 / 120.0f;  // metres, for look_at()
 
-}  // namespace
-
 // Edges of a turned square before nothing, before a wall and upon it, over many tiles.
 TEST(Raster, EdgesTellHowMuchOfAPixelIsCovered) {
   for (int background : {0, 1, 2}) {
@@ -111,12 +105,11 @@ TEST(Raster, EdgesTellHowMuchOfAPixelIsCovered) {
     int grey = add_material(scene, diffuse(vec3(0.5f)));
     vec3 across(1.3f, 0.4f, 0.3f), up(-0.3f, 1.1f, -0.2f), corner(-0.7f, -0.6f, -3);
     add_quad(scene, grey, corner, across, up, "square");
-    if (background == 1) add_quad(scene, grey, {-9, -9, -7}, {18, 0, 0}, {0, 18, 0}, "wall");
+    if (background == 1) add_wall(scene, grey, -7);
     if (background == 2)  // in its plane, a hair behind
       add_quad(scene, grey, corner - 4.0f * across - 4.0f * up + vec3(0, 0, -0.002f), 9.0f * across,
                9.0f * up, "board");
     World world(scene);
-    world.commit();
     Raster raster(world);
     View view = make_view(scene, {0, 0, 0}, 0, 0, 0.9f, 301, 203);
     Coverage c = coverage_by(raster, view, 0);
@@ -133,7 +126,6 @@ TEST(Raster, EdgesAreNotThoseOfTriangles) {
   int grey = add_material(scene, diffuse(vec3(0.5f)));
   add_mesh(scene, sphere_mesh(grey, 1, 64), "ball", at({0, 0, -4}));
   World world(scene);
-  world.commit();
   Raster raster(world);
   View view = make_view(scene, {0, 0, 0}, 0, 0, 0.9f, 320, 240);
   Coverage c = coverage_by(raster, view, 0);
@@ -201,3 +193,6 @@ TEST(Raster, TrianglesKnowTheirNeighbours) {
   for (uint8_t s : found.bar) bar += s;
   EXPECT_LT(bar, int(ball.triangles.size()) / 10);
 }
+
+}  // namespace
+}  // namespace wellspring::test

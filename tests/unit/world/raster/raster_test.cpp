@@ -15,12 +15,10 @@
 #include "world/raster/raster_setup.h"
 #include "world/surface.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 struct Picture {
   std::vector<Hit> hits;
@@ -108,15 +106,12 @@ View view_of(const Scene& scene, int i, int width = 160, int height = 90) {
                    0.3f + 0.4f * float(i % 6), width, height);
 }
 
-}  // namespace
-
 TEST(Raster, SeesWhatRaysSee) {
   Scene scene = empty_scene();
   add_mesh(scene, soup(1, 3000), "soup");
   add_mesh(scene, soup(2, 300), "turned",
            mat4(0.3f, 0.1f, 0, 0, 0, 0.5f, 0, 0, 0.1f, 0, 0.9f, 0, 1, 0, 0, 1));
   World world(scene);
-  world.commit();
   Raster raster(world);
   for (int i = 0; i < 12; i++) {
     View view = view_of(scene, i);
@@ -131,13 +126,11 @@ TEST(Raster, SeesWhatRaysSeeBesideTheAxis) {
   Scene scene = empty_scene();
   add_mesh(scene, soup(1, 3000), "soup");
   World world(scene);
-  world.commit();
   Raster raster(world);
   for (int i = 0; i < 6; i++) {
     View view = view_of(scene, i);
     view.middle = vec2(1.3f * std::cos(float(i)), 0.9f * std::sin(float(i)));
-    RasterSettings settings;
-    settings.offset = {0.3f, 0.8f};
+    RasterSettings settings{.offset = {0.3f, 0.8f}};
     Picture picture = draw(raster, view, settings);
     EXPECT_EQ(picture.taken, 160 * 90);
     EXPECT_EQ(wrong_pixels(world, view, picture, settings.offset), 0) << "view " << i;
@@ -149,7 +142,6 @@ TEST(Raster, SeesWhatRaysSeeBehindTheViewsBeginning) {
   Scene scene = empty_scene();
   add_mesh(scene, soup(1, 3000), "soup");
   World world(scene);
-  world.commit();
   Raster raster(world);
   for (int i = 0; i < 6; i++) {
     View view = view_of(scene, i);
@@ -181,7 +173,6 @@ TEST(Raster, LeavesOutWhatIsHidden) {
   for (vec3& p : mover.positions) p = 0.15f * p + vec3(4, 0, -12);
   scene.objects.push_back("mover");
   World world(scene, {mover}, {uint32_t(scene.objects.size() - 1)});
-  world.commit();
   Raster raster(world);
   View view = make_view(scene, {0, 0, 0}, 0, 0, 1.2f, 320, 180);
   Picture picture = draw(raster, view);
@@ -210,13 +201,8 @@ TEST(Raster, StillAndMovingMakeAll) {
   Mesh mover = sphere_mesh(0, 0.02f, 16);
   for (vec3& p : mover.positions) p += view.position + 0.1f * view.forward;
   World world(scene, {mover}, {uint32_t(scene.objects.size() - 1)});
-  world.commit();
   Raster raster(world);
-  auto shows = [&](RasterShows which) {
-    RasterSettings settings;
-    settings.shows = which;
-    return draw(raster, view, settings);
-  };
+  auto shows = [&](RasterShows which) { return draw(raster, view, {.shows = which}); };
   Picture all = shows(RasterShows::all), still = shows(RasterShows::still),
           moving = shows(RasterShows::moving);
   int from[2] = {};
@@ -239,13 +225,10 @@ TEST(Raster, SamplesWhereItIsTold) {
   Scene scene = empty_scene();
   add_mesh(scene, soup(3, 2000), "soup");
   World world(scene);
-  world.commit();
   Raster raster(world);
   View view = view_of(scene, 1, 91, 67);  // odd: tiles and rows end anywhere
   for (vec2 offset : {vec2(0, 0), vec2(0.25f, 0.875f)}) {
-    RasterSettings settings;
-    settings.offset = offset;
-    Picture picture = draw(raster, view, settings);
+    Picture picture = draw(raster, view, {.offset = offset});
     EXPECT_EQ(wrong_pixels(world, view, picture, offset), 0);
   }
 }
@@ -313,7 +296,6 @@ TEST(Raster, AFineSurfaceHasNoHoles) {
     }
   add_mesh(scene, grid, "grid");
   World world(scene);
-  world.commit();
   Raster raster(world);
   View view = make_view(scene, {0, 0, 0}, 0, 0, 1.2f, 120, 100);
   Picture picture = draw(raster, view);
@@ -332,9 +314,8 @@ TEST(Raster, AlphaLetsPassAsRaysDo) {
   blade.normals.assign(3, {0, 0, 1});
   blade.triangles = {{0, 1, 2}};
   add_mesh(scene, blade, "blade");
-  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {-1, -1, -3}, {2, 0, 0}, {0, 2, 0});
+  add_wall(scene, diffuse(vec3(0.5f)), -3, 1, "quad");
   World world(scene);
-  world.commit();
   Raster raster(world);
   View view = make_view(scene, {0, 0, 0}, 0, 0, 1, 128, 96);
   Picture picture = draw(raster, view);
@@ -356,15 +337,13 @@ TEST(Raster, SeeThroughSurfacesVeilWhatIsBehind) {
   int pane = add_material(scene, glass(1.5f, 0, 0));
   add_quad(scene, pane, {-0.5f, -1, -2}, {0.5f, 0, 0}, {0, 2, 0});  // before the wall
   add_quad(scene, pane, {0.2f, -1, -4}, {0.5f, 0, 0}, {0, 2, 0});   // behind it
-  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
+  add_wall(scene, diffuse(vec3(0.5f)), -3, 9, "quad");
   World world(scene);
-  world.commit();
   Raster raster(world);
   View view = make_view(scene, {0, 0, 0}, 0, 0, 0.8f, 100, 80);
   std::vector<uint8_t> see_through(scene.materials.size(), 0);
   see_through[size_t(pane)] = 1;
-  RasterSettings settings;
-  settings.see_through = see_through;
+  RasterSettings settings{.see_through = see_through};
   settings.veil = [&](const Hit& hit, vec3 direction) {
     EXPECT_EQ(hit.instance, 0u);
     EXPECT_NEAR(
@@ -392,7 +371,6 @@ TEST(Raster, FollowsWhatMovesAndHides) {
   Mesh ball = sphere_mesh(0, 0.3f, 24);
   for (vec3& p : ball.positions) p.z -= 2;
   World world(scene, {ball}, {1});
-  world.commit();
   Raster raster(world);
   View view = make_view(scene, {0, 0, 0}, 0, 0, 0.8f, 96, 96);
   EXPECT_EQ(wrong_pixels(world, view, draw(raster, view)), 0);
@@ -418,7 +396,6 @@ TEST(Raster, HardCases) {
   for (uint32_t i = 200; i < 260; i++) mesh.triangles.push_back({eye, i, i + 7});
   add_mesh(scene, mesh, "soup");
   World world(scene);
-  world.commit();
   Raster raster(world);
   for (float fov : {0.001f, 0.087f, 2.618f, 3.1f})
     for (auto [width, height] : {std::pair(1, 1), std::pair(70, 3), std::pair(3, 70)}) {
@@ -437,7 +414,9 @@ TEST(Raster, HardCases) {
 
   Scene empty = empty_scene();
   World nothing(empty);
-  nothing.commit();
   Raster none(nothing);
   EXPECT_EQ(draw(none, view_of(empty, 0)).taken, 160 * 90);
 }
+
+}  // namespace
+}  // namespace wellspring::test

@@ -13,12 +13,10 @@
 #include "scenes/scenes.h"
 #include "world/world.h"
 
-using namespace wellspring;
-
-using namespace wellspring::test;
-using namespace wellspring::scenes;
-
+namespace wellspring::test {
 namespace {
+
+using namespace scenes;
 
 constexpr int rays_of_a_case = 64000;
 
@@ -104,8 +102,6 @@ mat4 placed_at(vec3 place, float scale) {
   return to_world;
 }
 
-}  // namespace
-
 TEST(Watertight, ClosedMeshesThatStandStill) {
   const std::pair<const char*, Mesh> shapes[] = {{"ball", closed_ball(1, 48)},
                                                  {"box", box_mesh(0, vec3(2), true)}};
@@ -154,8 +150,7 @@ TEST(Watertight, NearSidesOfSolidsFromAfar) {
   for (int n = 0; n < rays_of_a_case; n++) {
     Target target = aim(ball, mat4(1), vec3(0), 0, random);
     vec3 aside(random.uniform() - 0.5f, random.uniform() - 0.5f, random.uniform() - 0.5f);
-    Ray ray;
-    ray.origin = 40.0f * normalize(target.to + 0.8f * aside);
+    Ray ray{.origin = 40.0f * normalize(target.to + 0.8f * aside)};
     vec3 line = target.to - ray.origin;
     ray.direction = normalize(line);
     if (dot(ray.direction, target.to) > -0.3f) continue;  // on the far side, or grazing
@@ -164,3 +159,6 @@ TEST(Watertight, NearSidesOfSolidsFromAfar) {
   }
   EXPECT_EQ(through, 0);
 }
+
+}  // namespace
+}  // namespace wellspring::test
