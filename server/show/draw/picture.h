@@ -7,6 +7,7 @@
 // it. The time that is left of the visitor's share goes to samples; those of a walking visitor are
 // traced when its picture is done, and land in the next (show/draw/late_samples.h).
 #pragma once
+#include "show/state/renderer.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {
