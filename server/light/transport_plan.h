@@ -44,7 +44,7 @@ enum class VirtualLightChoice : uint8_t {
   by_effect,        // by flux and by what a texel does, unshadowed, to places that are seen
 };
 
-// Holds the settings of multires_splatting (light/splat).
+// Holds the settings of multires_splatting (light/virtual).
 struct SplatSettings {
   int virtual_lights = 256;  // at most most_virtual_lights
   int texels = 4096;         // texels of all reflective shadow maps together
@@ -57,7 +57,7 @@ struct SplatSettings {
   float convergence = 0;   // >0: refined also if irradiance bends by more than that share of it
   bool visibility = true;  // shadow rays from what is lit to virtual lights
   // Without shadow rays, each light sends so many rays to find the share of it that arrives at
-  // visible places, on average (light/splat/splat_visibility.h); 0: all arrives.
+  // visible places, on average (light/virtual/splat_visibility.h); 0: all arrives.
   int light_rays = 0;
   int shadow_rays = 8;  // shadow rays of each subsplat
   int probe_rays = 8;   // rays of each subsplat above a pixel, to find whether visibility changes

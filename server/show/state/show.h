@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "ledger/sums.h"
-#include "light/known/skin_light.h"
+#include "light/kept/skin_light.h"
 #include "light/technique/technique.h"
 #include "light/visible/visibility.h"
 #include "picture/warp_picture.h"
