@@ -12,7 +12,7 @@
 #include "base/rng.h"
 #include "base/simd.h"
 #include "light/kept/finish_bake.h"
-#include "light/virtual/edge_samples.h"
+#include "light/virtual/eye_light.h"
 #include "light/virtual/instant_radiosity.h"
 #include "light/random/sampler.h"
 #include "light/sample/lamps_seen.h"

@@ -183,16 +183,6 @@ Lanes eval_highlight(const Rows& r, const RowGloss& g, const Arriving& a, Lanes&
   return 0.5f * alpha2 / (base * base * shadowing);
 }
 
-// Returns the light that thin panes let through along a ray that is blocked by something.
-vec3 pass_panes(const Transport& transport, const RayPacket& rays, int i) {
-  Ray ray;
-  ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
-  ray.direction = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]};
-  ray.t_max = rays.t_max[i];
-  if (!may_cross_pane(transport.tables.pane_boxes, ray)) return vec3(0);
-  return eval_visibility(transport, ray);
-}
-
 // Returns the reflectance of facets under a cosine: exact for dielectrics (Cook and Torrance 1982,
 // equation 18), by Schlick for metal.
 Lanes eval_fresnel(Lanes f0, Lanes metallic, Lanes cosine) {
@@ -274,7 +264,7 @@ void light_pixels(const Transport& transport, std::span<const Lit> lights, const
       if (transport.tables.any_pane)
         for (uint32_t bits = (blocked & active) >> (k * wide) & 0xff; bits; bits &= bits - 1) {
           const int lane = std::countr_zero(bits);
-          const vec3 passes = pass_panes(transport, rays, k * wide + lane);
+          const vec3 passes = eval_blocked(transport, rays, k * wide + lane);
           for (int c = 0; c < 3; c++) light[c][lane] = strength[k][lane] * passes[c];
         }
       for (int c = 0; c < 3; c++) light[c] *= lit.light->intensity[c];

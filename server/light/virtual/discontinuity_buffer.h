@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "light/sample.h"
+#include "light/sample/lights.h"
+#include "light/transport_plan.h"
 #include "world/view.h"
 
 namespace wellspring::light {
@@ -36,5 +38,18 @@ bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& sett
 // Several windows are applied one after the other; edges are those of the first one.
 void filter_windows(const View& view, std::span<const DiscontinuitySettings> windows,
                     std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);
+
+// Sends more rays from the eye to edges: light is smooth and costs most, surfaces and colours that
+// reflect it end sharply and cost little. After the discontinuity buffer, pixels whose neighbours
+// show another surface or another colour get more rays; each finds a surface and takes the light of
+// the nearest pixel that shows the same one. If no pixel does, the ray's place is lit by itself.
+// (The paper of instant_radiosity.h antialiases by accumulating pictures alone, section 4.)
+
+// Makes samples[y * width + x], filtered, means over `rays` more samples a pixel at `edges`, which
+// are filter_windows()'s. `lights.pass` is the pass they were traced in.
+void refine_edges(const World& world, const Lights& lights, const TransportSettings& settings,
+                  const View& view, const DiscontinuitySettings& continuity, int rays,
+                  uint64_t seed, uint32_t index, std::span<const uint8_t> edges,
+                  std::span<Sample> samples);
 
 }  // namespace wellspring::light

@@ -2,17 +2,18 @@
 // Computes the light of lights that move or change for one picture, at its resolution or half of
 // it; it is read back per pixel, never across edges.
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "light/transport_plan.h"
 #include "light/virtual/direct_light.h"
 #include "light/virtual/splatter.h"
-#include "light/transport_plan.h"
 #include "light/visible/surface_buffer.h"
 
 namespace wellspring::light {
 
-// Holds light that is scattered once: virtual lights, and the light they send to a picture.
+// Holds light that is scattered once: VPLs, and the light they send to a picture.
 struct DynamicBounce {
   std::vector<SplatSource> sources;
   std::vector<LitProbe> probes;
@@ -26,7 +27,7 @@ struct DynamicImage {
 };
 size_t memory_bytes(const DynamicImage& image);
 
-// Returns the settings for pictures of the show: few virtual lights, the same random numbers in
+// Returns the settings for pictures of the show: few VPLs, the same random numbers in
 // every picture, so that light changes as smoothly as its source.
 SplatSettings dynamic_splat_settings();
 
@@ -63,7 +64,7 @@ void read_dynamic_light(const DynamicImage& image, const View& view, const Visib
                         const RunSurface& surface, RunDynamic& to);
 
 // Keeps light scattered once by dynamic lights that stay as they are for a while, as the sun at the
-// hour that was chosen: the mean of many passes of virtual lights, each with other random numbers
+// hour that was chosen: the mean of many passes of VPLs, each with other random numbers
 // and with shadows, so that a picture at rest comes to the true light of one bounce.
 
 struct SettledBounce {
@@ -94,5 +95,27 @@ void add_pass(const World& world, const Lights& lights, const SurfaceBuffer& sur
               const SplatSettings& settings, SettledBounce& settled, DynamicBounce& bounce);
 // Adds the mean to `light`.
 void add_settled(const SettledBounce& settled, LightPlanes& light);
+
+// Keeps the still surfaces of a picture at rest, as the light of lights that move needs them: found
+// once while the view stays, so that only the light is new in each picture.
+
+struct BackdropSurfaces {
+  View view;               // view of the picture
+  SurfaceBuffer surfaces;  // in its dynamic_light_view(), without what moves
+  // Three for each pixel: 255 times its root; 0 if the pixel only emits
+  std::vector<uint8_t> reflectance;
+  // For each pixel the weights, in 255ths, of the four pixels of light around it, by light_taps(),
+  // the first in the lowest byte. Empty: light has the picture's resolution.
+  RawVector<uint32_t> shares;
+};
+size_t memory_bytes(const BackdropSurfaces& backdrop);
+
+// Fills `backdrop`. The view must be one that visibility.rasterises().
+void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
+                            BackdropSurfaces& backdrop);
+
+// Computes the radiance that the pixels [x, x + count) of row y reflect of that light.
+void reflect_light(const BackdropSurfaces& backdrop, const LightPlanes& light, int x, int y,
+                   int count, RunKnown& to);
 
 }  // namespace wellspring::light

@@ -6,9 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "light/sample.h"
+#include "light/sample/lights.h"
+#include "light/transport_plan.h"
 #include "light/virtual/instant_pass.h"
 #include "light/virtual/point_light_shading.h"
-#include "light/sample.h"
 #include "light/walk/walk.h"
 
 namespace wellspring::light {
@@ -64,5 +66,14 @@ class GroupOrder {
  private:
   std::vector<uint64_t> keys_;
 };
+
+// Answers requests by the point lights and photons of a pass that has begun
+// (light/virtual/instant_pass.h): the trace functions of technique `instant_radiosity`
+// (light/technique/technique.h).
+
+Sample trace_instant(const World& world, const Lights& lights, const TransportSettings& settings,
+                     const Request& request);
+void trace_many_instant(const World& world, const Lights& lights, const TransportSettings& settings,
+                        std::span<const Request> requests, std::span<Sample> samples);
 
 }  // namespace wellspring::light

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds what instant radiosity draws for one pass over a picture: sets of point lights, the lights
+// Holds what instant radiosity draws for one pass over a picture: sets of VPLs, the lights
 // that each region asks, and the photon map of caustics.
 #pragma once
 #include <cmath>
@@ -139,7 +139,7 @@ struct RegionLights {
   std::vector<RegionLight> lights;
 };
 
-struct LightLanes;  // point_lights_simd.h
+struct LightLanes;  // virtual_lights.h
 
 // Holds what one pass has drawn.
 struct InstantPass {

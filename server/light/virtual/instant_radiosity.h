@@ -16,13 +16,14 @@
 // (region_lights.h) and a few of those for each region of the picture (region_lights.h), so that
 // there are many more lights than shadow rays of a pixel, in lists that interleave in a pattern of
 // their own, twice as wide as that of sets; the first passes' irradiance is averaged over that
-// pattern, too, which later passes make good; edges get more rays from the eye (edge_samples.h);
-// Owen scrambling, which adds to the paper's XOR by a random bit vector only that the vector
-// depends on the bits before, and decorrelates the dimensions of the shared Sampler better; rays
-// instead of nothing for the last line; sets complement each other over passes as well. Walks of
-// light and of the eye that meet dispersive glass carry wavelengths from there (dispersion.h). If
-// both do, they are joined if their hues are near each other (meet_hues): a blur along the
-// spectrum, as that of photons is one along the surface. Light of moving emitters is not claimed.
+// pattern, too, which later passes make good; edges get more rays from the eye
+// (discontinuity_buffer.h); Owen scrambling, which adds to the paper's XOR by a random bit vector
+// only that the vector depends on the bits before, and decorrelates the dimensions of the shared
+// Sampler better; rays instead of nothing for the last line; sets complement each other over passes
+// as well. Walks of light and of the eye that meet dispersive glass carry wavelengths from there
+// (dispersion.h). If both do, they are joined if their hues are near each other (meet_hues): a blur
+// along the spectrum, as that of photons is one along the surface. Light of moving emitters is not
+// claimed.
 #pragma once
 #include <span>
 

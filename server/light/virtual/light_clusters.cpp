@@ -107,24 +107,25 @@ void unite(LightClusters& all, size_t c) {
   if (!(power > 0) || !std::isfinite(1 / power)) return;
   if (!is_same(l, l.near, c) || !is_same(l, l.back, c) || !is_same(l, l.even, c)) return;
   const Lanes weight = l.power[c] / power;
-  vec3 centre(lanes_sum(l.x[c] * weight), lanes_sum(l.y[c] * weight), lanes_sum(l.z[c] * weight));
-  vec3 normal(lanes_sum(l.nx[c] * weight), lanes_sum(l.ny[c] * weight),
-              lanes_sum(l.nz[c] * weight));
+  auto mean = [&](const Lanes3& of) {
+    return vec3(lanes_sum(of.x * weight), lanes_sum(of.y * weight), lanes_sum(of.z * weight));
+  };
+  const VplGroup& group = l.groups[c];
+  const vec3 centre = mean(group.position);
+  vec3 normal = mean(group.normal);
   const float length = std::sqrt(dot(normal, normal));
   if (!(length > 0)) return;
   normal /= length;
   float radius2 = 0, spread2 = 0;
   for (int i = 0; i < lane_count; i++) {
     if (l.number[c * lane_count + size_t(i)] == LightLanes::none) continue;
-    vec3 away = vec3(l.x[c][i], l.y[c][i], l.z[c][i]) - centre,
-         turned = vec3(l.nx[c][i], l.ny[c][i], l.nz[c][i]) - normal;
+    vec3 away = group.position.at(i) - centre, turned = group.normal.at(i) - normal;
     radius2 = std::max(radius2, dot(away, away)), spread2 = std::max(spread2, dot(turned, turned));
   }
   if (!std::isfinite(radius2 + spread2)) return;
   ClusterRow& row = all.rows[c / lane_count];
   const size_t lane = c % lane_count;
-  row.x[lane] = centre.x, row.y[lane] = centre.y, row.z[lane] = centre.z;
-  row.nx[lane] = normal.x, row.ny[lane] = normal.y, row.nz[lane] = normal.z;
+  row.position.set(int(lane), centre), row.normal.set(int(lane), normal);
   row.radius[lane] = std::sqrt(radius2), row.spread[lane] = std::sqrt(spread2);
   row.near[lane] = l.near[c][0], row.back[lane] = l.back[c][0], row.even[lane] = l.even[c][0];
   row.power[lane] = power;
@@ -143,14 +144,12 @@ Lanes lit_cosine(Lanes middle, Lanes reach, LaneMask both_sides) {
 // does; adds to `near` the bits of those too near for that.
 Lanes eval_row(const ClusterRow& row, const LitPoint& point, float most, unsigned& near) {
   const Lanes one = all_lanes(1.0f);
-  const vec3 place = point.position;
-  Lanes x = row.x - place.x * row.near, y = row.y - place.y * row.near,
-        z = row.z - place.z * row.near;
-  Lanes inverse = one / lanes_sqrt(lanes_max(x * x + y * y + z * z, all_lanes(1e-20f)));
+  const Lanes3 way = row.position - all_lanes(point.position) * row.near;
+  Lanes inverse = one / lanes_sqrt(lanes_max(dot(way, way), all_lanes(1e-20f)));
   Lanes reach = lanes_min(row.radius * inverse, one);
   near |= negative_lanes(reach > 1 / near_radii);
-  Lanes here = (x * point.normal.x + y * point.normal.y + z * point.normal.z) * inverse;
-  Lanes there = -(x * row.nx + y * row.ny + z * row.nz) * inverse;
+  Lanes here = dot(way, all_lanes(point.normal)) * inverse;
+  Lanes there = -dot(way, row.normal) * inverse;
   here = lit_cosine(here, reach, LaneMask{} - int(point.both_sides));
   there = lit_cosine(there, reach + row.spread, row.back > 0);
   here += point.even * (one - here);

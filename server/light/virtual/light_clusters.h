@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups a pass's point lights in clusters of eight neighbours, to find out quickly what each may
+// Groups a pass's VPLs in clusters of eight neighbours, to find out quickly what each may
 // do to a few places: clusters far away are asked as one light, near ones light by light. After
 // Walter et al., "Lightcuts: A Scalable Approach to Illumination" (2005), with one level; the
 // result is a chance to be chosen, never light.
@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "light/virtual/instant_pass.h"
-#include "light/virtual/point_lights_simd.h"
+#include "light/virtual/virtual_lights.h"
 
 namespace wellspring::light {
 
-// Orders a pass's point lights so that neighbours do much the same to a picture: they are on one
+// Orders a pass's VPLs so that neighbours do much the same to a picture: they are on one
 // surface and near each other. Every so many-th of them then stands for all, as systematic sampling
 // needs it.
 
@@ -23,11 +23,11 @@ namespace wellspring::light {
 std::vector<uint32_t> order_lights(const InstantPass& pass);
 
 // Holds the lights that stand for eight clusters, as LightLanes has lights.
-struct ClusterRow {
-  Lanes x{}, y{}, z{}, nx{}, ny{}, nz{}, near{}, back{}, even{};
+struct ClusterRow : VplGroup {
+  Lanes near{}, back{}, even{};
   Lanes power{};   // power of all its lights; 0: they are too different, each is asked
-  Lanes radius{};  // radius of a cluster around x, y, z
-  Lanes spread{};  // largest distance of a light's normal from n
+  Lanes radius{};  // radius of a cluster around its position
+  Lanes spread{};  // largest distance of a light's normal from the cluster's
 };
 
 struct LightClusters {
@@ -36,7 +36,7 @@ struct LightClusters {
   std::vector<ClusterRow> rows;
   std::vector<float> inverse_power;  // 1 / power of each cluster, or 0
   std::vector<uint8_t> held;         // lights in each cluster
-  size_t size() const { return lights.x.size(); }
+  size_t size() const { return lights.groups.size(); }
 };
 // Makes clusters of all lights that are not exact.
 LightClusters make_light_clusters(const LightTables& tables, const InstantPass& pass);

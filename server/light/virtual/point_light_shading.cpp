@@ -7,6 +7,7 @@
 
 #include "light/sample/emission.h"
 #include "light/sample/light_tables.h"
+#include "light/sample/sample_light.h"
 #include "light/walk/walk.h"
 #include "world/world_packet.h"
 
@@ -161,26 +162,6 @@ LitGroup make_group(const LitPlace* places, int count) {
   return group;
 }
 
-// Returns the share of the light that arrives through thin panes if something is in between.
-vec3 through_panes(const Transport& transport, const LitGroup& group, const SeenLight& seen,
-                   int i) {
-  vec3 origin{seen.rays.origin_x[i], seen.rays.origin_y[i], seen.rays.origin_z[i]};
-  vec3 way{seen.rays.direction_x[i], seen.rays.direction_y[i], seen.rays.direction_z[i]};
-  Ray ray;
-  ray.origin = origin;
-  ray.direction = way;
-  ray.t_max = seen.rays.t_max[i];
-  if (!may_cross_pane(transport.tables.pane_boxes, ray)) return vec3(0);
-  LightSample sample;
-  sample.direction = normalize(way);
-  if (std::isfinite(seen.rays.t_max[i])) {
-    sample.direction = -sample.direction;
-    sample.distance = std::sqrt(seen.distance2[i]);
-    sample.target = origin;
-  }
-  return eval_visibility(transport, group.place(i), sample);
-}
-
 void add_lane(const Transport& transport, const LitPlace& place, const PointLight& light,
               const InstantPass& pass, const SeenLight& seen, vec3 radiance, int i,
               PlaceLight& sum) {
@@ -276,7 +257,7 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
     if (!transport.tables.any_pane) return;
     for (; blocked; blocked &= blocked - 1) {
       int i = std::countr_zero(blocked);
-      vec3 tint = through_panes(transport, group, seen, i);
+      vec3 tint = eval_blocked(transport, seen.rays, i);
       if (max_component(tint) > 0)
         add_lane(transport, places[i], source, pass, seen, radiance * tint, i, light[i]);
     }
@@ -305,7 +286,7 @@ void shade_lambert_by_point_lights(const Transport& transport, const InstantPass
     if (!transport.tables.any_pane) return;
     for (; blocked; blocked &= blocked - 1) {
       int i = std::countr_zero(blocked);
-      vec3 tint = through_panes(transport, group, seen, i);
+      vec3 tint = eval_blocked(transport, seen.rays, i);
       if (max_component(tint) > 0)
         add_lambert_lanes(source, pass, seen, radiance * tint, 1u << i, sum);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes what the point lights of one set do to places (first sum of the paper's section 4). Up
+// Computes what the VPLs of one set do to places (first sum of the paper's section 4). Up
 // to 16 places are lit at once, by each light in turn: neighbours' shadow rays to one light are
 // nearly the same ray.
 #pragma once

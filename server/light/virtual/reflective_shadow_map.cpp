@@ -337,29 +337,24 @@ void for_each_cell(int columns, int rows, const Visit& visit) {
   }
 }
 
-void add_map(const Transport& transport, const SplatSource& source, uint32_t index, double wanted,
-             int texels, SplatSeed seed, ReflectiveShadowMap& map) {
-  MapShape shape = shape_map(transport, source, texels);
-  ReflectiveMap added{index, uint32_t(map.aims.size()), 0, shape.faces, shape.rows, shape.columns};
-  added.count = uint32_t(shape.faces * shape.rows * shape.columns);
+void add_map(const Transport& transport, const SplatSource& source, double wanted, int texels,
+             SplatSeed seed, ReflectiveShadowMap& map) {
+  const MapShape shape = shape_map(transport, source, texels);
+  const uint32_t count = uint32_t(shape.faces * shape.rows * shape.columns);
+  const size_t first = map.aims.size();
   // A texel that was chosen by chance stands for those that were not.
-  float worth = wanted < 1 ? float(1 / wanted) : 1 / float(added.count);
-  map.cells.resize(size_t(added.first) + added.count);
+  float worth = wanted < 1 ? float(1 / wanted) : 1 / float(count);
   SourceAim aim = aim_source(transport, source);
   uint64_t stream = mix64(seed.seed ^ mix64(source.id ^ 0x72736dull));
   for (int face = 0; face < shape.faces; face++)
     for_each_cell(shape.columns, shape.rows, [&](int x, int y) {
-      uint32_t number = uint32_t(map.aims.size()) - added.first;
-      Sampler sampler(stream, seed.pass * added.count + number);
-      map.cells[added.first + uint32_t((face * shape.rows + y) * shape.columns + x)] =
-          uint32_t(map.aims.size());
+      Sampler sampler(stream, seed.pass * count + uint32_t(map.aims.size() - first));
       SourceRay& to = map.aims.emplace_back();
       aim_at_cell(aim, {face, y, x, shape.rows, shape.columns, shape.faces}, sampler, to);
       to.flux *= worth;
       to.spread *= worth;
       if (!is_finite(to.flux) || !(max_component(to.flux) > 0)) to.flux = vec3(0);
     });
-  map.maps.push_back(added);
 }
 
 vec3 matte_reflectance(const Bsdf& bsdf) {
@@ -406,7 +401,7 @@ void light_texel(const Transport& transport, const SourceRay& aim, Hit hit,
 void make_reflective_shadow_map(const Transport& transport, std::span<const SplatSource> sources,
                                 const SplatSettings& settings, SplatSeed seed,
                                 ReflectiveShadowMap& map) {
-  map.maps.clear(), map.aims.clear(), map.cells.clear();
+  map.aims.clear();
   share_texels(transport, sources, map.shares);
   const double texels = std::clamp(settings.texels, 1, most_texels);
   Sampler sampler(mix64(seed.seed ^ 0x736861726564ull), seed.pass);
@@ -421,7 +416,7 @@ void make_reflective_shadow_map(const Transport& transport, std::span<const Spla
       passed -= 1;
       whole = 1;
     }
-    add_map(transport, sources[i], uint32_t(i), wanted, whole, seed, map);
+    add_map(transport, sources[i], wanted, whole, seed, map);
   }
   const int count = int(map.aims.size());
   map.texels.resize(size_t(count));

@@ -88,19 +88,10 @@ struct ReflectiveTexel {
   float extent = 0;      // as SurfacePlace has it
 };
 
-// Describes a source's texels: `faces` times rows times columns; from `first` on, `cells` holds the
-// texel of each (face, row, column).
-struct ReflectiveMap {
-  uint32_t source = 0, first = 0, count = 0;
-  int faces = 1, rows = 1, columns = 1;
-};
-
 // A map is kept from picture to picture, so that arrays are not made anew. Texels of a map follow
 // each other along Morton's curve: neighbours in the list are neighbours in the map.
 struct ReflectiveShadowMap {
   std::vector<ReflectiveTexel> texels;
-  std::vector<ReflectiveMap> maps;
-  std::vector<uint32_t> cells;
   float mean_distance = 0;      // mean over texels with flux, of sources that have a position
   uint64_t rays = 0;            // rays cast for it
   std::vector<SourceRay> aims;  // one a texel: workspace

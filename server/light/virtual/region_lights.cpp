@@ -156,7 +156,7 @@ namespace {
 constexpr uint32_t region_probes = 16;
 // Share of the choice that does not depend on the effect: for surfaces that no probe met, and
 // gloss.
-constexpr double blind = 0.15f;
+constexpr double by_chance = 0.15f;
 
 // Finds places that a region shows; returns how many.
 int probe_region(const Transport& transport, const View& view, int max_depth,
@@ -198,8 +198,8 @@ std::vector<uint32_t> turns_of_lists(const InstantPass& pass) {
 void choose_lights(const LightClusters& clusters, const ClusterShares& shares, bool lit,
                    double wanted, double worth, float choose_u, std::vector<RegionLight>& chosen) {
   chosen.clear();
-  const float even = float(wanted * (lit ? blind : 1) / double(clusters.number));
-  const float by_share = lit ? float(wanted * (1 - blind)) : 0;
+  const float even = float(wanted * (lit ? by_chance : 1) / double(clusters.number));
+  const float by_share = lit ? float(wanted * (1 - by_chance)) : 0;
   double sum = double(choose_u) - 1;  // each whole number that the sum passes is a choice
   for (size_t c = 0; c < clusters.size(); c++) {
     const int held = clusters.held[c];

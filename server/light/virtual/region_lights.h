@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses point lights for every region of a picture: a pixel asks a few of the many that a pass
+// Chooses VPLs for every region of a picture: a pixel asks a few of the many that a pass
 // has, chosen by what they would do, if nothing were in between, to a few places that its region
 // shows. Pixels of a region belong to several lists, neighbours to different ones: what a list
 // lacks is noise from pixel to pixel, which the filter and the eye take away, and not a block of
@@ -16,7 +16,7 @@
 
 namespace wellspring::light {
 
-// Finds a few places that a view shows, and chooses point lights by what they do there: Georgiev
+// Finds a few places that a view shows, and chooses VPLs by what they do there: Georgiev
 // and Slusallek, "Simple and Robust Iterative Importance Sampling of Virtual Point Lights" (2010).
 // Most light of a castle never comes near the room that is looked at; of many candidates those that
 // light it are kept, at random, each worth more the likelier it was to be dropped, so that the mean

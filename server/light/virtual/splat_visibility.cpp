@@ -18,46 +18,27 @@ constexpr float lift = 3e-4f;                 // distance off the surface, as a 
 constexpr float apart_share = -4 * 0x1p-23f;  // so many steps of a coordinate, in metres
 }  // namespace
 
-ShadowOrigin shadow_origin(vec3 place, vec3 normal, float depth, bool apart) {
+vec3 shadow_origin(vec3 place, vec3 normal, float depth, bool apart) {
   SurfacePlace surface;
   surface.position = place + normal * (lift * depth);
   surface.geometric_normal = normal;
   surface.extent = max_component(glm::abs(place));
   if (apart) surface.extent *= apart_share;
-  return {offset_origin(surface, normal), normal};
+  return offset_origin(surface, normal);
 }
 
-void ShadowPacket::add(const ShadowOrigin& from, vec3 target, uint32_t item) {
+void ShadowPacket::add(vec3 from, vec3 target, uint32_t item) {
   const int i = count_++;
-  vec3 way = target - from.position;
-  rays_.origin_x[i] = from.position.x, rays_.origin_y[i] = from.position.y;
-  rays_.origin_z[i] = from.position.z;
+  vec3 way = target - from;
+  rays_.origin_x[i] = from.x, rays_.origin_y[i] = from.y;
+  rays_.origin_z[i] = from.z;
   rays_.direction_x[i] = way.x, rays_.direction_y[i] = way.y, rays_.direction_z[i] = way.z;
   rays_.t_max[i] = 1;
-  from_[i] = from, target_[i] = target, item_[i] = item;
+  item_[i] = item;
 }
 
 uint32_t ShadowPacket::find_blocked() const {
   return transport_.world.occluded_each(rays_, uint32_t((1u << count_) - 1));
-}
-
-// Returns the part of the light that arrives through panes if something is in between.
-vec3 ShadowPacket::through_panes(int i) const {
-  if (!transport_.tables.any_pane) return vec3(0);
-  vec3 way = target_[i] - from_[i].position;
-  Ray ray;
-  ray.origin = from_[i].position;
-  ray.direction = way;
-  ray.t_max = 1;
-  float distance = length(way);
-  if (!(distance > 0) || !may_cross_pane(transport_.tables.pane_boxes, ray)) return vec3(0);
-  SurfacePlace place;
-  place.position = from_[i].position, place.geometric_normal = from_[i].normal;
-  LightSample sample;
-  sample.direction = way / distance;
-  sample.distance = distance;
-  sample.target = target_[i];
-  return eval_visibility(transport_, place, sample);
 }
 
 namespace {
@@ -137,8 +118,7 @@ void cast_probes(const Transport& transport, const SplatPixels& pixels, const Vi
       std::fill_n(weight, probes, 0.0f);
       LitPixel lit;
       if (!look_at(pixels, grid, subsplats.list[room.current[size_t(k)]], lit)) continue;
-      ShadowOrigin from =
-          shadow_origin(lit.place, lit.normal, lit.depth, transport.world.any_apart());
+      vec3 from = shadow_origin(lit.place, lit.normal, lit.depth, transport.world.any_apart());
       for (int p = 0; p < probes; p++) {
         size_t light = size_t((2 * p + 1) * int64_t(lights.count) / (2 * probes));
         weight[p] = luminance(eval_virtual_light(lights, light, lit.place, lit.normal));
@@ -184,7 +164,7 @@ template <class Ask>
 void choose_asked(const VirtualLights& lights, const float* each, double step, int rays,
                   float start, const Ask& ask) {
   double passed = 0, next = double(start) * step;
-  for (size_t i = 0; i < size_t(lights.padded); i += lane_count) {
+  for (size_t i = 0; i < lights.padded(); i += lane_count) {
     const double group = double(lanes_sum(load_lanes(each + i)));
     if (passed + group <= next) {
       passed += group;
@@ -204,7 +184,7 @@ class ShadowedSplats {
   ShadowedSplats(const Transport& transport, const VirtualLights& lights, SplatShadowRoom& room)
       : lights_(lights), room_(room), packet_(transport) {}
   // Adds a ray. `step`: luminance that each ray stands for.
-  void ask(const ShadowOrigin& from, size_t light, uint32_t subsplat, double step) {
+  void ask(vec3 from, size_t light, uint32_t subsplat, double step) {
     if (packet_.full()) cast();
     packet_.add(from, lights_.target[light], waiting_);
     vec3 intensity = lights_.intensity(light);
@@ -322,7 +302,7 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
   start_owners(pyramid, room);
   parallel_ranges(count, 64, [&](int begin, int end) {
     thread_local RawVector<float> each;
-    if (each.size() < size_t(lights.padded)) each.resize(size_t(lights.padded));
+    if (each.size() < lights.padded()) each.resize(lights.padded());
     ShadowedSplats shadowed(transport, lights, room);
     for (int i = begin; i < end; i++) {
       const Subsplat& one = subsplats.list[size_t(i)];
@@ -336,8 +316,7 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
       if (!(sum > 0) || !std::isfinite(sum)) continue;
       const int rays = rays_of(one, settings);
       const double step = sum / rays;
-      ShadowOrigin from =
-          shadow_origin(lit.place, lit.normal, lit.depth, transport.world.any_apart());
+      vec3 from = shadow_origin(lit.place, lit.normal, lit.depth, transport.world.any_apart());
       choose_asked(lights, each.data(), step, rays, start_of(one, seed),
                    [&](size_t chosen) { shadowed.ask(from, chosen, uint32_t(i), step); });
     }
@@ -366,8 +345,8 @@ namespace {
 
 // Returns the share of light `i` that arrives; 1 if it would light no probe.
 vec3 find_share(const Transport& transport, std::span<const LitProbe> probes,
-                std::span<const ShadowOrigin> origins, int rays, const VirtualLights& lights,
-                size_t i, std::vector<float>& effect) {
+                std::span<const vec3> origins, int rays, const VirtualLights& lights, size_t i,
+                std::vector<float>& effect) {
   float sum = 0;
   for (size_t k = 0; k < probes.size(); k++)
     sum += effect[k] = luminance(
@@ -390,12 +369,9 @@ vec3 find_share(const Transport& transport, std::span<const LitProbe> probes,
 }
 
 void move_light(VirtualLights& lights, size_t from, size_t to, vec3 share) {
-  for (RawVector<float>* column :
-       {&lights.x, &lights.y, &lights.z, &lights.nx, &lights.ny, &lights.nz, &lights.red,
-        &lights.green, &lights.blue, &lights.radius2})
-    (*column)[to] = (*column)[from];
+  lights.set(to, lights.position(from), lights.normal(from), lights.intensity(from) * share,
+             lights.radius2(from));
   lights.target[to] = lights.target[from];
-  lights.red[to] *= share.x, lights.green[to] *= share.y, lights.blue[to] *= share.z;
 }
 
 }  // namespace
@@ -403,7 +379,7 @@ void move_light(VirtualLights& lights, size_t from, size_t to, vec3 share) {
 void dim_hidden_lights(const Transport& transport, std::span<const LitProbe> probes, int rays,
                        VirtualLights& lights) {
   if (probes.empty() || rays < 1) return;
-  std::vector<ShadowOrigin> origins;
+  std::vector<vec3> origins;
   const bool apart = transport.world.any_apart();
   for (const LitProbe& probe : probes)
     origins.push_back(shadow_origin(probe.position, probe.normal, probe.depth, apart));

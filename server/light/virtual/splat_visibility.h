@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes shadows of the virtual lights, which the paper leaves out. Each subsplat casts rays to
+// Computes shadows of the VPLs, which the paper leaves out. Each subsplat casts rays to
 // few lights, chosen at random by what they would add there, so that its light is right in the
 // mean, channel by channel; the share that arrives is then averaged over neighbours that no
 // discontinuity parts. If few rays show that it changes from one coarse subsplat to the next, these
@@ -8,30 +8,26 @@
 #pragma once
 #include <span>
 
+#include "light/sample/sample_light.h"
 #include "light/sample/transport.h"
-#include "light/virtual/min_max_pyramid.h"
 #include "light/virtual/splat_lights.h"
 #include "light/virtual/virtual_lights.h"
 #include "world/world.h"
 
 namespace wellspring::light {
 
-// Collects shadow rays from what pixels see to virtual lights until a packet is full.
+// Collects shadow rays from what pixels see to VPLs until a packet is full.
 
-// Holds the place where rays leave a pixel's surface. Its normal may be a shading normal, and its
-// depth be rounded.
-struct ShadowOrigin {
-  vec3 position{0}, normal{0, 1, 0};
-};
-// `apart`: World::any_apart().
-ShadowOrigin shadow_origin(vec3 place, vec3 normal, float depth, bool apart = false);
+// Returns where rays leave a pixel's surface. Its normal may be a shading normal, and its depth be
+// rounded. `apart`: World::any_apart().
+vec3 shadow_origin(vec3 place, vec3 normal, float depth, bool apart = false);
 
 // Collects rays; the light that arrives along one goes to the item that it was added for.
 class ShadowPacket {
  public:
   explicit ShadowPacket(const Transport& transport) : transport_(transport) {}
   bool full() const { return count_ == RayPacket::lanes; }
-  void add(const ShadowOrigin& from, vec3 target, uint32_t item);
+  void add(vec3 from, vec3 target, uint32_t item);
   // Calls arrive(item, tint) for every ray that is not blocked, in the order of add(), and is empty
   // afterwards.
   template <class Arrive>
@@ -39,7 +35,7 @@ class ShadowPacket {
     if (count_ == 0) return;
     uint32_t blocked = find_blocked();
     for (int i = 0; i < count_; i++) {
-      vec3 tint = blocked >> i & 1 ? through_panes(i) : vec3(1);
+      vec3 tint = blocked >> i & 1 ? eval_blocked(transport_, rays_, i) : vec3(1);
       if (max_component(tint) > 0) arrive(item_[i], tint);
     }
     count_ = 0;
@@ -47,11 +43,8 @@ class ShadowPacket {
 
  private:
   uint32_t find_blocked() const;
-  vec3 through_panes(int i) const;
   const Transport& transport_;
   RayPacket rays_;
-  ShadowOrigin from_[RayPacket::lanes];
-  vec3 target_[RayPacket::lanes];
   uint32_t item_[RayPacket::lanes];
   int count_ = 0;
 };
@@ -86,10 +79,16 @@ uint64_t splat_shadowed_lights(const Transport& transport, const SplatPixels& pi
                                const Subsplats& subsplats, SplatShadowRoom& room,
                                IlluminationPyramid& to);
 
-// Computes shadows of virtual lights for the price of few rays, if each place cannot have its own:
+// Computes shadows of VPLs for the price of few rays, if each place cannot have its own:
 // the mean share of a light that arrives at visible places is taken for all places. So light does
 // not pass through walls, and a picture's light is right in the mean; the light of places half in
 // shadow is not.
+
+// Holds a place that is visible.
+struct LitProbe {
+  vec3 position{0}, normal{0, 1, 0};
+  float depth = 0;  // from the eye: tells how exact the place is
+};
 
 // Dims each light by the share of its light that arrives at `probes`, by at most `rays` rays a
 // light, to probes that would have most of it. Lights that reach no probe are left out. Runs on all

@@ -16,9 +16,7 @@ namespace wellspring::light {
 size_t memory_bytes(const SplatLights& drawn) {
   const ReflectiveShadowMap& map = drawn.map;
   const VirtualLights& l = drawn.lights;
-  return bytes_of(map.texels, map.maps, map.cells, map.aims, map.shares) +
-         bytes_of(l.x, l.y, l.z, l.nx, l.ny, l.nz, l.red, l.green, l.blue, l.radius2, l.target,
-                  l.weights);
+  return bytes_of(map.texels, map.aims, map.shares) + bytes_of(l.groups, l.target);
 }
 
 size_t memory_bytes(const SplatPicture& picture) {
@@ -37,7 +35,7 @@ void draw_virtual_lights(const Transport& transport, std::span<const SplatSource
                          const SplatSettings& settings, SplatSeed seed,
                          std::span<const LitProbe> probes, SplatLights& drawn) {
   make_reflective_shadow_map(transport, sources, settings, seed, drawn.map);
-  choose_virtual_lights(drawn.map, settings, seed, probes, drawn.lights);
+  choose_virtual_lights(drawn.map, settings, seed, drawn.lights);
   if (!settings.visibility) dim_hidden_lights(transport, probes, settings.light_rays, drawn.lights);
 }
 

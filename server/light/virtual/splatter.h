@@ -12,9 +12,9 @@
 //
 // Both keep their memory: once pictures have a size and sources a number, nothing is allocated.
 // It differs from the paper: rays find the maps, also of area lights and the sky; planes seen at a
-// steep angle are not refined (min_max_pyramid.h); light near a virtual light is bounded
-// (virtual_lights.h); neighbours on the two sides of an edge are never mixed (upsample.h); virtual
-// lights have shadows (splat_visibility.h, splat_visibility.h), which the paper leaves out.
+// steep angle are not refined and neighbours on the two sides of an edge are never mixed
+// (splat_lights.h); light near a VPL is bounded (virtual_lights.h); VPLs have shadows
+// (splat_visibility.h), which the paper leaves out.
 #pragma once
 #include <span>
 #include <vector>
@@ -23,7 +23,6 @@
 #include "light/sample/lights.h"
 #include "light/virtual/splat_lights.h"
 #include "light/virtual/splat_visibility.h"
-#include "light/virtual/upsample.h"
 
 namespace wellspring::light {
 
@@ -33,9 +32,8 @@ struct SplatLights {
   VirtualLights lights;
 };
 
-// Draws the lights. `probes`: places of pictures that are wanted (find_splat_probes), for the
-// choice `by_effect` and for light_rays. The same sources, settings and seed give the same random
-// numbers, whatever moves.
+// Draws the lights. `probes`: places of pictures that are wanted (find_splat_probes), for
+// light_rays. The same sources, settings and seed give the same random numbers, whatever moves.
 void draw_virtual_lights(const Transport& transport, std::span<const SplatSource> sources,
                          const SplatSettings& settings, SplatSeed seed,
                          std::span<const LitProbe> probes, SplatLights& drawn);
@@ -44,7 +42,7 @@ void draw_virtual_lights(const Transport& transport, std::span<const SplatSource
 struct SplatCounters {
   static constexpr int levels = 17;
   uint64_t subsplats[levels] = {};  // one for each level: 2^level pixels a side
-  uint64_t evaluations = 0;         // pairs of a virtual light and a place
+  uint64_t evaluations = 0;         // pairs of a VPL and a place
   uint64_t shadow_rays = 0;         // rays that light was counted by
   uint64_t probe_rays = 0;          // rays that find where visibility changes
   uint64_t all_subsplats() const {
@@ -77,13 +75,13 @@ void splat_picture(const Transport& transport, const SplatLights& drawn, const S
 void find_splat_probes(const SplatPixels& pixels, int count, std::vector<LitProbe>& probes);
 
 // Runs technique `multires_splatting`: samples are those of `direct`; in each pass over a picture,
-// the samples' places are the pixels on which virtual lights of all sources are splatted, drawn
+// the samples' places are the pixels on which VPLs of all sources are splatted, drawn
 // anew for each pass. So the mean of many passes becomes direct light and one bounce.
 //
 // Differences from `path` with a depth of 3 remain: surfaces reflect the bounce as Lambert does on
 // both ends (no highlights, no caustics; rough metal counts as matte); mirror images have no
 // bounced light; subsplats blur the bounce between discontinuities, its shadows a little more; near
-// virtual lights it is bounded, by a radius that shrinks from pass to pass.
+// VPLs it is bounded, by a radius that shrinks from pass to pass.
 
 // Holds what one pass has drawn.
 struct SplatPass {

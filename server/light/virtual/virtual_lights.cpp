@@ -7,37 +7,29 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 #include "light/random/sampler.h"
+#include "light/sample/light_tables.h"
 #include "world/surface.h"
 
 namespace wellspring::light {
 namespace {
 
-// Share of the choice that leaves out the effect, for what the probes happen not to see.
-constexpr double blind = 0.1;
-
 // Empties the lights and makes room for twice as many as are wanted in the mean.
 void clear_lights(VirtualLights& lights, size_t wanted) {
   const size_t most = (2 * wanted + 64 + lane_count - 1) / lane_count * lane_count;
-  for (RawVector<float>* column :
-       {&lights.x, &lights.y, &lights.z, &lights.nx, &lights.ny, &lights.nz, &lights.red,
-        &lights.green, &lights.blue, &lights.radius2})
-    if (column->size() < most) column->resize(most);
+  if (lights.groups.size() < most / lane_count) lights.groups.resize(most / lane_count);
   if (lights.target.size() < most) lights.target.resize(most);
-  lights.count = lights.padded = 0;
+  lights.count = 0;
 }
 
 // Adds a light. `worth`: number of such texels that it stands for.
 void add_light(const ReflectiveTexel& texel, double worth, float least2, float bound2,
                VirtualLights& lights) {
   const size_t i = size_t(lights.count);
-  if (i >= lights.x.size()) return;
+  if (i >= lights.target.size()) return;
   vec3 intensity = texel.flux * float(worth / double(pi));
   if (!is_finite(intensity) || !(max_component(intensity) > 0)) return;
-  lights.x[i] = texel.position.x, lights.y[i] = texel.position.y, lights.z[i] = texel.position.z;
-  lights.nx[i] = texel.normal.x, lights.ny[i] = texel.normal.y, lights.nz[i] = texel.normal.z;
-  lights.red[i] = intensity.x, lights.green[i] = intensity.y, lights.blue[i] = intensity.z;
   float own = std::max(texel.area * float(worth) / pi, least2) * bound2;
-  lights.radius2[i] = std::clamp(own, 1e-12f, 1e12f);
+  lights.set(i, texel.position, texel.normal, intensity, std::clamp(own, 1e-12f, 1e12f));
   SurfacePlace place;
   place.position = texel.position, place.geometric_normal = texel.normal;
   place.extent = texel.extent;
@@ -50,114 +42,162 @@ double luminous(const ReflectiveTexel& texel) {
   return flux > 0 && std::isfinite(flux) ? flux : 0;
 }
 
-// Returns the effect of a texel on the probes, shadows left out, as a share of its flux, about.
-double effect_on(std::span<const LitProbe> probes, const ReflectiveTexel& texel, float least2) {
-  double sum = 0;
-  for (const LitProbe& probe : probes) {
-    vec3 way = texel.position - probe.position;
-    float here = dot(way, probe.normal), there = -dot(way, texel.normal), d2 = dot(way, way);
-    if (here > 0 && there > 0 && d2 < 1e30f)
-      sum += double(here) * double(there) / (double(d2) * (double(d2) + double(least2)) + 1e-30);
-  }
-  return sum;
-}
-
-void weigh_texels(const ReflectiveShadowMap& map, VirtualLightChoice choice,
-                  std::span<const LitProbe> probes, float least2, std::vector<double>& weights) {
-  const bool effect = choice == VirtualLightChoice::by_effect && !probes.empty();
-  const bool even = choice == VirtualLightChoice::uniform;
-  weights.resize(map.texels.size());
-  parallel_ranges(int(weights.size()), 256, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++) {
-      double flux = luminous(map.texels[i]);
-      weights[i] = even ? 1 : flux;
-      if (effect) weights[i] *= effect_on(probes, map.texels[i], least2);
-    }
-  });
-  if (!effect) return;
-  double sum = 0, flux = 0;
-  for (size_t i = 0; i < weights.size(); i++) sum += weights[i], flux += luminous(map.texels[i]);
-  for (size_t i = 0; flux > 0 && i < weights.size(); i++) {
-    double by_flux = luminous(map.texels[i]) / flux;
-    weights[i] = sum > 0 ? (1 - blind) * weights[i] / sum + blind * by_flux : by_flux;
-  }
-}
-
-// Chooses each texel by its own weight and by a number of its own, which is the golden ratio's
-// sequence along the list: neighbours in the list are neighbours in a map, so that the chosen ones
-// are spread everywhere, and a weight that changes changes no other choice.
-void choose_by_weight(const ReflectiveShadowMap& map, int wanted, double start, float least2,
-                      float bound2, VirtualLights& lights) {
-  constexpr double golden = 0.6180339887498949;
-  double sum = 0;
-  for (double w : lights.weights) sum += w;
-  if (!(sum > 0)) return;
-  double number = start;
-  for (size_t i = 0; i < map.texels.size(); i++) {
-    number += golden;
-    number -= number >= 1 ? 1 : 0;
-    const double often = lights.weights[i] * wanted / sum;
-    const double times = std::floor(often + number);
-    if (times > 0) add_light(map.texels[i], times / often, least2, bound2, lights);
-  }
-}
-
-// Gives each map its share of points; Sobol' points of its square are texels.
-void choose_by_sequence(const ReflectiveShadowMap& map, int wanted, SplatSeed seed, float start,
-                        float least2, float bound2, VirtualLights& lights) {
-  const double all = double(map.texels.size());
-  double passed = double(start);
-  for (const ReflectiveMap& one : map.maps) {
-    double share = double(one.count) * wanted / all;
-    int points = int(share);
-    passed += share - points;
-    if (passed >= 1) passed -= 1, points++;
-    if (points < 1) continue;
-    // A map that had no whole point stands for others like it.
-    double worth = double(one.count) / (share < 1 ? share : double(points));
-    uint64_t stream = mix64(seed.seed ^ mix64(0x736f626f6cull + one.source));
-    for (int i = 0; i < points; i++) {
-      Sampler sampler(stream, seed.pass * uint32_t(points) + uint32_t(i));
-      vec2 u = sampler.next2();
-      float face = u.x * float(one.faces);
-      int f = std::min(int(face), one.faces - 1);
-      int x = std::min(int((face - float(f)) * float(one.columns)), one.columns - 1),
-          y = std::min(int(u.y * float(one.rows)), one.rows - 1);
-      add_light(map.texels[map.cells[one.first + size_t((f * one.rows + y) * one.columns + x)]],
-                worth, least2, bound2, lights);
-    }
-  }
-}
-
 }  // namespace
 
+void VirtualLights::set(size_t i, vec3 position, vec3 normal, vec3 intensity, float radius2) {
+  Group& group = groups[i / lane_count];
+  const int lane = int(i % lane_count);
+  group.position.set(lane, position), group.normal.set(lane, normal);
+  group.intensity.set(lane, intensity), group.radius2[lane] = radius2;
+}
+
 void fill_up(VirtualLights& lights) {
-  for (lights.padded = lights.count; lights.padded % lane_count; lights.padded++) {
-    const size_t i = size_t(lights.padded);
-    lights.x[i] = lights.y[i] = lights.z[i] = 0;
-    lights.nx[i] = lights.nz[i] = 0, lights.ny[i] = 1;
-    lights.red[i] = lights.green[i] = lights.blue[i] = 0;
-    lights.radius2[i] = 1;
-  }
+  for (size_t i = size_t(lights.count); i < lights.padded(); i++)
+    lights.set(i, vec3(0), {0, 1, 0}, vec3(0), 1);
 }
 
 void choose_virtual_lights(const ReflectiveShadowMap& map, const SplatSettings& settings,
-                           SplatSeed seed, std::span<const LitProbe> probes,
-                           VirtualLights& lights) {
+                           SplatSeed seed, VirtualLights& lights) {
+  constexpr double golden = 0.6180339887498949;
   const int wanted = std::clamp(settings.virtual_lights, 1, most_virtual_lights);
   clear_lights(lights, size_t(wanted));
   float least = settings.least_distance > 0 ? settings.least_distance : 0.02f * map.mean_distance;
   float least2 = std::clamp(least * least, 1e-12f, 1e12f);
   float bound = std::max(settings.bound, 0.0f);
+  double sum = 0;
+  for (const ReflectiveTexel& texel : map.texels) sum += luminous(texel);
   Sampler sampler(mix64(seed.seed ^ 0x63686f696365ull), seed.pass);
-  const float start = sampler.next();
-  if (settings.choice == VirtualLightChoice::low_discrepancy) {
-    choose_by_sequence(map, wanted, seed, start, least2, bound * bound, lights);
-  } else {
-    weigh_texels(map, settings.choice, probes, least2, lights.weights);
-    choose_by_weight(map, wanted, double(start), least2, bound * bound, lights);
+  double number = double(sampler.next());
+  for (size_t i = 0; sum > 0 && i < map.texels.size(); i++) {
+    number += golden;
+    number -= number >= 1 ? 1 : 0;
+    const double often = luminous(map.texels[i]) * wanted / sum;
+    const double times = std::floor(often + number);
+    if (times > 0) add_light(map.texels[i], times / often, least2, bound * bound, lights);
   }
   fill_up(lights);
+}
+
+namespace {
+
+// Share of the choice that does not depend on the effect: for gloss, and what the estimate leaves
+// out.
+constexpr float blind = 0.15f;
+constexpr float glossy_even = 0.25f;
+
+void set_lane(const LightTables& tables, const PointLight& light, size_t g, size_t lane,
+              LightLanes& all) {
+  vec3 place = light.position, color = light.radiance;
+  bool near = light.kind != PointLightKind::distant;
+  float even = near ? 0 : 1;
+  if (light.kind == PointLightKind::scattering) color /= pi, even = glossy_even;
+  if (light.kind == PointLightKind::punctual) {
+    const PunctualLight& punctual = tables.punctual[light.index];
+    color *= punctual.intensity;
+    near = punctual.type != PunctualType::directional;
+    place = near ? punctual.position : -punctual.direction;
+    even = 1;
+  }
+  all.groups[g].position.set(int(lane), place);
+  all.groups[g].normal.set(int(lane), light.normal);
+  all.power[g][lane] = max_component(color);
+  all.near[g][lane] = near, all.even[g][lane] = even, all.back[g][lane] = light.double_sided;
+}
+
+// Fills up the group that is open.
+void end_group(LightLanes& all) {
+  while (all.number.size() % lane_count) all.number.push_back(LightLanes::none);
+}
+
+// Sets the lanes of the lights that all.number names.
+void set_lanes(const LightTables& tables, const InstantPass& pass, LightLanes& all) {
+  size_t groups = all.number.size() / lane_count;
+  all.groups.assign(groups, {});
+  for (std::vector<Lanes>* lanes : {&all.power, &all.near, &all.even, &all.back})
+    lanes->assign(groups, all_lanes(0));
+  all.plain.assign(groups, 1);
+  parallel_ranges(int(groups), 64, [&](int first, int last) {
+    for (size_t i = size_t(first) * lane_count; i < size_t(last) * lane_count; i++) {
+      if (all.number[i] == LightLanes::none) continue;
+      size_t g = i / lane_count, lane = i % lane_count;
+      set_lane(tables, pass.lights[all.number[i]], g, lane, all);
+      bool plain = all.near[g][lane] == 1 && all.back[g][lane] == 0 && all.even[g][lane] == 0;
+      if (!plain) all.plain[g] = 0;
+    }
+  });
+}
+
+}  // namespace
+
+LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass) {
+  LightLanes all;
+  for (int set = 0; set < pass.sets(); set++) {
+    all.first.push_back(uint32_t(all.number.size() / lane_count));
+    for (uint32_t k = pass.first[size_t(set)]; k < pass.first[size_t(set) + 1]; k++)
+      all.number.push_back(k);
+    end_group(all);
+  }
+  all.first.push_back(uint32_t(all.number.size() / lane_count));
+  set_lanes(tables, pass, all);
+  return all;
+}
+
+LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass,
+                            std::span<const uint32_t> lights) {
+  LightLanes all;
+  all.number.assign(lights.begin(), lights.end());
+  end_group(all);
+  all.first = {0, uint32_t(all.number.size() / lane_count)};
+  set_lanes(tables, pass, all);
+  return all;
+}
+
+LitPoint make_lit_point(vec3 position, const Bsdf& bsdf) {
+  return {position, bsdf.normal, max_component(bsdf.transmit) > 0,
+          has_specular(bsdf) ? glossy_even : 0};
+}
+
+int choose_place_lights(const InstantPass& pass, int set, vec3 place, const Bsdf& bsdf, int asked,
+                        float u, std::span<RegionLight> chosen) {
+  // Only groups far from each other are asked of a large set: an estimate of all costs more than
+  // the rays it saves.
+  constexpr size_t most_groups = 12;
+  if (asked < 1 || !pass.lanes) return 0;
+  const LightLanes& all = *pass.lanes;
+  const size_t begin = all.first[size_t(set)], end = all.first[size_t(set) + 1];
+  const size_t step = std::max<size_t>(1, (end - begin + most_groups - 1) / most_groups);
+  const size_t start = std::min(size_t(u * float(step)), step - 1);
+  u = u * float(step) - float(start);
+  const LitPoint point = make_lit_point(place, bsdf);
+  const float most = most_of_clip(pass.clip);
+  Lanes effect[most_groups + 1], total{};
+  int count = 0;
+  float number = 0;
+  for (size_t g = begin + start; g < end; g += step) {
+    Lanes& e = effect[(g - begin) / step];
+    e = eval_unshadowed(all, g, point, most);
+    total += e;
+    for (int lane = 0; lane < lane_count; lane++)
+      number += all.number[g * lane_count + size_t(lane)] != LightLanes::none;
+  }
+  float sum_of_all = lanes_sum(total);
+  bool known = sum_of_all > 0 && std::isfinite(sum_of_all);
+  float uniform = float(asked) * (known ? blind : 1) / std::max(number, 1.0f),
+        scale = known ? float(asked) * (1 - blind) / sum_of_all : 0;
+  float sum = -u;
+  for (size_t g = begin + start; g < end; g += step)
+    for (int lane = 0; lane < lane_count; lane++) {
+      uint32_t light = all.number[g * lane_count + size_t(lane)];
+      if (light == LightLanes::none) continue;
+      float often = uniform + (known ? scale * effect[(g - begin) / step][lane] : 0);
+      sum += often;
+      if (sum <= 0) continue;
+      float times = std::ceil(sum);
+      sum -= times;
+      if (count < int(chosen.size()))
+        chosen[size_t(count++)] = {light, float(step) * times / often};
+    }
+  return count;
 }
 
 }  // namespace wellspring::light

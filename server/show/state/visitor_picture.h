@@ -10,7 +10,6 @@
 #include "cache/broker.h"
 #include "cache/cache.h"
 #include "frame/tonemap.h"
-#include "light/virtual/backdrop_surfaces.h"
 #include "light/virtual/dynamic_image.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"

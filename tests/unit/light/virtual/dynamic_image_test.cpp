@@ -3,8 +3,6 @@
 // pixel, and in half of the resolution never across edges.
 #include "light/virtual/dynamic_image.h"
 
-#include "light/virtual/backdrop_surfaces.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

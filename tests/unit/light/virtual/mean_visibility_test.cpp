@@ -58,7 +58,7 @@ TEST(MeanVisibility, LightOfTheSameRoomStays) {
   ASSERT_GT(rooms.drawn.lights.count, 100);
   rooms.dim(left);
   EXPECT_NEAR(rooms.power() / before, 1, 0.02);
-  EXPECT_EQ(rooms.drawn.lights.padded % lane_count, 0);
+  EXPECT_EQ(rooms.drawn.lights.padded() % lane_count, 0);
 }
 
 // But for what shines on no probe, which does not matter.

@@ -3,9 +3,9 @@
 
 #include <cstring>
 
-#include "light/virtual/edge_samples.h"
+#include "light/virtual/eye_light.h"
 #include "light/virtual/instant_radiosity.h"
-#include "light/virtual/point_lights_simd.h"
+#include "light/virtual/virtual_lights.h"
 #include "light/sample/pane_boxes.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"

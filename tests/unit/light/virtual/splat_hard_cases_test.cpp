@@ -168,7 +168,7 @@ TEST(SplatHardCases, ThousandsOfLightsShareTheTexels) {
     EXPECT_LE(stage.drawn.map.rays, 4096u);
     EXPECT_LE(stage.drawn.lights.count, 300);
     for (size_t i = 0; i < size_t(stage.drawn.lights.count); i++)
-      mean += double(stage.drawn.lights.red[i]) * double(pi) / 8;
+      mean += double(stage.drawn.lights.intensity(i).x) * double(pi) / 8;
   }
   EXPECT_NEAR(mean / flux, 1, 0.03);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world seen from somewhere, for tests of light/virtual: its pixels by rays, and their light summed
-// one by one.
+// A world seen from somewhere, for tests of light/virtual: its pixels by rays, and their light
+// summed one by one.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -69,11 +69,10 @@ struct SplatStage {
 inline dvec3 brute_force(const VirtualLights& lights, dvec3 place, dvec3 normal) {
   dvec3 sum(0);
   for (size_t i = 0; i < size_t(lights.count); i++) {
-    dvec3 way = dvec3(lights.x[i], lights.y[i], lights.z[i]) - place;
-    double d2 = dot(way, way), here = dot(way, normal),
-           there = -dot(way, dvec3(lights.nx[i], lights.ny[i], lights.nz[i]));
+    dvec3 way = dvec3(lights.position(i)) - place;
+    double d2 = dot(way, way), here = dot(way, normal), there = -dot(way, dvec3(lights.normal(i)));
     if (!(here > 0) || !(there > 0)) continue;
-    sum += dvec3(lights.intensity(i)) * (here * there / (d2 * (d2 + double(lights.radius2[i]))));
+    sum += dvec3(lights.intensity(i)) * (here * there / (d2 * (d2 + double(lights.radius2(i)))));
   }
   return sum;
 }

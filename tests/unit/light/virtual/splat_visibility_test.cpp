@@ -28,7 +28,7 @@ SplatStage make_box(int side, bool blocks = true) {
 dvec3 seen_light(const SplatStage& stage, vec3 place, vec3 normal, float depth) {
   const VirtualLights& lights = stage.drawn.lights;
   dvec3 sum(0);
-  vec3 from = shadow_origin(place, normal, depth).position;
+  vec3 from = shadow_origin(place, normal, depth);
   for (size_t i = 0; i < size_t(lights.count); i++) {
     Ray ray;
     ray.origin = from;

@@ -96,7 +96,7 @@ TEST(Splatter, PicturesAreRepeatedInTheSameMemory) {
     stage.splat(settings);
     const SplatPicture& picture = stage.picture;
     std::vector<const void*> now = {picture.irradiance.data(),
-                                    stage.drawn.lights.x.data(),
+                                    stage.drawn.lights.groups.data(),
                                     picture.pyramid.cells.data(),
                                     stage.drawn.map.texels.data(),
                                     picture.illumination.levels[0].texels.data(),
