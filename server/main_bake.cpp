@@ -14,9 +14,9 @@
 #include "about/version.h"
 #include "base/clock.h"
 #include "base/log.h"
-#include "light/bake/bake_file.h"
-#include "light/bake/finish_bake.h"
-#include "light/bake/map_file.h"
+#include "light/kept/bake_file.h"
+#include "light/kept/finish_bake.h"
+#include "light/kept/map_file.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/exhibit/exhibit_objects.h"
 

@@ -21,7 +21,7 @@
 #include "base/unicode.h"
 #include "denoise/denoise.h"
 #include "frame/picture_file.h"
-#include "light/known/lamps.h"
+#include "light/kept/lamps.h"
 #include "light/technique/technique.h"
 #include "light/transport_plan.h"
 #include "light/visible/guides.h"

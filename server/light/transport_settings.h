@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Says how far and how finely light is followed; techniques ignore settings that they do not read.
 #pragma once
-#include <cstdint>
 
 namespace wellspring::light {
 
@@ -21,28 +20,19 @@ struct InstantRadiositySettings {
   float photon_radius = 0;  // metres; 0: by the scene's size, shrinking from pass to pass
 };
 
-// Says how virtual point lights are chosen among the texels of reflective shadow maps.
-enum class VirtualLightChoice : uint8_t {
-  uniform,          // evenly over each map
-  by_flux,          // by the flux that a texel reflects
-  low_discrepancy,  // at Sobol' points of each map
-  by_effect,        // by flux and by what a texel does, unshadowed, to places that are seen
-};
-
-// Holds the settings of multires_splatting (light/splat).
+// Holds the settings of multires_splatting (light/virtual).
 struct SplatSettings {
   int virtual_lights = 256;  // at most most_virtual_lights
   int texels = 4096;         // texels of all reflective shadow maps together
-  VirtualLightChoice choice = VirtualLightChoice::by_flux;
-  int coarsest = 16;  // subsplats along the shorter side of the picture, at least
-  int levels = -1;    // levels of refinement from there; <0: down to single pixels
+  int coarsest = 16;         // subsplats along the shorter side of the picture, at least
+  int levels = -1;           // levels of refinement from there; <0: down to single pixels
   // Greatest range of a subsplat's depth, as a share of its least depth.
   float depth_threshold = 0.03f;
   float normal_threshold = 0.25f;  // greatest range of a component of its unit normals
   float convergence = 0;   // >0: refined also if irradiance bends by more than that share of it
   bool visibility = true;  // shadow rays from what is lit to virtual lights
   // Without shadow rays, each light sends so many rays to find the share of it that arrives at
-  // visible places, on average (light/splat/splat_visibility.h); 0: all arrives.
+  // visible places, on average (light/virtual/splat_visibility.h); 0: all arrives.
   int light_rays = 0;
   int shadow_rays = 8;  // shadow rays of each subsplat
   int probe_rays = 8;   // rays of each subsplat above a pixel, to find whether visibility changes

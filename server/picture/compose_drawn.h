@@ -7,9 +7,9 @@
 #include "picture/keyframe.h"
 
 namespace wellspring::light {
-struct DynamicImage;     // light/dynamic/dynamic_image.h
+struct DynamicImage;     // light/virtual/dynamic_image.h
 struct IlluminationMap;  // light/sample/illumination_map.h
-struct SkinLight;        // light/known/skin_light.h
+struct SkinLight;        // light/kept/skin_light.h
 }  // namespace wellspring::light
 
 namespace wellspring::picture {

@@ -10,7 +10,7 @@
 #include "cache/cache.h"
 #include "cache/reconstruct.h"
 #include "frame/tonemap.h"
-#include "light/dynamic/backdrop_surfaces.h"
+#include "light/virtual/dynamic_image.h"
 #include "light/visible/visibility.h"
 #include "picture/cells.h"
 #include "picture/compose_drawn.h"

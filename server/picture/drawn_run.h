@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "light/dynamic/dynamic_image.h"
+#include "light/virtual/dynamic_image.h"
 #include "light/visible/surface_buffer.h"
 #include "picture/drawn_planes.h"
 #include "world/raster/raster.h"

@@ -143,7 +143,7 @@ class World {
   uint64_t paints() const;  // number of repaints so far
 
   // Dims the scene's lamps, by their numbers; all are full at first. While no ray is being traced.
-  // Lights have to be updated, too: light/known/lamps.h.
+  // Lights have to be updated, too: light/kept/lamps.h.
   void set_lamp(int lamp, LampLevel level);
   const LampLevels& lamp_levels() const;
 

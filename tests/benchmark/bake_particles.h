@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The other way to bake, which is compared with light/bake/bake.h: density estimation of particles
+// The other way to bake, which is compared with light/kept/bake.h: density estimation of particles
 // (Walter 1998; Haber et al. 2001, section 4.1).
 #pragma once
-#include "light/bake/bake.h"
+#include "light/kept/bake.h"
 
 namespace wellspring::test {
 

@@ -6,7 +6,7 @@
 #include "bake_particles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "light/bake/finish_bake.h"
+#include "light/kept/finish_bake.h"
 #include "light/material/bsdf.h"
 #include "light/walk/known_light.h"
 #include "light_scenes.h"

@@ -3,7 +3,7 @@
 // changes by more than 10 % a share is within 10 % of right (converged `path`) some time later. The
 // cache is told (relight), has to find out, or begins from nothing (cleared), which says what so
 // few samples can show at all. Pictures are 60 a second. If the lamp is an exhibit's own, the cache
-// is told where light changes and by how much (light/known/lamps.h), and the time for that is
+// is told where light changes and by how much (light/kept/lamps.h), and the time for that is
 // measured: cache.switch.light_ms once for everybody, cache.switch.visitor_ms for each visitor.
 #include <cmath>
 #include <filesystem>
@@ -13,7 +13,7 @@
 #include "base/rng.h"
 #include "cache_visit_truth.h"
 #include "frame/picture_file.h"
-#include "light/known/lamps.h"
+#include "light/kept/lamps.h"
 #include "light_scenes.h"
 #include "picture/compose_drawn.h"
 #include "picture/compositor.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cache/cache.h"
-#include "light/known/lamps.h"
+#include "light/kept/lamps.h"
 #include "light/technique/technique.h"
 
 namespace wellspring::test {

@@ -6,7 +6,7 @@
 
 #include "base/clock.h"
 #include "judge/flip.h"
-#include "light/dynamic/dynamic_image.h"
+#include "light/virtual/dynamic_image.h"
 #include "light/technique/technique.h"
 #include "light_scenes.h"
 #include "picture/compositor.h"

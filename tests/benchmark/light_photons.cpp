@@ -7,8 +7,8 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "light/instant/caustic_photons.h"
-#include "light/instant/instant_radiosity.h"
+#include "light/virtual/caustic_photons.h"
+#include "light/virtual/instant_radiosity.h"
 #include "light/technique/technique.h"
 #include "light/walk/first_surface.h"
 #include "light_scenes.h"

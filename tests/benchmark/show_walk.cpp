@@ -14,7 +14,7 @@
 #include "base/clock.h"
 #include "frame/picture_file.h"
 #include "judge/flip.h"
-#include "light/bake/map_file.h"
+#include "light/kept/map_file.h"
 #include "shaped_line.h"
 #include "show_visit.h"
 

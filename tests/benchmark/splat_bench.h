@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Multiresolution splatting (light/splat): its time, its error and its flicker.
+// Multiresolution splatting (light/virtual): its time, its error and its flicker.
 #pragma once
-#include "light/splat/splatter.h"
+#include "light/virtual/splatter.h"
 #include "light/technique/technique.h"
 #include "markdown_page.h"
 #include "report.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a bounce by multiresolution splatting is from that of `path`, what the choice of virtual
-// lights does, and what is seen of it while a light moves.
+// How far a bounce by multiresolution splatting is from that of `path`, what a choice of VPLs
+// does, and what is seen of it while a light moves.
 #include <cmath>
 
 #include "judge/flip.h"
@@ -38,9 +38,7 @@ Frame with_bounce(const Frame& direct, const World& world, const Lights& lights,
 struct Tried {
   const char* scene;
   int virtual_lights;
-  VirtualLightChoice choice;
 };
-const char* const choice_names[] = {"uniform", "by flux", "low discrepancy", "by effect"};
 
 void bench_scene(BenchReport& report, const BenchOptions& options, const Tried& tried) {
   const char* name = tried.scene;
@@ -56,9 +54,7 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const Tried& 
   SplatSettings with;
   with.virtual_lights = tried.virtual_lights;
   with.texels = 16 * tried.virtual_lights;
-  with.choice = tried.choice;
   SplatSettings without = with, naive;
-  naive.choice = tried.choice;
   without.visibility = naive.visibility = false;
   naive.coarsest = 1 << 15;
   naive.virtual_lights = 2048;
@@ -68,7 +64,6 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const Tried& 
     nlohmann::json fields = {{"scene", name},
                              {"passes", passes},
                              {"lights", tried.virtual_lights},
-                             {"choice", choice_names[int(tried.choice)]},
                              {"reference_flip", reference.flip}};
     Frame shadowed = with_bounce(direct, world, lights, view, with, passes),
           plain = with_bounce(direct, world, lights, view, without, passes);
@@ -119,24 +114,20 @@ void bench_choice(BenchReport& report, const BenchOptions& options) {
     mean.resize(one.size(), vec3(0));
     for (size_t i = 0; i < one.size(); i++) mean[i] += one[i] / float(passes);
   }
-  for (int choice = 0; choice < 4; choice++) {
-    SplatSettings settings;
-    settings.visibility = false;
-    settings.choice = VirtualLightChoice(choice);
-    double squares = 0, own = 0;
-    for (uint64_t seed = 0; seed < 8; seed++) {
-      Picture one = splat(settings, 0, {seed, 0});
-      for (size_t i = 0; i < one.size(); i++) {
-        dvec3 differs = dvec3(one[i]) - dvec3(mean[i]);
-        squares += dot(differs, differs), own += dot(dvec3(mean[i]), dvec3(mean[i]));
-      }
+  SplatSettings settings;
+  settings.visibility = false;
+  double squares = 0, own = 0;
+  for (uint64_t seed = 0; seed < 8; seed++) {
+    Picture one = splat(settings, 0, {seed, 0});
+    for (size_t i = 0; i < one.size(); i++) {
+      dvec3 differs = dvec3(one[i]) - dvec3(mean[i]);
+      squares += dot(differs, differs), own += dot(dvec3(mean[i]), dvec3(mean[i]));
     }
-    std::vector<Picture> walk;
-    for (int step = 0; step < 12; step++) walk.push_back(splat(settings, step, {}));
-    nlohmann::json fields = {{"scene", "castle"}, {"choice", choice_names[choice]}};
-    report.add("splat.choice_rms", std::sqrt(squares / own), "1", fields);
-    report.add("splat.choice_flicker", flicker_of(walk), "1", fields);
   }
+  std::vector<Picture> walk;
+  for (int step = 0; step < 12; step++) walk.push_back(splat(settings, step, {}));
+  report.add("splat.choice_rms", std::sqrt(squares / own), "1", {{"scene", "castle"}});
+  report.add("splat.choice_flicker", flicker_of(walk), "1", {{"scene", "castle"}});
 }
 
 // The Cornell box by a bulb that moves by a centimetre a picture, the same random numbers in each
@@ -176,11 +167,8 @@ void bench_flicker(BenchReport& report, const BenchOptions& options) {
 }  // namespace
 
 void bench_splat_error(BenchReport& report, const BenchOptions& options) {
-  using enum VirtualLightChoice;
-  const Tried all[] = {{"cornell_box", 256, by_flux},
-                       {"diffuse_hall", 256, by_flux},
-                       {"castle", 256, by_flux},
-                       {"castle", 1024, by_effect}};
+  const Tried all[] = {
+      {"cornell_box", 256}, {"diffuse_hall", 256}, {"castle", 256}, {"castle", 1024}};
   for (const Tried& tried : all) bench_scene(report, options, tried);
   bench_choice(report, options);
   bench_flicker(report, options);

@@ -2,7 +2,7 @@
 // An illumination map kept from the last start.
 #include "fuzz/cached.h"
 #include "fuzz/lit_square.h"
-#include "light/bake/map_file.h"
+#include "light/kept/map_file.h"
 
 namespace wellspring::fuzz {
 

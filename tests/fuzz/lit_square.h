@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene whose baked light the targets of kept files read: a square under a lamp.
 #pragma once
-#include "unit/light/bake/bake_cases.h"
+#include "unit/light/kept/bake_cases.h"
 
 namespace wellspring::fuzz {
 

@@ -8,7 +8,7 @@
 #include "fuzz/spoken.h"
 #include "image/image.h"
 #include "ledger/sums.h"
-#include "light/bake/map_file.h"
+#include "light/kept/map_file.h"
 #include "unit/avatar/load/vrm_person.h"
 #include "unit/denoise/tza.h"
 #include "unit/folder.h"

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "light/dynamic/dynamic_image.h"
+#include "light/virtual/dynamic_image.h"
 #include "light/visible/surface_buffer.h"
 
 namespace wellspring::scenes {

@@ -13,10 +13,10 @@
 namespace wellspring::light {
 
 struct IlluminationMap;  // light/sample/illumination_map.h
-struct InstantPass;      // light/instant/instant_pass.h
+struct InstantPass;      // light/virtual/instant_pass.h
 struct LampsSeen;        // light/sample/lamps_seen.h
 struct LightTables;      // light/sample/light_tables.h
-struct SplatPass;        // light/splat/splatter.h
+struct SplatPass;        // light/virtual/splatter.h
 struct EmittingSources;
 struct TransportPlan;  // light/transport_plan.h
 

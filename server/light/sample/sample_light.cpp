@@ -192,6 +192,16 @@ vec3 eval_visibility(const Transport& transport, Ray ray) {
   return panes.more ? step_through_panes(world, ray) : pass_panes(transport, ray, panes);
 }
 
+vec3 eval_blocked(const Transport& transport, const RayPacket& rays, int i) {
+  if (!transport.tables.any_pane) return vec3(0);
+  Ray ray;
+  ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
+  ray.direction = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]};
+  ray.t_max = rays.t_max[i];
+  return may_cross_pane(transport.tables.pane_boxes, ray) ? eval_visibility(transport, ray)
+                                                          : vec3(0);
+}
+
 namespace {
 
 // Returns whether light of a sample is finite and not negative. Works bit by bit: one branch for

@@ -58,6 +58,8 @@ vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
                      const LightSample& light);
 // Returns the same along a shadow ray, whose direction may have any length.
 vec3 eval_visibility(const Transport& transport, Ray ray);
+// Returns the same along ray `i` of a packet, which something blocks.
+vec3 eval_blocked(const Transport& transport, const RayPacket& rays, int i);
 
 inline constexpr int most_panes = 64;  // straight through so many in a row, then the light is lost
 

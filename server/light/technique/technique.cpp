@@ -11,14 +11,14 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/simd.h"
-#include "light/bake/finish_bake.h"
-#include "light/instant/edge_samples.h"
-#include "light/instant/instant_radiosity.h"
+#include "light/kept/finish_bake.h"
+#include "light/virtual/eye_light.h"
+#include "light/virtual/instant_radiosity.h"
 #include "light/random/sampler.h"
 #include "light/sample/lamps_seen.h"
 #include "light/sample/light_tables.h"
 #include "light/sample/sample_light.h"
-#include "light/splat/splatter.h"
+#include "light/virtual/splatter.h"
 #include "light/walk/walk.h"
 
 namespace wellspring::light {

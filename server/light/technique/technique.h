@@ -27,7 +27,7 @@ void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelS
                          std::span<Request> requests);
 
 // Declares the trace functions that technique.cpp lists, one file each; those of instant_radiosity
-// are in light/instant/instant_radiosity.h.
+// are in light/virtual/instant_radiosity.h.
 
 Sample trace_path(const World& world, const Lights& lights, const TransportSettings& settings,
                   const Request& request);

@@ -58,7 +58,7 @@ class VisibleRun {
   // Writes highlights of its pixels (light/visible/facet.h); none if rays have seen them.
   void gloss(uint32_t* codes, uint8_t* metallic) const;
   // Computes the light of its pixels that show what moves, as `surface` describes it
-  // (light/known/skin_light.h); other pixels get any value. Returns the moving ones, a bit each;
+  // (light/kept/skin_light.h); other pixels get any value. Returns the moving ones, a bit each;
   // none if rays have seen them. Rough gloss shows the light that is kept, as much as comes about
   // from where it mirrors; smooth gloss shows what rays meet there, and those of `lights` that have
   // no size.

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "base/unicode.h"
-#include "light/bake/bake_file.h"
-#include "light/bake/map_file.h"
+#include "light/kept/bake_file.h"
+#include "light/kept/map_file.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "world/view.h"
 

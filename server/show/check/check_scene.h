@@ -36,7 +36,7 @@ bool sees_something(const World& world, const Viewpoint& viewpoint);
 void check_places(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems);
 
 // Notes what visitors see from behind though its material has one side: bakes keep light of fronts
-// (light/bake/charts.h). Takes milliseconds.
+// (light/kept/charts.h). Takes milliseconds.
 void check_sides(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems);
 
 // A note where the light that the package carries (light.maps) is of another scene, or damaged.

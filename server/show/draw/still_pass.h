@@ -29,7 +29,7 @@ void watch_pass(Show& show);
 // it may be a third of the picture.
 bool may_be_laid_over(const PictureWindow& window, const View& view);
 
-// These find the light on moving things (light/known/skin_light.h), which all visitors share. First
+// These find the light on moving things (light/kept/skin_light.h), which all visitors share. First
 // by the tick, while the renderer is idle and the world is in that visitor's state, then on the
 // renderer, as the world is then, then by the tick.
 void begin_skin_light(Show& show, const Visitor& visitor);

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/worker.h"
-#include "light/known/lamps.h"
+#include "light/kept/lamps.h"
 #include "light/technique/technique.h"
 #include "light/visible/guides.h"
 #include "world/load/lamp.h"

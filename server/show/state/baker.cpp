@@ -10,9 +10,9 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/worker.h"
-#include "light/bake/bake_file.h"
-#include "light/bake/finish_bake.h"
-#include "light/bake/map_file.h"
+#include "light/kept/bake_file.h"
+#include "light/kept/finish_bake.h"
+#include "light/kept/map_file.h"
 
 namespace wellspring::show {
 namespace {

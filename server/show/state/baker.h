@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "light/bake/bake.h"
+#include "light/kept/bake.h"
 #include "light/sample/illumination_map.h"
 #include "light/sample/lights.h"
 #include "show/state/totals.h"

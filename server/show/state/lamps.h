@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "light/dynamic/direct_light.h"
+#include "light/virtual/direct_light.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {
@@ -56,7 +56,7 @@ void follow_lamps(ExhibitStage& stage, Visitor& visitor);
 // Only while the renderer is idle.
 void forget_lights(ExhibitStage& stage, const ShowVisits& visits);
 
-// Finds a visitor's lights that move or change (light/dynamic/direct_light.h): those of
+// Finds a visitor's lights that move or change (light/virtual/direct_light.h): those of
 // exhibit.json, at the visitor's hour of the day, and those that the visitor's storyteller carries.
 
 // Values of DynamicLight::id: lights of exhibit.json and carried lights are numbered from the first

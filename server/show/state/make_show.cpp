@@ -5,8 +5,8 @@
 
 #include "base/log.h"
 #include "base/worker.h"
-#include "light/bake/bake_file.h"
-#include "light/bake/map_file.h"
+#include "light/kept/bake_file.h"
+#include "light/kept/map_file.h"
 #include "light/sample/light_tables.h"
 #include "show/exhibit/exhibit_objects.h"
 #include "show/moving/exhibit_scene.h"

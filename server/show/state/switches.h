@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "light/known/lamps.h"
-#include "light/known/skin_light.h"
+#include "light/kept/lamps.h"
+#include "light/kept/skin_light.h"
 
 namespace wellspring::show {
 

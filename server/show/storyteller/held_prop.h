@@ -5,7 +5,7 @@
 #pragma once
 #include "avatar/mind/storyteller.h"
 #include "avatar/story/timeline.h"
-#include "light/dynamic/direct_light.h"
+#include "light/virtual/direct_light.h"
 #include "show/exhibit/exhibit.h"
 #include "show/moving/prop.h"
 #include "show/storyteller/voice.h"

@@ -3,8 +3,8 @@
 
 #include "base/load_error.h"
 #include "base/rng.h"
-#include "light/bake/bake_file.h"
-#include "light/bake/map_file.h"
+#include "light/kept/bake_file.h"
+#include "light/kept/map_file.h"
 #include "light/technique/technique.h"
 #include "picture/compose_drawn.h"
 #include "picture/compositor.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "unit/light/bake/bake_cases.h"
+#include "unit/light/kept/bake_cases.h"
 #include "unit/picture/drawn_visit.h"
 
 namespace wellspring::test {

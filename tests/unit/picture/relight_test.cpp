@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "light/dynamic/dynamic_image.h"
+#include "light/virtual/dynamic_image.h"
 #include "light/visible/surface_buffer.h"
 #include "unit/picture/drawn_visit.h"
 

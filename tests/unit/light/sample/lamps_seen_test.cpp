@@ -2,7 +2,7 @@
 // What places see of few lamps: learned right, and used without bias.
 #include <gtest/gtest.h>
 
-#include "light/known/lamps.h"
+#include "light/kept/lamps.h"
 #include "light/random/warp.h"
 #include "light/sample/lamps_seen.h"
 #include "light/sample/lights.h"

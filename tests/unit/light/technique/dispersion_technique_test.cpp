@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "unit/light/judge.h"
-#include "light/instant/caustic_photons.h"
+#include "light/virtual/caustic_photons.h"
 #include "light/material/microfacet.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "light/bake/finish_bake.h"
+#include "light/kept/finish_bake.h"
 #include "light/random/warp.h"
 #include "light/technique/technique.h"
 #include "light/walk/known_light.h"

@@ -8,7 +8,7 @@
 
 #include "unit/light/full_plan.h"
 #include "unit/light/judge.h"
-#include "light/instant/instant_radiosity.h"
+#include "light/virtual/instant_radiosity.h"
 #include "light/sample/light_tables.h"
 #include "scenes/scenes.h"
 

@@ -7,7 +7,7 @@
 
 #include "light/visible/visibility.h"
 #include "light/walk/known_light.h"
-#include "unit/light/bake/bake_cases.h"
+#include "unit/light/kept/bake_cases.h"
 
 namespace wellspring::test {
 namespace {

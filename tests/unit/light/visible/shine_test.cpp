@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "light/known/skin_light.h"
+#include "light/kept/skin_light.h"
 #include "light/visible/visibility.h"
 #include "scenes/scenes.h"
-#include "unit/light/bake/bake_cases.h"
+#include "unit/light/kept/bake_cases.h"
 
 namespace wellspring::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "light/technique/technique.h"
-#include "unit/light/bake/bake_cases.h"
+#include "unit/light/kept/bake_cases.h"
 
 namespace wellspring::test {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <filesystem>
 
-#include "light/bake/bake_file.h"
-#include "light/bake/bake_scene.h"
-#include "light/bake/finish_bake.h"
-#include "light/bake/map_file.h"
+#include "light/kept/bake_file.h"
+#include "light/kept/bake_scene.h"
+#include "light/kept/finish_bake.h"
+#include "light/kept/map_file.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "unit/show/exhibit/room_package.h"
 #include "unit/show/tiny_exhibit.h"

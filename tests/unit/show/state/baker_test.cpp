@@ -7,9 +7,9 @@
 #include <chrono>
 #include <thread>
 
-#include "light/bake/map_file.h"
+#include "light/kept/map_file.h"
 #include "unit/folder.h"
-#include "unit/light/bake/bake_cases.h"
+#include "unit/light/kept/bake_cases.h"
 
 namespace wellspring::test {
 namespace {

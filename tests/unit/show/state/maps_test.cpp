@@ -2,12 +2,12 @@
 // Illumination maps of a running exhibit: where they come from, and what lamps make of them.
 #include <gtest/gtest.h>
 
-#include "light/bake/map_file.h"
+#include "light/kept/map_file.h"
 #include "show/http/answer.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
 #include "unit/folder.h"
-#include "unit/light/bake/bake_cases.h"
+#include "unit/light/kept/bake_cases.h"
 #include "unit/show/show_stage.h"
 #include "scenes/scenes.h"
 #include "world/load/lamp.h"

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <thread>
 
-#include "light/bake/bake.h"
-#include "light/bake/finish_bake.h"
+#include "light/kept/bake.h"
+#include "light/kept/finish_bake.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "show/state/baker.h"
 #include "show/state/make_show.h"
