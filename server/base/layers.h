@@ -7,6 +7,7 @@
 namespace wellspring {
 namespace config {}
 namespace about {}
+namespace json {}
 namespace wire {}
 namespace ledger {}
 namespace frame {}
@@ -22,6 +23,10 @@ namespace show {}
 namespace museum {}
 namespace stream {}
 namespace kiosk {}
+
+namespace wire {
+using namespace json;
+}  // namespace wire
 
 namespace attention {
 using namespace frame;
@@ -52,6 +57,7 @@ using namespace frame;
 
 namespace avatar {
 using namespace gltf;
+using namespace json;
 }  // namespace avatar
 
 namespace show {
@@ -65,6 +71,7 @@ using namespace attention;
 using namespace frame;
 using namespace avatar;
 using namespace wire;
+using namespace json;
 using namespace ledger;
 }  // namespace show
 
@@ -80,12 +87,14 @@ using namespace wire;
 
 namespace kiosk {
 using namespace wire;
+using namespace json;
 }  // namespace kiosk
 
 // Programs put layers together, and tests test them.
 namespace program {
 using namespace config;
 using namespace about;
+using namespace json;
 using namespace wire;
 using namespace ledger;
 using namespace frame;

@@ -6,7 +6,8 @@ export const may_include = {
   base: [],
   config: ['base'],
   about: ['base'],
-  wire: ['base'],
+  json: ['base'],
+  wire: ['json', 'base'],
   ledger: ['base'],
   frame: ['base'],
   attention: ['frame', 'base'],
@@ -16,12 +17,12 @@ export const may_include = {
   light: ['world', 'frame', 'base'],
   cache: ['light', 'world', 'frame', 'base'],
   picture: ['cache', 'denoise', 'light', 'world', 'frame', 'base'],
-  avatar: ['gltf', 'base'],
+  avatar: ['gltf', 'json', 'base'],
   show: ['picture', 'cache', 'denoise', 'light', 'world', 'gltf', 'attention', 'frame', 'avatar',
-    'wire', 'ledger', 'base'],
+    'wire', 'json', 'ledger', 'base'],
   museum: ['show', 'wire', 'ledger', 'base'],
   stream: ['wire', 'base'],
-  kiosk: ['wire', 'base'],
+  kiosk: ['wire', 'json', 'base'],
 };
 
 export const folder_of = (layer) =>

@@ -13,9 +13,10 @@
 using namespace wellspring;
 
 using namespace wellspring::test;
-using nlohmann::json;
 
 namespace {
+
+using nlohmann::json;
 
 bool has_line(const std::string& page, const std::string& line) {
   return ("\n" + page).find("\n" + line + "\n") != std::string::npos;

@@ -18,9 +18,10 @@ using namespace wellspring;
 using namespace wellspring::test;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
-using nlohmann::json;
 
 namespace {
+
+using nlohmann::json;
 
 // The benchmark's Cornell box under one more node that scales and moves all of it.
 Scene load_moved_box(double scale, dvec3 place) {

@@ -11,9 +11,10 @@
 using namespace wellspring;
 
 using namespace wellspring::test;
-using nlohmann::json;
 
 namespace {
+
+using nlohmann::json;
 
 Exhibit make_exhibit(const test::Folder& folder) {
   Exhibit exhibit = make_tiny_exhibit();
