@@ -7,18 +7,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string_view>
 #include <unistd.h>
 
 #include "base/load_error.h"
-#include "base/read_file.h"
+#include "json/fields.h"
 #include "kiosk/process/eye_process.h"
 #include "wire/json.h"
-#include "wire/json_line.h"
 #include "wire/tokens.h"
 
 namespace wellspring::kiosk {
@@ -27,136 +23,67 @@ namespace {
 using nlohmann::json;
 
 constexpr float degree = pi / 180;
+constexpr size_t most_cameras = 100;
+constexpr size_t longest_path = 4000;  // bytes, of addresses too
 
-std::string read_text(const std::string& file) {
-  return read_file(file, 1 << 20, FileKind::regular_or_pipe);
+void read_lens(FieldReader& fields, CameraSettings& camera) {
+  fields.integer("width", 160, 1920, camera.width, "pixels across");
+  fields.number("rate", 1, 120, camera.rate, "pictures a second");
+  fields.degrees("fov", 10, 170, camera.mount.fov, "horizontal field of view, degrees");
+  fields.boolean("mirrored", camera.mount.mirrored, "the camera delivers a mirror image");
 }
 
-json parse(const std::string& file, const std::string& text) {
-  auto parsed = parse_json(text);
-  if (auto* error = std::get_if<WireError>(&parsed)) throw LoadError(file, "", error->message);
-  json root = std::get<json>(std::move(parsed));
-  if (!root.is_object()) throw LoadError(file, "", "not an object");
-  return root;
+void read_mount(FieldReader& fields, Mount& mount) {
+  fields.part("mount", "how the camera sits", [&](FieldReader& part) {
+    part.vector("offset", 10, mount.offset, "[right, up, out] m of the screen's centre");
+    part.degrees("pitch", -80, 80, mount.pitch, "degrees, upwards positive");
+  });
 }
 
-// Takes one value at `where`.
-using Take = std::function<void(const json& value, const std::string& where)>;
+void read_presence(FieldReader& fields, PresenceSettings& presence) {
+  constexpr double longest = 600;  // seconds
+  fields.number("wake_after", 0, longest, presence.wake_after);
+  fields.number("confirm_after", 0, longest, presence.confirm_after);
+  fields.number("hold_person", 0, longest, presence.hold_person);
+  fields.number("hold_motion", 0, longest, presence.hold_motion);
+}
 
-struct Reader {
-  const std::string &file, &written;
-
-  // Fails; a missing value has the line of the object that lacks it.
-  [[noreturn]] void fail(const std::string& where, const std::string& what) const {
-    int line = find_json_line(written, where);
-    if (line == 0) line = find_json_line(written, where.substr(0, where.rfind('/')));
-    throw LoadError(file, "line " + std::to_string(line) + ", " + where, what);
-  }
-  void object(const json& value, const std::string& where,
-              const std::map<std::string, Take>& known) const {
-    if (!value.is_object()) fail(where, "is not an object");
-    for (const auto& [name, item] : value.items()) {
-      const std::string at = where + "/" + name;
-      auto found = known.find(name);
-      if (found == known.end()) {
-        std::string names;
-        for (const auto& [one, unused] : known) names += (names.empty() ? "" : ", ") + one;
-        fail(at, "is unknown; there are " + names);
-      }
-      found->second(item, at);
-    }
-  }
-  template <class Number>
-  Take number(Number& to, double least, double most, double unit = 1) const {
-    return [this, &to, least, most, unit](const json& value, const std::string& where) {
-      double v = value.is_number() ? value.get<double>() : NAN;
-      if (!(v >= least && v <= most)) {
-        std::ostringstream range;
-        range << "is not a number from " << least << " to " << most;
-        fail(where, range.str());
-      }
-      to = Number(v * unit);
-    };
-  }
-  Take text(std::string& to) const {
-    return [this, &to](const json& value, const std::string& where) {
-      if (!value.is_string() || value.get<std::string>().empty()) fail(where, "is not a text");
-      to = value.get<std::string>();
-    };
-  }
-  Take flag(bool& to) const {
-    return [this, &to](const json& value, const std::string& where) {
-      if (!value.is_boolean()) fail(where, "is not true or false");
-      to = value.get<bool>();
-    };
-  }
-  Take place(vec3& to) const {
-    return [this, &to](const json& value, const std::string& where) {
-      if (!value.is_array() || value.size() != 3) fail(where, "is not a list of three numbers");
-      for (int i = 0; i < 3; i++) number(to[i], -10, 10)(value[size_t(i)], where);
-    };
-  }
-  Take part(std::map<std::string, Take> known) const {
-    return [this, known = std::move(known)](const json& value, const std::string& where) {
-      object(value, where, known);
-    };
-  }
-  std::map<std::string, Take> lens(CameraSettings& camera) const {
-    return {{"width", number(camera.width, 160, 1920)},
-            {"rate", number(camera.rate, 1, 120)},
-            {"fov", number(camera.mount.fov, 10, 170, double(degree))},
-            {"mirrored", flag(camera.mount.mirrored)}};
-  }
-  Take mount(Mount& to) const {
-    return part({{"offset", place(to.offset)}, {"pitch", number(to.pitch, -80, 80, degree)}});
-  }
-  // Reads the cameras that the file lists; `common` holds what they leave out.
-  Take list(std::vector<CameraSettings>& cameras, const CameraSettings& common) const {
-    return [this, &cameras, &common](const json& value, const std::string& where) {
-      if (!value.is_array() || value.empty()) fail(where, "is not a list of cameras");
-      for (size_t i = 0; i < value.size(); i++) {
-        const std::string at = where + "/" + std::to_string(i);
-        CameraSettings& camera = cameras.emplace_back(common);
-        std::map<std::string, Take> known = lens(camera);
-        known["source"] = text(camera.source);
-        known["name"] = text(camera.name);
-        known["mount"] = mount(camera.mount);
-        object(value[i], at, known);
-        if (camera.source.empty()) fail(at + "/source", "is missing");
-      }
-    };
-  }
-};
+void read_camera(FieldReader& fields, CameraSettings& camera) {
+  fields.text("source", camera.source, "as --camera has it", Need::required, longest_path);
+  fields.text("name", camera.name);
+  read_lens(fields, camera);
+  read_mount(fields, camera.mount);
+}
 
 }  // namespace
 
 void load_config(const std::string& file, KioskConfig& config) {
-  const std::string written = read_text(file);
-  const json root = parse(file, written);
-  const Reader r{file, written};
-  CameraSettings& camera = config.camera;
-  PresenceSettings& presence = config.presence;
-  constexpr double longest = 600;  // seconds
-  r.object(root, "",
-           {{"name", r.text(config.name)},
-            {"server", r.text(config.server)},
-            {"token_file", r.text(config.token_file)},
-            {"ca_file", r.text(config.ca_file)},
-            {"camera", r.part(r.lens(camera))},
-            {"mount", r.mount(camera.mount)},
-            // they are read after what they have in common
-            {"cameras", [](const json&, const std::string&) {}},
-            {"presence", r.part({{"wake_after", r.number(presence.wake_after, 0, longest)},
-                                 {"confirm_after", r.number(presence.confirm_after, 0, longest)},
-                                 {"hold_person", r.number(presence.hold_person, 0, longest)},
-                                 {"hold_motion", r.number(presence.hold_motion, 0, longest)}})},
-            {"expression", r.flag(config.expression)},
-            {"hands", r.flag(config.hands)}});
-  if (root.contains("cameras")) r.list(config.cameras, camera)(root["cameras"], "/cameras");
+  const std::string text = read_json_text(file);
+  const json root = parse_json_file(file, text);
+  Faults faults(file, true, text);
+  FieldReader fields(root, faults);
+  fields.text("name", config.name);
+  fields.text("server", config.server, "its address", Need::optional, longest_path);
+  fields.text("token_file", config.token_file, "", Need::optional, longest_path);
+  fields.text("ca_file", config.ca_file, "", Need::optional, longest_path);
+  fields.part("camera", "what cameras have in common",
+              [&](FieldReader& part) { read_lens(part, config.camera); });
+  read_mount(fields, config.camera.mount);
+  fields.part("presence", "seconds",
+              [&](FieldReader& part) { read_presence(part, config.presence); });
+  fields.boolean("expression", config.expression);
+  fields.boolean("hands", config.hands);
+  if (const auto cameras = fields.take("cameras"))
+    for (const JsonValue& one : cameras->list(1, most_cameras, "cameras"))
+      fields.read_object(one, [&](FieldReader& part) {
+        read_camera(part, config.cameras.emplace_back(config.camera));
+      });
+  fields.finish();
 }
 
 void save_mount(const std::string& file, const std::string& source, const Mount& mount) {
-  json root = std::filesystem::exists(file) ? parse(file, read_text(file)) : json::object();
+  json root =
+      std::filesystem::exists(file) ? parse_json_file(file, read_json_text(file)) : json::object();
   auto rounded = [](double v) { return std::round(1000 * v) / 1000; };
   json *lens = &root["camera"], *place = &root["mount"];
   if (root.contains("cameras"))

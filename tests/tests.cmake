@@ -67,6 +67,7 @@ endfunction()
 
 wellspring_unit_test(base   base)
 wellspring_unit_test(config config)
+wellspring_unit_test(json   json)
 wellspring_unit_test(wire   wire)
 wellspring_unit_test(ledger ledger)
 wellspring_unit_test(image  image)

@@ -7,6 +7,7 @@
 namespace wellspring {
 namespace config {}
 namespace about {}
+namespace json {}
 namespace wire {}
 namespace ledger {}
 namespace image {}
@@ -27,6 +28,10 @@ namespace kiosk {}
 namespace frame {
 using namespace image;
 }  // namespace frame
+
+namespace wire {
+using namespace json;
+}  // namespace wire
 
 namespace attention {
 using namespace frame;
@@ -58,6 +63,7 @@ using namespace frame;
 
 namespace avatar {
 using namespace gltf;
+using namespace json;
 }  // namespace avatar
 
 namespace show {
@@ -72,6 +78,7 @@ using namespace frame;
 using namespace image;
 using namespace avatar;
 using namespace wire;
+using namespace json;
 using namespace ledger;
 }  // namespace show
 
@@ -87,12 +94,14 @@ using namespace wire;
 
 namespace kiosk {
 using namespace wire;
+using namespace json;
 }  // namespace kiosk
 
 // Programs put layers together, and tests test them.
 namespace program {
 using namespace config;
 using namespace about;
+using namespace json;
 using namespace wire;
 using namespace ledger;
 using namespace image;

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <variant>
 
+#include "json/text.h"
 #include "wire/limits.h"
 #include "wire/messages.h"
 
@@ -23,9 +24,7 @@ namespace wellspring::wire {
 
 // Says why a message was refused: `code` is a fixed word for programs (bad_json, too_deep,
 // too_large, unknown_type, bad_field), `message` a sentence naming the field.
-struct WireError {
-  std::string code, message;
-};
+using WireError = JsonError;
 
 // Reads a browser's message. `values`: set to how many JSON values were read, good or not, unless
 // it is null.
@@ -49,18 +48,5 @@ std::string write_error(const WireError& error);  // {"type":"error","code":..,"
 std::string write_message(const BrowserMessage& message);
 // Returns {type: {field: what it means}} of all of them, for GET /api/v1/.
 nlohmann::json describe_browser_messages();
-
-// Bounds how much of a text is made into values.
-struct JsonLimits {
-  int depth = max_message_depth;  // levels of nesting; `[[1]]` has 2
-  size_t values = SIZE_MAX;       // containers too
-};
-// Parses within limits: nlohmann's own parser takes any depth, but copying or dumping its result of
-// 100,000 brackets overflows the stack, and 20,000 empty arrays take milliseconds. Stops at the
-// first value too many. Returns a WireError (bad_json, too_deep, too_large; bad_field for a number
-// no double can hold) naming the place. `values`: set to how many were read.
-std::variant<nlohmann::json, WireError> parse_json(std::string_view text,
-                                                   const JsonLimits& limits = {},
-                                                   size_t* values = nullptr);
 
 }  // namespace wellspring::wire

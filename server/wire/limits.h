@@ -6,15 +6,12 @@
 namespace wellspring::wire {
 
 inline constexpr size_t max_message_bytes = 64 * 1024;
-inline constexpr int max_message_depth = 32;
 // Texts of browsers are read only up to the size that they need: a hello with its two tokens, any
 // other message, and the values of JSON in either.
 inline constexpr size_t max_hello_bytes = 16 * 1024, max_order_bytes = 2 * 1024;
 inline constexpr size_t max_order_values = 256, max_observation_values = 8192;
 
 // Limits of single fields; outside of them a message is refused with bad_field.
-inline constexpr size_t max_name_bytes = 200;      // every string: UTF-8 without control characters
-inline constexpr size_t max_token_bytes = 4000;    // hello.resume
 inline constexpr double max_speed = 20;            // m/s, length of input.move
 inline constexpr double max_angle = 100;           // radians, every angle; the user wraps it
 inline constexpr double max_coordinate = 1e6;      // metres, camera.position

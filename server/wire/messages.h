@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "json/text.h"
 #include "wire/limits.h"
 
 namespace wellspring::wire {
@@ -101,10 +102,7 @@ struct EyeOrder {
 // them once: kind, name, limits, value, what it means, and whether it must be there. Reading,
 // writing and GET /api/v1/ go through this list, so a new message is a struct here (and in
 // BrowserMessage), its handler in show/answer/commands.cpp, and its rows in tests/protocol. The
-// kinds are those of MessageReader (read_messages.cpp). A std::optional is there or is not; a text
-// that is empty is not written, unless it is required.
-
-enum class Need : uint8_t { optional, required };
+// kinds are those of FieldReader (json/fields.h).
 
 struct Hello {
   static constexpr const char* type = "hello";

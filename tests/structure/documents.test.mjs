@@ -18,8 +18,8 @@ const sources = ['server', 'avatar', 'kiosk', 'voice', 'tests']
     .map((file) => ({ name: relative(root, file), text: readFileSync(file, 'utf8') }));
 const code = sources.map(({ text }) => text).join('\n');
 
-const tops = 'server|avatar|kiosk|tests|docs|base|wire|frame|attention|denoise|gltf|world|light|' +
-    'cache|picture|show|stream';
+const tops = 'server|avatar|kiosk|tests|docs|base|json|wire|frame|attention|denoise|gltf|world|' +
+    'light|cache|picture|show|stream';
 const place = new RegExp(`\`((?:${tops})/[\\w./]*)\``, 'g');
 
 // `a/b`, `a/b.h`, `a/b/` or a stem of files: a place in the tree, seen from its root or server/.

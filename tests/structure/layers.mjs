@@ -6,7 +6,8 @@ export const may_include = {
   base: [],
   config: ['base'],
   about: ['base'],
-  wire: ['base'],
+  json: ['base'],
+  wire: ['json', 'base'],
   ledger: ['base'],
   image: ['base'],
   frame: ['image', 'base'],
@@ -17,12 +18,12 @@ export const may_include = {
   light: ['world', 'frame', 'base'],
   cache: ['light', 'world', 'frame', 'base'],
   picture: ['cache', 'denoise', 'light', 'world', 'frame', 'base'],
-  avatar: ['gltf', 'base'],
+  avatar: ['gltf', 'json', 'base'],
   show: ['picture', 'cache', 'denoise', 'light', 'world', 'gltf', 'attention', 'frame', 'image',
-    'avatar', 'wire', 'ledger', 'base'],
+    'avatar', 'wire', 'json', 'ledger', 'base'],
   museum: ['show', 'wire', 'ledger', 'base'],
   stream: ['wire', 'base'],
-  kiosk: ['wire', 'base'],
+  kiosk: ['wire', 'json', 'base'],
 };
 
 export const folder_of = (layer) =>

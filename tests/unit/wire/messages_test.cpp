@@ -13,6 +13,9 @@
 using namespace wellspring;
 
 using namespace wellspring::test;
+
+namespace {
+
 using nlohmann::json;
 
 static std::vector<json> golden(const std::string& name) {
@@ -282,3 +285,5 @@ TEST(WriteError, is_a_message_whatever_bytes_it_holds) {
   EXPECT_EQ(error["code"], "bad_field");
   EXPECT_NE(error["message"].get<std::string>().find("is \"odd\"\n"), std::string::npos);
 }
+
+}  // namespace

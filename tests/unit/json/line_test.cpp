@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/layers.h"
-#include "wire/json_line.h"
+#include "json/text.h"
 
 #include <gtest/gtest.h>
 
