@@ -58,7 +58,7 @@ void read_camera(FieldReader& fields, CameraSettings& camera) {
 }  // namespace
 
 void load_config(const std::string& file, KioskConfig& config) {
-  const std::string text = read_json_text(file);
+  const std::string text = read_json_text(file, FileKind::regular_or_pipe);
   const json root = parse_json_file(file, text);
   Faults faults(file, true, text);
   FieldReader fields(root, faults);
@@ -83,7 +83,7 @@ void load_config(const std::string& file, KioskConfig& config) {
 
 void save_mount(const std::string& file, const std::string& source, const Mount& mount) {
   json root =
-      std::filesystem::exists(file) ? parse_json_file(file, read_json_text(file)) : json::object();
+      std::filesystem::exists(file) ? parse_json_file(file, read_json_text(file, FileKind::regular_or_pipe)) : json::object();
   auto rounded = [](double v) { return std::round(1000 * v) / 1000; };
   json *lens = &root["camera"], *place = &root["mount"];
   if (root.contains("cameras"))

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the JSON of a gesture library.
 #include <algorithm>
-#include <limits>
 #include <map>
+#include <span>
 
 #include "avatar/body/gesture.h"
 #include "avatar/face/library_json.h"
@@ -11,9 +11,6 @@
 namespace wellspring::avatar {
 namespace {
 
-using nlohmann::json;
-
-constexpr double radian = 3.14159265358979323846 / 180;
 constexpr const char* arm_fields[] = {"forward", "side", "turn",  "elbow", "pronate",
                                       "flex",    "tilt", "curl",  "thumb", "index",
                                       "middle",  "ring", "little"};
@@ -27,133 +24,102 @@ bool is_weight(size_t channel) {
 
 using Poses = std::map<std::string, std::map<std::string, float>>;
 
-struct Reader : LibraryReader {
+Poses read_poses(FieldReader& root) {
   Poses poses;
+  root.part("poses", "", [&](FieldReader& all) {
+    for (const auto& [name, pose] : all.members())
+      all.read_object(pose, [&, &angles = poses[name]](FieldReader& fields) {
+        for (const char* field : arm_fields) fields.degrees(field, -360, 360, angles[field]);
+      });
+  });
+  return poses;
+}
 
-  float degrees(const json& value, const std::string& where) const {
-    if (!value.is_number()) fail(where, "a number of degrees is expected");
-    double angle = value.get<double>();
-    if (!(std::abs(angle) <= 360)) fail(where, "more than a whole turn");
-    return float(angle * radian);
+struct KeyReader {
+  const Poses& poses;
+  GestureRow& row;
+  std::vector<bool>& said;
+
+  void set(const std::string& name, float value) const {
+    row[channel_of(name)] = value;
+    said[channel_of(name)] = true;
   }
-
-  void read_poses(const json& root) {
-    const json* found = find(root, "poses");
-    if (!found) return;
-    object(*found, "/poses");
-    for (const auto& [name, pose] : found->items()) {
-      std::string where = "/poses/" + name;
-      for (const auto& [field, value] : object(pose, where).items()) {
-        if (std::find(std::begin(arm_fields), std::end(arm_fields), field) == std::end(arm_fields))
-          fail(where + "/" + field, "no such angle of an arm is known");
-        poses[name][field] = degrees(value, where + "/" + field);
-      }
-    }
+  // Reads the angles that a part of the body names over those of the key before.
+  void read_angles(FieldReader& part, const std::string& prefix,
+                   std::span<const char* const> fields) const {
+    float angle = 0;
+    for (const char* field : fields)
+      if (part.degrees(field, -360, 360, angle)) set(prefix + "." + field, angle);
   }
-
-  // Reads the channels that this key names over those of the key before.
-  void read_arm(const json& arm, const std::string& where, const std::string& side, GestureRow& row,
-                std::vector<bool>& said) const {
-    auto set = [&](const std::string& field, float value) {
-      size_t channel = channel_of(side + "." + field);
-      row[channel] = value;
-      said[channel] = true;
-    };
-    for (const auto& [field, value] : object(arm, where).items()) {
-      if (field != "pose") continue;
-      auto pose = value.is_string() ? poses.find(value.get<std::string>()) : poses.end();
-      if (pose == poses.end()) fail(where + "/pose", "no pose of this name in /poses");
-      for (const char* angle : arm_fields) {  // a pose sets the whole arm
-        auto given = pose->second.find(angle);
-        set(angle, given == pose->second.end() ? 0 : given->second);
-      }
+  void read_arm(FieldReader& arm, const std::string& side) const {
+    std::string name;
+    float weight = 0;
+    if (arm.text("pose", name)) {
+      const auto pose = poses.find(name);
+      if (pose == poses.end()) arm.fail("pose", "no pose of this name in /poses");
+      for (const auto& [angle, value] : pose->second) set(side + "." + angle, value);
     }
-    for (const auto& [field, value] : arm.items()) {
-      std::string place = where + "/" + field;
-      if (field == "pose") continue;
-      if (find_gesture_channel(side + "." + field) < 0)
-        fail(place, "no such angle of an arm is known");
-      set(field, field == "weight" ? number(value, place, 0, 1) : degrees(value, place));
-    }
+    read_angles(arm, side, arm_fields);
+    if (arm.number("weight", 0, 1, weight)) set(side + ".weight", weight);
   }
-
-  void read_trunk(const json& part, const std::string& where, const std::string& prefix,
-                  GestureRow& row, std::vector<bool>& said) const {
-    for (const auto& [field, value] : object(part, where).items()) {
-      int channel = find_gesture_channel(prefix + "." + field);
-      if (channel < 0) fail(where + "/" + field, "no such angle is known");
-      row[size_t(channel)] = degrees(value, where + "/" + field);
-      said[size_t(channel)] = true;
-    }
-  }
-
-  void read_keys(const json& entry, const std::string& where, GestureClip& clip) const {
-    const json& keys = list(entry, where, "keys", most_gesture_keys);
-    if (keys.size() < 2) fail(where + "/keys", "two keys at least are expected");
-    std::vector<bool> ever(gesture_channels, false);
-    for (size_t k = 0; k < keys.size(); k++) {
-      std::string place = where + "/keys/" + std::to_string(k);
-      const json& key = object(keys[k], place);
-      only(key, place, {"time", "left", "right", "head", "chest", "shoulders"});
-      float time = number(key, place, "time", -1, 0, double(longest_gesture));
-      if (time < 0) fail(place + "/time", "is missing");
-      if (k == 0 ? time != 0 : !(time > clip.times.back() + 1e-3f))
-        fail(place + "/time", k == 0 ? "the first key is at 0" : "is not after the key before");
-      GestureRow row{};
-      if (k > 0) row = clip.rows.back();
-      std::vector<bool> said(gesture_channels, false);
-      if (const json* arm = find(key, "left")) read_arm(*arm, place + "/left", "left", row, said);
-      if (const json* arm = find(key, "right"))
-        read_arm(*arm, place + "/right", "right", row, said);
-      if (const json* part = find(key, "head"))
-        read_trunk(*part, place + "/head", "head", row, said);
-      if (const json* part = find(key, "chest"))
-        read_trunk(*part, place + "/chest", "chest", row, said);
-      if (const json* value = find(key, "shoulders")) {
-        row[channel_of("shoulders")] = degrees(*value, place + "/shoulders");
-        said[channel_of("shoulders")] = true;
-      }
-      // An arm's angle that is named here first was the same from the beginning: it is not seen
-      // while the arm has no weight.
-      for (size_t c = 0; c < channel_of("left.weight"); c++)
-        if (said[c] && !ever[c]) {
-          ever[c] = true;
-          for (GestureRow& earlier : clip.rows) earlier[c] = row[c];
-        }
-      clip.times.push_back(time);
-      clip.rows.push_back(row);
-    }
-    clip.seconds = clip.times.back();
-    for (size_t c = channel_of("left.weight"); c < told_channels; c++)
-      if (clip.rows.front()[c] != 0 || clip.rows.back()[c] != 0)
-        fail(where + "/keys",
-             "a gesture begins and ends at rest: weights, head, chest and shoulders 0");
-  }
-
-  void read_swings(const json& entry, const std::string& where, GestureClip& clip) const {
-    const json& swings = list(entry, where, "swings", 32);
-    for (size_t i = 0; i < swings.size(); i++) {
-      std::string place = where + "/swings/" + std::to_string(i);
-      const json& given = object(swings[i], place);
-      only(given, place, {"channel", "degrees", "hertz", "from", "to", "phase"});
-      Swing swing;
-      const json* channel = find(given, "channel");
-      swing.channel =
-          channel && channel->is_string() ? find_gesture_channel(channel->get<std::string>()) : -1;
-      if (swing.channel < 0 || is_weight(size_t(swing.channel)))
-        fail(place + "/channel", "no such channel is known");
-      const json* angle = find(given, "degrees");
-      if (!angle) fail(place + "/degrees", "is missing");
-      swing.amplitude = degrees(*angle, place + "/degrees");
-      swing.hertz = number(given, place, "hertz", 1, 0, 10);
-      swing.from = number(given, place, "from", 0, 0, double(clip.seconds));
-      swing.to = number(given, place, "to", double(clip.seconds), 0, double(clip.seconds));
-      swing.phase = number(given, place, "phase", 0, -1, 1);
-      if (!(swing.to > swing.from)) fail(place + "/to", "is not after \"from\"");
-      clip.swings.push_back(swing);
-    }
+  void read(FieldReader& key) const {
+    float angle = 0;
+    for (const char* side : {"left", "right"})
+      key.part(side, "", [&](FieldReader& arm) { read_arm(arm, side); });
+    key.part("head", "", [&](FieldReader& part) { read_angles(part, "head", head_fields); });
+    key.part("chest", "", [&](FieldReader& part) { read_angles(part, "chest", chest_fields); });
+    if (key.degrees("shoulders", -360, 360, angle)) set("shoulders", angle);
   }
 };
+
+void read_keys(FieldReader& entry, const Poses& poses, GestureClip& clip) {
+  std::vector<bool> ever(gesture_channels, false);
+  const auto read_key = [&](FieldReader& key) {
+    float time = 0;
+    key.number("time", 0, double(longest_gesture), time, "", Need::required);
+    const bool first = clip.times.empty();
+    if (first ? time != 0 : !(time > clip.times.back() + 1e-3f))
+      key.fail("time", first ? "the first key is at 0" : "is not after the key before");
+    GestureRow row = first ? GestureRow{} : clip.rows.back();
+    std::vector<bool> said(gesture_channels, false);
+    KeyReader{poses, row, said}.read(key);
+    // An arm's angle that is named here first was the same from the beginning: it is not seen
+    // while the arm has no weight.
+    for (size_t c = 0; c < channel_of("left.weight"); c++)
+      if (said[c] && !ever[c]) {
+        ever[c] = true;
+        for (GestureRow& earlier : clip.rows) earlier[c] = row[c];
+      }
+    clip.times.push_back(time);
+    clip.rows.push_back(row);
+  };
+  for (const JsonValue& key :
+       entry.list("keys", 2, most_gesture_keys, "two keys at least", Need::required))
+    entry.read_object(key, read_key);
+  clip.seconds = clip.times.back();
+  for (size_t c = channel_of("left.weight"); c < told_channels; c++)
+    if (clip.rows.front()[c] != 0 || clip.rows.back()[c] != 0)
+      entry.fail("keys", "a gesture begins and ends at rest: weights, head, chest and shoulders 0");
+}
+
+void read_swing(FieldReader& fields, GestureClip& clip) {
+  Swing swing;
+  std::string channel;
+  fields.text("channel", channel, "", Need::required);
+  swing.channel = find_gesture_channel(channel);
+  if (swing.channel < 0 || is_weight(size_t(swing.channel)))
+    fields.fail("channel", "no such channel is known");
+  swing.hertz = 1;
+  swing.from = swing.phase = 0;
+  swing.to = clip.seconds;
+  fields.degrees("degrees", -360, 360, swing.amplitude, "", Need::required);
+  fields.number("hertz", 0, 10, swing.hertz);
+  fields.number("from", 0, double(clip.seconds), swing.from);
+  fields.number("to", 0, double(clip.seconds), swing.to);
+  fields.number("phase", -1, 1, swing.phase);
+  if (!(swing.to > swing.from)) fields.fail("to", "is not after \"from\"");
+  clip.swings.push_back(swing);
+}
 
 // Makes monotone slopes (Fritsch, Carlson 1980; weights of Brodlie): no value between two keys
 // leaves the range of the two, and a motion does not stop at a key that it passes.
@@ -200,53 +166,48 @@ void finish(GestureClip& clip) {
   }
 }
 
-constexpr const char* aim_names[] = {"none", "finger", "palm"};
+void read_clip(FieldReader& entry, const Poses& poses, GestureClip& clip) {
+  read_keys(entry, poses, clip);
+  clip.stroke = float(0.5 * double(clip.seconds));
+  clip.hold = -1;
+  entry.number("stroke", 0, double(clip.seconds), clip.stroke);
+  entry.number("hold", 0, double(clip.seconds), clip.hold);
+  entry.parts("swings", 32, "", [&](FieldReader& swing) { read_swing(swing, clip); });
+  entry.choice("aim", {"none", "finger", "palm"}, clip.aim, "");
+}
 
 }  // namespace
 
 GestureLibrary read_gestures(std::string_view text, const std::string& file) {
-  Reader reader{{file}, {}};
-  json root = reader.parse(text, "wellspring-gestures");
-  reader.only(root, "", {"format", "version", "about", "poses", "gestures"});
-  reader.read_poses(root);
+  const nlohmann::json parsed = parse_json_file(file, text, true);
+  Faults faults(file, true);
+  FieldReader root(parsed, faults);
+  read_library_head(root, "wellspring-gestures");
+  const Poses poses = read_poses(root);
   GestureLibrary library;
-  const json& list = reader.list(root, "", "gestures", most_gestures);
-  for (size_t i = 0; i < list.size(); i++) {
-    std::string where = "/gestures/" + std::to_string(i);
-    const json& entry = reader.object(list[i], where);
+  root.parts("gestures", most_gestures, "", [&](FieldReader& entry) {
     GestureClip clip;
-    std::string name = reader.name(entry, where);
-    if (find_gesture(library, name) >= 0) reader.fail(where + "/name", "is there twice: " + name);
-    if (reader.find(entry, "mirror_of")) {
-      reader.only(entry, where, {"name", "about", "mirror_of"});
-      int of = find_gesture(library, reader.name(entry, where, "mirror_of"));
-      if (of < 0) reader.fail(where + "/mirror_of", "no gesture of this name before this one");
-      clip = mirror(library.clips[size_t(of)]);
+    std::string name, mirrored;
+    entry.name("name", name, "", Need::required);
+    if (find_gesture(library, name) >= 0) entry.fail("name", "is there twice: " + name);
+    if (entry.name("mirror_of", mirrored, "")) {
+      const int index = find_gesture(library, mirrored);
+      if (index < 0) entry.fail("mirror_of", "no gesture of this name before this one");
+      clip = mirror(library.clips[size_t(index)]);
     } else {
-      reader.only(entry, where, {"name", "about", "stroke", "hold", "aim", "keys", "swings"});
-      reader.read_keys(entry, where, clip);
-      clip.stroke = reader.number(entry, where, "stroke", 0.5 * double(clip.seconds), 0,
-                                  double(clip.seconds));
-      clip.hold = reader.number(entry, where, "hold", -1, 0, double(clip.seconds));
-      reader.read_swings(entry, where, clip);
-      if (const json* aim = reader.find(entry, "aim")) {
-        auto known = std::find(std::begin(aim_names), std::end(aim_names), *aim);
-        if (known == std::end(aim_names))
-          reader.fail(where + "/aim", "none, finger or palm is expected");
-        clip.aim = Aim(known - std::begin(aim_names));
-      }
+      read_clip(entry, poses, clip);
     }
     clip.name = name;
-    if (const json* about = reader.find(entry, "about"); about && about->is_string())
-      clip.about = about->get<std::string>();
+    entry.text("about", clip.about, "", Need::optional, 4000);
     finish(clip);
     library.clips.push_back(std::move(clip));
-  }
+  });
+  root.finish();
   return library;
 }
 
 GestureLibrary load_gestures(const std::string& file) {
-  return read_gestures(read_file(file, most_library_bytes), file);
+  return read_gestures(read_json_text(file), file);
 }
 
 }  // namespace wellspring::avatar

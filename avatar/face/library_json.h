@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the JSON of expressions and gestures with checks: the first error is thrown as a LoadError
-// with its JSON pointer. For the readers of this folder, in .cpp files only.
+// Has the libraries of expressions and gestures that come with the program, and reads what their
+// files have in common.
 #pragma once
-#include <cmath>
-#include <initializer_list>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <string_view>
 
-#include "base/load_error.h"
+#include "json/fields.h"
 
 namespace wellspring::avatar {
 
@@ -18,39 +14,12 @@ namespace wellspring::avatar {
 std::string_view default_gestures_json();
 std::string_view default_expressions_json();
 
-inline constexpr size_t most_library_bytes = size_t(16) << 20;
-
-struct LibraryReader {
-  const std::string& file;
-
-  [[noreturn]] void fail(const std::string& where, const std::string& what) const {
-    throw LoadError(file, where, what);
-  }
-
-  // Parses the whole text: an object that calls itself `format`, version 1. Nesting, size and
-  // syntax are checked.
-  nlohmann::json parse(std::string_view text, const char* format) const;
-  // Refuses fields that nobody reads: they are misspelt ones.
-  void only(const nlohmann::json& object, const std::string& where,
-            std::initializer_list<std::string_view> known) const;
-  const nlohmann::json* find(const nlohmann::json& object, const char* name) const {
-    auto found = object.find(name);
-    return found == object.end() ? nullptr : &*found;
-  }
-  const nlohmann::json& object(const nlohmann::json& value, const std::string& where) const {
-    if (!value.is_object()) fail(where, "an object is expected");
-    return value;
-  }
-  // Returns a list of at most `most` entries; an absent one is empty.
-  const nlohmann::json& list(const nlohmann::json& object, const std::string& where,
-                             const char* name, size_t most) const;
-  float number(const nlohmann::json& value, const std::string& where, double low,
-               double high) const;
-  float number(const nlohmann::json& object, const std::string& where, const char* name,
-               double otherwise, double low, double high) const;
-  // Returns a name: letters, digits, '_', '-' and '.'; 1 to 64 of them.
-  std::string name(const nlohmann::json& object, const std::string& where,
-                   const char* field = "name") const;
-};
+// Reads the head of a file: it calls itself `format`, version 1.
+inline void read_library_head(FieldReader& root, const char* format) {
+  int version = 0;
+  root.choice("format", {format}, version, "", Need::required);
+  root.integer("version", 1, 1, version, "", Need::required);
+  root.take("about");
+}
 
 }  // namespace wellspring::avatar

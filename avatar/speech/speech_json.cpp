@@ -17,6 +17,7 @@
 #include "base/log.h"
 #include "base/rng.h"
 #include "base/write_file.h"
+#include "json/fields.h"
 
 namespace wellspring::avatar {
 
@@ -47,101 +48,59 @@ ordered_json write_visemes(const VisemeTrack& track) {
   return list;
 }
 
-struct Reader {
-  const std::string& file;
+constexpr double slack = 2e-4;  // times are written with four decimals
 
-  [[noreturn]] void fail(const std::string& where, const std::string& what) const {
-    throw LoadError(file, where, what);
-  }
-  const json& member(const json& object, const std::string& where, const char* name) const {
-    if (!object.is_object()) fail(where, "an object is expected");
-    auto found = object.find(name);
-    if (found == object.end()) fail(where + "/" + name, "is missing");
-    return *found;
-  }
-  double number(const json& object, const std::string& where, const char* name) const {
-    const json& value = member(object, where, name);
-    if (!value.is_number() || !std::isfinite(value.get<double>()))
-      fail(where + "/" + name, "a number is expected");
-    return value.get<double>();
-  }
-  std::string string(const json& object, const std::string& where, const char* name) const {
-    const json& value = member(object, where, name);
-    if (!value.is_string()) fail(where + "/" + name, "a string is expected");
-    return value.get<std::string>();
-  }
-  const json& list(const json& object, const char* name) const {
-    const json& value = member(object, "", name);
-    if (!value.is_array()) fail(std::string("/") + name, "a list is expected");
-    if (value.size() > most_entries) fail(std::string("/") + name, "is too long");
-    return value;
-  }
-  void span(const json& entry, const std::string& where, double after, double duration,
-            double& begin, double& end) const {
-    begin = number(entry, where, "start");
-    end = number(entry, where, "end");
-    constexpr double slack = 2e-4;  // times are written with four decimals
-    if (begin < after - slack) fail(where + "/start", "is before the end of what comes before");
-    if (end < begin - slack) fail(where + "/end", "is before the start");
-    if (end > duration + slack) fail(where + "/end", "is after the end of the sound");
-    begin = std::clamp(begin, after, duration);
-    end = std::clamp(end, begin, duration);
-  }
-};
-
-void read_words(const Reader& reader, const json& root, Speech& speech) {
-  std::vector<uint32_t> bytes = character_starts(speech.text);
-  const json& list = reader.list(root, "words");
-  for (size_t i = 0; i < list.size(); i++) {
-    std::string where = "/words/" + std::to_string(i);
-    SpeechWord word;
-    double after = speech.words.empty() ? 0 : speech.words.back().end;
-    reader.span(list[i], where, after, speech.duration, word.begin, word.end);
-    const json& range = reader.member(list[i], where, "characters");
-    if (!range.is_array() || range.size() != 2 || !range[0].is_number_unsigned() ||
-        !range[1].is_number_unsigned())
-      reader.fail(where + "/characters", "two counts of characters are expected");
-    size_t from = range[0].get<size_t>(), to = range[1].get<size_t>();
-    if (from > to || to >= bytes.size())
-      reader.fail(where + "/characters", "is outside of the text");
-    word.text_begin = bytes[from];
-    word.text_end = bytes[to];
-    speech.words.push_back(word);
-  }
+// Reads a text of any length and characters.
+std::string read_any_text(FieldReader& root, const char* name) {
+  const auto field = root.take(name, Need::required);
+  if (!field->value().is_string()) field->fail_kind("a text");
+  return field->value().get<std::string>();
 }
 
-void read_phonemes(const Reader& reader, const json& root, Speech& speech) {
-  const json& list = reader.list(root, "phonemes");
-  double after = 0;
-  int word = 0;
-  for (size_t i = 0; i < list.size(); i++) {
-    std::string where = "/phonemes/" + std::to_string(i);
-    SpeechPhoneme phoneme;
-    phoneme.mnemonic = reader.string(list[i], where, "phoneme");
-    phoneme.ipa = reader.string(list[i], where, "ipa");
-    double index = reader.number(list[i], where, "word");
-    if (index != std::floor(index) || index < -1 || index >= double(speech.words.size()))
-      reader.fail(where + "/word", "is no word of the list");
-    phoneme.word = int(index);
-    if (phoneme.word < 0 && is_pause(phoneme.mnemonic)) continue;  // pauses are made anew
-    if (phoneme.word < 0) {
-      reader.span(list[i], where, 0, longest, phoneme.begin, phoneme.end);
-      speech.phonemes.push_back(std::move(phoneme));
-      continue;
-    }
-    if (phoneme.word < word) reader.fail(where + "/word", "is out of order");
-    // Phonemes keep only their proportions; their word may have been moved away from them.
-    if (phoneme.word > word) after = 0;
-    word = phoneme.word;
-    double begin = reader.number(list[i], where, "start");
-    double end = reader.number(list[i], where, "end");
-    if (begin < after - 2e-4 || end < begin)
-      reader.fail(where + "/start", "times are out of order");
-    if (begin < 0 || end > longest) reader.fail(where + "/end", "is no time of the sound");
-    phoneme.begin = begin;
-    phoneme.end = after = end;
+void read_span(FieldReader& entry, double after, double duration, double& begin, double& end) {
+  entry.number("start", -longest, longest, begin, "", Need::required);
+  entry.number("end", -longest, longest, end, "", Need::required);
+  if (begin < after - slack) entry.fail("start", "is before the end of what comes before");
+  if (end < begin - slack) entry.fail("end", "is before the start");
+  if (end > duration + slack) entry.fail("end", "is after the end of the sound");
+  begin = std::clamp(begin, after, duration);
+  end = std::clamp(end, begin, duration);
+}
+
+void read_word(FieldReader& entry, const std::vector<uint32_t>& bytes, Speech& speech) {
+  SpeechWord word;
+  const double after = speech.words.empty() ? 0 : speech.words.back().end;
+  read_span(entry, after, speech.duration, word.begin, word.end);
+  const auto range = entry.numbers("characters", 2, 0, double(bytes.size() - 1));
+  if (range[0] != std::floor(range[0]) || range[1] != std::floor(range[1]) || range[0] > range[1])
+    entry.fail("characters", "two counts of characters are expected");
+  word.text_begin = bytes[size_t(range[0])];
+  word.text_end = bytes[size_t(range[1])];
+  speech.words.push_back(word);
+}
+
+void read_phoneme(FieldReader& entry, Speech& speech) {
+  SpeechPhoneme phoneme;
+  phoneme.mnemonic = read_any_text(entry, "phoneme");
+  phoneme.ipa = read_any_text(entry, "ipa");
+  entry.integer("word", -1, double(speech.words.size()) - 1, phoneme.word, "", Need::required);
+  if (phoneme.word < 0) {
+    if (is_pause(phoneme.mnemonic)) return;  // pauses are made anew
+    read_span(entry, 0, longest, phoneme.begin, phoneme.end);
     speech.phonemes.push_back(std::move(phoneme));
+    return;
   }
+  const auto last = std::find_if(speech.phonemes.rbegin(), speech.phonemes.rend(),
+                                 [](const SpeechPhoneme& one) { return one.word >= 0; });
+  const int word = last == speech.phonemes.rend() ? 0 : last->word;
+  if (phoneme.word < word) entry.fail("word", "is out of order");
+  // Phonemes keep only their proportions; their word may have been moved away from them.
+  const double after = last == speech.phonemes.rend() || phoneme.word > word ? 0 : last->end;
+  entry.number("start", 0, longest, phoneme.begin, "", Need::required);
+  entry.number("end", 0, longest, phoneme.end, "", Need::required);
+  if (phoneme.begin < after - slack || phoneme.end < phoneme.begin)
+    entry.fail("start", "times are out of order");
+  speech.phonemes.push_back(std::move(phoneme));
 }
 
 }  // namespace
@@ -185,29 +144,22 @@ std::string write_speech_json(const Speech& speech) {
 }
 
 Speech load_speech_marks(std::string_view text, const std::string& file) {
-  Reader reader{file};
-  // The format has less than depth 6; deeper text is refused before it is built.
-  bool too_deep = false;
-  auto guard = [&](int depth, json::parse_event_t, json&) {
-    too_deep = too_deep || depth > 6;
-    return !too_deep;
-  };
-  json root = json::parse(text, guard, false);
-  if (too_deep) reader.fail("", "is nested too deeply");
-  if (root.is_discarded()) reader.fail("", "is no JSON");
-  if (reader.number(root, "", "version") != 1) reader.fail("/version", "1 is expected");
+  const json parsed = parse_json_file(file, text);
+  Faults faults(file);
+  FieldReader root(parsed, faults);
   Speech speech;
-  speech.text = reader.string(root, "", "text");
-  if (find_broken_utf8(speech.text) != std::string::npos) reader.fail("/text", "is no UTF-8");
-  speech.lang = reader.string(root, "", "lang");
-  double rate = reader.number(root, "", "rate");
-  if (!(rate >= 4000 && rate <= 192000)) reader.fail("/rate", "4000 to 192000 is expected");
-  speech.rate = int(rate);
-  speech.duration = reader.number(root, "", "duration");
-  if (!(speech.duration >= 0 && speech.duration <= longest))
-    reader.fail("/duration", "0 to 86400 seconds are expected");
-  read_words(reader, root, speech);
-  read_phonemes(reader, root, speech);
+  int version = 1;
+  root.integer("version", 1, 1, version, "", Need::required);
+  speech.text = read_any_text(root, "text");
+  if (find_broken_utf8(speech.text) != std::string::npos) root.fail("text", "is no UTF-8");
+  speech.lang = read_any_text(root, "lang");
+  root.integer("rate", 4000, 192000, speech.rate, "", Need::required);
+  root.number("duration", 0, longest, speech.duration, "", Need::required);
+  const std::vector<uint32_t> bytes = character_starts(speech.text);
+  for (const JsonValue& one : root.list("words", 0, most_entries, "words", Need::required))
+    root.read_object(one, [&](FieldReader& entry) { read_word(entry, bytes, speech); });
+  for (const JsonValue& one : root.list("phonemes", 0, most_entries, "phonemes", Need::required))
+    root.read_object(one, [&](FieldReader& entry) { read_phoneme(entry, speech); });
   fit_phonemes(speech);
   fill_visemes(speech);
   return speech;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/load_error.h"
-#include "base/read_file.h"
 
 namespace wellspring::json {
 
@@ -114,8 +113,8 @@ std::variant<json, JsonError> parse_json(std::string_view text, const JsonLimits
   return std::move(builder.root);
 }
 
-std::string read_json_text(const std::string& file) {
-  return read_file(file, max_json_bytes, FileKind::regular_or_pipe);
+std::string read_json_text(const std::string& file, FileKind kind) {
+  return read_file(file, max_json_bytes, kind);
 }
 
 json parse_json_file(const std::string& file, std::string_view text, bool comments) {

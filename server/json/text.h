@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "base/layers.h"
+#include "base/read_file.h"
 
 namespace wellspring::json {
 
@@ -42,8 +43,8 @@ std::variant<nlohmann::json, JsonError> parse_json(std::string_view text,
                                                    const JsonLimits& limits = {},
                                                    size_t* values = nullptr);
 
-// Reads a file's text, at most one byte more than max_json_bytes; throws LoadError.
-std::string read_json_text(const std::string& file);
+// Reads a file's text, at most max_json_bytes; throws LoadError.
+std::string read_json_text(const std::string& file, FileKind kind = FileKind::regular);
 // Parses the text of a file; throws LoadError.
 nlohmann::json parse_json_file(const std::string& file, std::string_view text,
                                bool comments = false);
