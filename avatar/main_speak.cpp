@@ -119,7 +119,7 @@ std::vector<SubtitleCue> cues_of(const Speech& speech) {
 }
 
 Speech read_marks(const Options& options, const Sound* recording) {
-  std::string text = read_text(options.marks, 64 << 20);
+  std::string text = read_file(options.marks, most_marks_bytes, FileKind::regular_or_pipe);
   Speech speech = load_speech_marks(text, options.marks);
   if (speech.text != options.request.text)
     throw LoadError(options.marks, "/text", "is another text than the one given");

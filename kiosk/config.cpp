@@ -82,8 +82,9 @@ void load_config(const std::string& file, KioskConfig& config) {
 }
 
 void save_mount(const std::string& file, const std::string& source, const Mount& mount) {
-  json root =
-      std::filesystem::exists(file) ? parse_json_file(file, read_json_text(file, FileKind::regular_or_pipe)) : json::object();
+  json root = std::filesystem::exists(file)
+                  ? parse_json_file(file, read_json_text(file, FileKind::regular_or_pipe))
+                  : json::object();
   auto rounded = [](double v) { return std::round(1000 * v) / 1000; };
   json *lens = &root["camera"], *place = &root["mount"];
   if (root.contains("cameras"))

@@ -13,6 +13,8 @@
 namespace wellspring::avatar {
 namespace {
 
+using nlohmann::json;
+
 // Notes cameras and lights: a figure brings none of its own.
 void note_left_out(gltf::File& file) {
   auto note = [&](size_t count, const char* where, const char* what) {

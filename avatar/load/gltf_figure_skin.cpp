@@ -11,6 +11,8 @@
 namespace wellspring::avatar {
 namespace {
 
+using nlohmann::json;
+
 using gltf::at;
 using gltf::items;
 using gltf::json;

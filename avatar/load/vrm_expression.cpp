@@ -11,6 +11,8 @@
 namespace wellspring::avatar {
 namespace {
 
+using nlohmann::json;
+
 using namespace vrm_json;
 
 constexpr size_t bind_limit = 20'000;

@@ -9,6 +9,8 @@
 namespace wellspring::avatar {
 namespace {
 
+using nlohmann::json;
+
 using namespace vrm_json;
 
 void add_bone(File& file, Vrm& vrm, const std::string& bone, int node, const std::string& where) {

@@ -9,6 +9,8 @@
 namespace wellspring::avatar {
 namespace {
 
+using nlohmann::json;
+
 using namespace vrm_json;
 
 // Returns numbers of a list under `key`, as many as it has.

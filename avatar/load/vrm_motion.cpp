@@ -8,6 +8,8 @@
 
 namespace wellspring::avatar {
 
+using nlohmann::json;
+
 // Reads VRMC_node_constraint-1.0, which nodes of any glTF file may carry.
 
 namespace {

@@ -9,6 +9,8 @@
 namespace wellspring::avatar {
 namespace {
 
+using nlohmann::json;
+
 using json = nlohmann::json;
 
 std::string quoted(const std::string& text) {

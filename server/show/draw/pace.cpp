@@ -63,7 +63,7 @@ double showing_seconds(const ShowVisits& visits, double time) {
   return 0.001 * milliseconds;
 }
 
-// Returns the part of draw_state() that does not depend on rates.
+// Returns the part of state_of() that does not depend on rates.
 VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = *visitor.picture;
   const VisitorPlace& place = visitor.place;
@@ -257,10 +257,6 @@ KeyframePlan plan_next_keyframe(const ShowVisits& visits, const ShowDrawing& dra
   return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(visits, time), 1),
                        visitor.picture->job.scale,
                        visitor.wants.local ? longest_period(ageing_of(visitor)) : finished_period);
-}
-
-VisitorDrawState draw_state(const Show& show, const Visitor& visitor) {
-  return state_of(show, visitor, count_backdrops(show));
 }
 
 std::vector<VisitorDrawState> draw_states(const Show& show) {

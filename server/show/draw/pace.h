@@ -60,9 +60,8 @@ DrawingCosts drawing_costs(const ShowVisits& visits, const ShowDrawing& drawing,
 KeyframePlan plan_next_keyframe(const ShowVisits& visits, const ShowDrawing& drawing, double time,
                                 const Visitor& visitor);
 
-// Return the values for the decision: of one visitor, of all in their order, and of the renderer.
-// The caller fills `waiting`.
-VisitorDrawState draw_state(const Show& show, const Visitor& visitor);
+// Return the values for the decision: of all visitors in their order, and of the renderer. The
+// caller fills `waiting`.
 std::vector<VisitorDrawState> draw_states(const Show& show);
 RendererState renderer_state(const Show& show);
 

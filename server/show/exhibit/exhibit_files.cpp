@@ -168,8 +168,8 @@ constexpr double one_degree = 3.14159265358979323846 / 180;
 constexpr double least_scale = 1e-6, most_scale = 1e6;
 
 // The scene of the file that `field` names; nothing where it cannot be read, which is told.
-std::optional<Scene> read_file(Exhibit& exhibit, Fields& fields, const char* field,
-                               std::vector<Problem>& problems) {
+std::optional<Scene> read_scene_file(Exhibit& exhibit, Fields& fields, const char* field,
+                                     std::vector<Problem>& problems) {
   std::string name = fields.text(field, true);
   std::string path = package_file(fields, field, exhibit.folder, name);
   if (path.empty()) return {};
@@ -193,7 +193,8 @@ std::optional<Scene> read_file(Exhibit& exhibit, Fields& fields, const char* fie
 // All files or none: names would be missed that are in one that cannot be read.
 void read_files(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
   if (!root.has("scenes")) {
-    if (auto scene = read_file(exhibit, root, "scene", problems)) exhibit.scene = std::move(*scene);
+    if (auto scene = read_scene_file(exhibit, root, "scene", problems))
+      exhibit.scene = std::move(*scene);
     return;
   }
   if (root.has("scene")) root.problem("scene", "is there beside \"scenes\": one of them only");
@@ -205,7 +206,7 @@ void read_files(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) 
     place.position = fields.triple("position", false);
     place.yaw = fields.number("yaw_deg", false, 0, -720, 720) * one_degree;
     place.scale = fields.number("scale", false, 1, least_scale, most_scale);
-    std::optional<Scene> scene = read_file(exhibit, fields, "file", problems);
+    std::optional<Scene> scene = read_scene_file(exhibit, fields, "file", problems);
     fields.finish();
     readable &= scene.has_value();
     if (!scene) return;

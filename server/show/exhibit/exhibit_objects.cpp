@@ -169,8 +169,8 @@ std::string too_much(const ExhibitProp& prop) {
   return "";
 }
 
-void read_file(const Exhibit& exhibit, Fields& fields, ExhibitProp& prop,
-               std::vector<Problem>& problems) {
+void read_prop_file(const Exhibit& exhibit, Fields& fields, ExhibitProp& prop,
+                    std::vector<Problem>& problems) {
   const std::string path = package_file(fields, "file", exhibit.folder, prop.file);
   if (path.empty()) return;
   try {
@@ -238,7 +238,7 @@ void read_prop(Exhibit& exhibit, Fields fields, std::vector<Problem>& problems) 
     grip.finish();
   });
   prop.file = fields.text("file", true);
-  read_file(exhibit, fields, prop, problems);
+  read_prop_file(exhibit, fields, prop, problems);
   check_hands(exhibit, fields, prop);
   fields.finish();
   if (exhibit.props.size() == most_props)

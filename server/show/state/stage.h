@@ -39,8 +39,8 @@ struct ExhibitStage {
   BakerLooks baker_looks;
   std::unique_ptr<VisibilityPass> visibility;  // draws one picture at a time
   SkinLight skin;                              // light on moving things, for all visitors
-  const Technique* technique = nullptr;        // of the settings: while anything moves
-  const Technique* still_technique = nullptr;  // likewise: while the visitor stands still
+  const Technique* technique = nullptr;        // used while anything moves
+  const Technique* still_technique = nullptr;  // used while the visitor stands still
   TourRoads roads;
   QuestionIndex questions;
   // If the exhibit is watched: problems with its files as they are now (show/watch/rehearsal.h).

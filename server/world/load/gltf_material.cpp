@@ -13,6 +13,8 @@
 namespace wellspring::world {
 namespace {
 
+using nlohmann::json;
+
 class Materials {
  public:
   Materials(File& file, Scene& scene) : file_(file), scene_(scene) {}

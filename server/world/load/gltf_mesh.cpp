@@ -12,6 +12,8 @@
 namespace wellspring::world {
 namespace {
 
+using nlohmann::json;
+
 constexpr float farthest = 1e15f;  // metres; beyond, squares of distances leave the range of float
 
 // Holds a primitive on its way to a mesh; positions in double until the joints have moved them.

@@ -12,6 +12,8 @@
 namespace wellspring::world {
 namespace {
 
+using nlohmann::json;
+
 // Metres; farther than this from zero floats lose millimetres: the scene gets an origin of its own.
 constexpr double far = 1000;
 

@@ -21,6 +21,8 @@
 namespace wellspring::world {
 namespace {
 
+using nlohmann::json;
+
 using namespace gltf;
 
 // Holds an instance before the origin is chosen.

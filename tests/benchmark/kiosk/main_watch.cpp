@@ -90,6 +90,7 @@ int main(int argc, char** argv) {
   log::start("watch");
   cv::setNumThreads(1);
   try {
+    using nlohmann::json;
     std::ifstream in(folder + "/truth.json");
     const json truth = json::parse(in);
     settings.mount.fov = truth.at("fov");

@@ -155,8 +155,8 @@ TEST_F(Moving, NoGhostStaysWhereSheStood) {
   steps(200);
   show->cast.teller.visible = false;
   const uint64_t drawn = show->totals.drawn;
-  ASSERT_TRUE(
-      step_until([&] { return show->totals.drawn > drawn && !visitor().picture->job.sees_moving; }));
+  ASSERT_TRUE(step_until(
+      [&] { return show->totals.drawn > drawn && !visitor().picture->job.sees_moving; }));
   const size_t sent = pictures().size();
   ASSERT_TRUE(step_until([&] { return pictures().size() > sent; }));
   const Image8 after = last_image();
