@@ -52,7 +52,7 @@ TEST(ExhibitNames, NothingIsMissedInASceneThatCannotBeRead) {
   package.write("scene.gltf", "{");
   package.manifest["objects"] = {{"table", {{"node", "Table"}}}};
   package.manifest["lamps"] =
-      json::array({{{"id", "l"}, {"title", {{"en", "L"}}}, {"nodes", {"Lamp"}}}});
+      nlohmann::json::array({{{"id", "l"}, {"title", {{"en", "L"}}}, {"nodes", {"Lamp"}}}});
   package.read();
   EXPECT_EQ(package.told().find("no node"), std::string::npos) << package.told();
   EXPECT_EQ(package.problems.size(), 1u) << package.told();
@@ -71,7 +71,7 @@ TEST(ExhibitNames, WhatWasMeantIsProposed) {
   package.manifest["viewpoint"] = 1;
   package.manifest["objects"] = {{"table", {{"node", "Table"}}}};
   package.manifest["lamps"] =
-      json::array({{{"id", "l"}, {"title", {{"en", "L"}}}, {"nodes", {"lmap"}}}});
+      nlohmann::json::array({{{"id", "l"}, {"title", {{"en", "L"}}}, {"nodes", {"lmap"}}}});
   package.manifest["stories"] = {{{"id", "s"}, {"text", {{"en", "s.story"}}}}};
   package.write("s.story",
                 "<story>\n<p><gesture name=\"point_fra\"/>One.</p>\n<p><emotion "
@@ -126,8 +126,8 @@ TEST(ExhibitFiles, SeveralStandWhereTheyAreTold) {
       {{"file", "vase.gltf"}, {"position", {0, 0.8, -0.5}}, {"yaw_deg", 90}, {"scale", 0.01}}};
   package.manifest["objects"] = {{"vase", {{"node", "Vase"}}}, {"table", {{"node", "Table"}}}};
   package.manifest["lamps"] =
-      json::array({{{"id", "l"}, {"title", {{"en", "L"}}}, {"nodes", {"Lamp"}}},
-                   {{"id", "c"}, {"title", {{"en", "C"}}}, {"nodes", {"Candle"}}}});
+      nlohmann::json::array({{{"id", "l"}, {"title", {{"en", "L"}}}, {"nodes", {"Lamp"}}},
+                             {{"id", "c"}, {"title", {{"en", "C"}}}, {"nodes", {"Candle"}}}});
   Exhibit exhibit = package.read();
   EXPECT_EQ(package.told(), "");
   ASSERT_EQ(exhibit.points.size(), 2u);
@@ -164,7 +164,7 @@ TEST(ExhibitFiles, MistakesHaveAPlace) {
   EXPECT_EQ(package.says("/scenes/0/file", "no file"), 1) << package.told();
   EXPECT_EQ(package.says("/scenes/0/scale", "must be from"), 1) << package.told();
   EXPECT_EQ(package.says("/scenes/0/at", "ignored"), 1) << package.told();
-  package.manifest["scenes"] = json::array();
+  package.manifest["scenes"] = nlohmann::json::array();
   package.read();
   EXPECT_EQ(package.says("/scenes", "at least one"), 1) << package.told();
 }
