@@ -58,7 +58,11 @@ struct ShowStage {
   void draw_all(const PictureJob& job, Visitor& visitor);
   void take_sent();  // by every browser that reads; a step ends with it
 
-  Visitor& visitor() { return show->visits.visitors.front(); }
+  // The first, who has come with the first tick after join().
+  Visitor& visitor() {
+    if (show->visits.visitors.empty()) step();
+    return show->visits.visitors.front();
+  }
   const std::vector<Packet>& pictures(size_t visitor = 0) { return browsers[visitor].pictures; }
   PacketHeader header(size_t picture);  // the first visitor's
   Image8 image(size_t picture);

@@ -199,8 +199,8 @@ TEST(SpeechMarksFile, MistakesAreNamedByPlace) {
   EXPECT_EQ(place_of(R"("start":0.7,"end":1.2,"ch)", R"("start":0.7,"end":9,"ch)"), "/words/1/end");
   EXPECT_EQ(place_of(R"("start":0.7,"end":1.2,"ch)", R"("start":"x","end":1.2,"ch)"),
             "/words/1/start");
-  EXPECT_EQ(place_of(R"("characters":[5,8])", R"("characters":[5,80])"), "/words/1/characters");
-  EXPECT_EQ(place_of(R"("characters":[5,8])", R"("characters":[-5,8])"), "/words/1/characters");
+  EXPECT_EQ(place_of(R"("characters":[5,8])", R"("characters":[5,80])"), "/words/1/characters/1");
+  EXPECT_EQ(place_of(R"("characters":[5,8])", R"("characters":[-5,8])"), "/words/1/characters/0");
   EXPECT_EQ(place_of(R"("word":1)", R"("word":2)"), "/phonemes/4/word");
   EXPECT_EQ(place_of(R"("word":1)", R"("word":0.5)"), "/phonemes/4/word");
   EXPECT_EQ(place_of(R"("ipa":"k")", R"("ipa":7)"), "/phonemes/4/ipa");

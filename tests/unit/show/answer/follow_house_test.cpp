@@ -125,7 +125,7 @@ TEST_F(FollowHouse, ClosedKiosksGetPicturesNowAndThenVisitorsAsEver) {
   go(1);
   const size_t before = pictures(hall).size(), at_home = pictures(home).size();
   go(10);
-  EXPECT_LE(pictures(hall).size() - before, 11u);
+  EXPECT_LE(pictures(hall).size() - before, 15u);  // one a second, and what fades
   EXPECT_GT(pictures(home).size() - at_home, 30u);
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -83,12 +85,14 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   lamp(0, "ceiling", false);
   std::vector<LightStep>& steps = show->stage.switches.steps;
   ASSERT_TRUE(steps.empty());
-  for (int i = 0; i < 50 && steps.empty(); i++) step();  // all are drawn in the same tick
-  ASSERT_EQ(steps.size(), 1u);
+  ASSERT_TRUE(step_until([&] { return !steps.empty(); }, 50));
   const LampLevels lit{0, lamp_full};
-  for (const Visitor& visitor : show->visits.visitors) EXPECT_EQ(visitor.picture->lamps, lit);
-  step();
+  auto follows = [&](const Visitor& visitor) { return visitor.picture->lamps == lit; };
+  EXPECT_FALSE(
+      std::ranges::all_of(show->visits.visitors, follows));  // one is drawn after the other
+  ASSERT_TRUE(step_until([&] { return steps.size() != 1; }, 200));
   EXPECT_TRUE(steps.empty());
+  EXPECT_TRUE(std::ranges::all_of(show->visits.visitors, follows));
 
   // A visitor who has missed a switch before has another change to follow.
   constexpr LampLevel full = lamp_full;

@@ -41,6 +41,7 @@ struct Maps : testing::Test, ShowStage {
     ShowSettings settings = settings_for(technique);
     settings.cache = folder.path.string();
     settings.display = display;
+    settings.bakes = false;
     begin(std::move(exhibit), settings);
   }
   bool says(const char* line) {
