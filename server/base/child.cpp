@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
@@ -81,7 +82,7 @@ std::optional<int> Child::wait(double seconds) {
   const double until = seconds_now() + seconds;
   while (id_ != 0) {
     int status = 0;
-    const pid_t ended = waitpid(id_, &status, WNOHANG);
+    const pid_t ended = waitpid(id_, &status, std::isinf(seconds) ? 0 : WNOHANG);
     if (ended == id_ || (ended < 0 && errno != EINTR)) {
       status_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
       id_ = 0;

@@ -21,7 +21,7 @@
 #include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/house/house.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/make_show.h"
 #include "show/status/status.h"
 #include "show/storyteller/voice.h"

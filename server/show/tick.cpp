@@ -21,7 +21,7 @@
 #include "show/draw/present.h"
 #include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
@@ -238,7 +238,8 @@ void behave(Show& show, Teller& teller, float dt) {
   teller.agent_mood = teller.mind.mood;
   const std::string message = agent_message(show, teller);
   for (Visitor& visitor : show.visits.visitors)
-    if (visitor.welcomed && &teller_of(show, visitor) == &teller) visitor.link->send_text(message);
+    if (visitor.welcomed && &teller_of(show.cast, show.visits, visitor) == &teller)
+      visitor.link->send_text(message);
 }
 
 // Returns whether the storyteller has anything to do. A visitor's own does nothing while it is
@@ -372,7 +373,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   for (Visitor& visitor : show.visits.visitors) {
     if (!visitor.welcomed) continue;
     std::optional<dvec3> person;
-    const Teller& teller = teller_of(show, visitor);
+    const Teller& teller = teller_of(show.cast, show.visits, visitor);
     if (const StorytellerPlace* who =
             teller.visible ? storyteller_of(show.stage, show.cast, teller) : nullptr)
       person = who->position;

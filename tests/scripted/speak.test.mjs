@@ -139,7 +139,7 @@ test('wrong input is 1 and named', async () => {
     [['hello', '--audio', folder], /no regular file/],
     [['hello', '--audio', text_file], /text\.wav.*no sound can be read/],
     [['hello', '--audio', silent_file], /silent\.wav.*no sound in the recording/],
-    [['hello', '--marks', text_file], /text\.wav.*no JSON/],
+    [['hello', '--marks', text_file], /text\.wav.*not JSON at line 1/],
     [['hello', '--marks', file('none.json')], /none\.json.*cannot be read/],
   ];
   for (const [args, message] of cases) {

@@ -98,7 +98,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   if (!goes_on) show.totals.visits++;
   if (is_first) count_visit(show, visitor, goes_on);
   visitor.link->send_text(welcome_message(show, visitor, goes_on));
-  visitor.link->send_text(agent_message(show, teller_of(show, visitor)));
+  visitor.link->send_text(agent_message(show, teller_of(show.cast, show.visits, visitor)));
   const Kiosk* own = kiosk_of(show, visitor);
   const std::string& state = own ? own->message : show.kiosks.message;
   if (!state.empty() && (own || !visitor.kiosk)) visitor.link->send_text(state);
@@ -174,7 +174,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       place.move = place.velocity = vec3(0);
       stand(place);
-      Teller& teller = teller_of(show, visitor);
+      Teller& teller = teller_of(show.cast, show.visits, visitor);
       if (teller.voice.asked_by == visitor.link->id)
         fall_silent(show, teller);  // one voice at a time
       start_tour(place.tour, narrator, tour, show.stage.exhibit, show.stage.roads, place.view);

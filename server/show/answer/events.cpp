@@ -7,7 +7,7 @@
 
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"

@@ -8,7 +8,7 @@
 #include "show/answer/come_back.h"
 #include "show/answer/events.h"
 #include "show/count/count.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "wire/json.h"
 

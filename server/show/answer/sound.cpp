@@ -180,8 +180,8 @@ VoiceEvents advance_speech(Show& show, Teller& teller, float dt) {
 VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
   Narration& narration = visitor.hearing.narration;
   return advance_channel(show,
-                         {teller_of(show, visitor), narration.voice, narration.sounding,
-                          visitor.lang, listens(visitor)},
+                         {teller_of(show.cast, show.visits, visitor), narration.voice,
+                          narration.sounding, visitor.lang, listens(visitor)},
                          dt);
 }
 
@@ -198,7 +198,7 @@ void send_sounds(Show& show) {
     update_sounding(show.cast, show.time_us, visitor.hearing.narration.voice,
                     visitor.hearing.narration.sounding);
   for (Visitor& visitor : show.visits.visitors) {
-    const auto own = told.find(&teller_of(show, visitor));
+    const auto own = told.find(&teller_of(show.cast, show.visits, visitor));
     Source source = own != told.end() && hears_storyteller(show, visitor) ? own->second : Source{};
     const Visitor* leader = leader_of(show.visits, visitor);
     const Narration& narration = (leader ? *leader : visitor).hearing.narration;

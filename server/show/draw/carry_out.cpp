@@ -13,7 +13,7 @@
 #include "show/draw/picture.h"
 #include "show/draw/present.h"
 #include "show/draw/still_pass.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
 

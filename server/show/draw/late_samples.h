@@ -2,7 +2,7 @@
 // Traces what pictures of walking visitors have asked for, in turn, in the time that was left for
 // it: the answers appear in their next pictures. It takes three steps, as in show/draw/picture.h.
 #pragma once
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {

@@ -8,7 +8,7 @@
 #include "show/draw/decide.h"
 #include "show/draw/pace.h"
 #include "show/draw/steer.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"

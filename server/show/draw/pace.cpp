@@ -6,7 +6,7 @@
 #include <oneapi/tbb/info.h>
 
 #include "show/state/delivery.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"

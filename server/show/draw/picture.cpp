@@ -13,7 +13,7 @@
 #include "show/draw/late_samples.h"
 #include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
 
@@ -47,7 +47,7 @@ bool draws_backdrop(const ExhibitStage& stage, const ShowSettings& settings,
 
 // Adds the light of lights that move or change to a picture of `view`; to one at rest it is added
 // later.
-void light_dynamically(ShowDrawing& drawing, const ExhibitStage& stage, const PictureJob& job,
+void light_dynamically(ShowDrawing& drawing, ExhibitStage& stage, const PictureJob& job,
                        const View& view, Visitor& visitor) {
   DynamicImage& image = drawing.renderer.work.dynamic;
   const bool any = !job.dynamic.empty() && !is_still(job);
@@ -138,7 +138,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
 }
 
 // Does one visibility pass of a reconstruction's guides; the last step encodes the network's input.
-DrawingStep find_guides(ShowDrawing& drawing, const ExhibitStage& stage, const PictureJob& job,
+DrawingStep find_guides(ShowDrawing& drawing, ExhibitStage& stage, const PictureJob& job,
                         VisitorPicture& picture) {
   DrawingWork& work = drawing.renderer.work;
   StillPass& pass = drawing.pass;

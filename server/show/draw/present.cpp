@@ -14,7 +14,7 @@
 #include "show/draw/parts.h"
 #include "show/draw/still_pass.h"
 #include "show/state/delivery.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/visitor_picture.h"
 #include "wire/packet.h"
@@ -249,14 +249,14 @@ void refine(Show& show, Visitor& visitor) {
 
 // Notes the cost of a warped picture or a keyframe that has been encoded: the search for a seat
 // needs it.
-void note_cost(const ShowVisits& visits, Visitor& visitor) {
+void note_cost(Capacity& capacity, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
   const double warping = std::exchange(visitor.shown.warp_core_seconds, 0.0);
   if (visitor.wants.local && encoder.pixels > 0)
-    visits.capacity->note_sent(encoder.pixels, encoder.processor_seconds);
+    capacity.note_sent(encoder.pixels, encoder.processor_seconds);
   if (warping <= 0) return;
-  visits.capacity->note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
-                              warping + encoder.processor_seconds);
+  capacity.note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
+                      warping + encoder.processor_seconds);
 }
 
 bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
@@ -278,11 +278,11 @@ bool warp(ShowDrawing& drawing, ShowTotals& totals, Visitor& visitor, const View
 }
 
 // Notes the last picture, once its encoder has finished.
-void note_encoded(ShowTotals& totals, const ShowVisits& visits, Visitor& visitor) {
+void note_encoded(ShowTotals& totals, Capacity& capacity, Visitor& visitor) {
   Encoder& encoder = *visitor.shown.encoder;
   if (std::exchange(encoder.unsent, false)) note_unsent(visitor.shown.flow, encoder.frame);
   if (encoder.bytes == 0) return;
-  note_cost(visits, visitor);
+  note_cost(capacity, visitor);
   const size_t bytes = std::exchange(encoder.bytes, 0);
   totals.picture_bytes += bytes;
   if (encoder.pixels > 0) {
@@ -297,7 +297,7 @@ void note_encoded(ShowTotals& totals, const ShowVisits& visits, Visitor& visitor
 
 void note_deliveries(Show& show, Visitor& visitor) {
   VisitorDelivery& shown = visitor.shown;
-  if (!shown.encoder->task.busy()) note_encoded(show.totals, show.visits, visitor);
+  if (!shown.encoder->task.busy()) note_encoded(show.totals, *show.visits.capacity, visitor);
   for (const Delivery& delivery : visitor.link->take_deliveries())
     note_delivery(shown.flow, delivery);
   update(shown.way, shown.flow, flow_wishes(show.settings, visitor), visitor.times.encode,
@@ -380,7 +380,7 @@ void present(Show& show, Visitor& visitor) {
   bool stood = is_still(job) && job.view == view;
   if (shown.lost && (stood || visitor.wants.local)) picture.unshown = true;
   if (visitor.wants.local) {
-    note_encoded(show.totals, show.visits, visitor);
+    note_encoded(show.totals, *show.visits.capacity, visitor);
     return present_keyframe(show, visitor);
   }
   bool fades = !picture.fade.from.rgb.empty() && show.time - shown.sent_at >= 1 / fade_rate;
@@ -395,7 +395,7 @@ void present(Show& show, Visitor& visitor) {
     return;
 
   Encoder& encoder = *shown.encoder;
-  note_encoded(show.totals, show.visits, visitor);
+  note_encoded(show.totals, *show.visits.capacity, visitor);
   const float newer = fade_share(picture.fade, view, show.time);
   if ((picture.unshown || fades) && job.view == view) {  // drawn for this very view
     copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);

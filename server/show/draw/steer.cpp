@@ -10,7 +10,7 @@
 #include "cache/point_image.h"
 #include "show/draw/pace.h"
 #include "show/kiosk/kiosk.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/in_view.h"
 
 namespace wellspring::show {

@@ -8,7 +8,7 @@
 // The analysis goes on beside drawing, on a thread of its own. It runs at most analysis_rate times
 // a second, when its cause is another, and not while nothing asks for samples.
 #pragma once
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {

@@ -11,7 +11,7 @@
 #include "picture/compositor.h"
 #include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
@@ -154,7 +154,7 @@ namespace {
 
 // Finds the light of moving lights on still surfaces in the visitor's picture, and on moving
 // things.
-void light_picture(ShowDrawing& drawing, const ExhibitStage& stage, VisitorPicture& picture) {
+void light_picture(ShowDrawing& drawing, ExhibitStage& stage, VisitorPicture& picture) {
   Renderer& renderer = drawing.renderer;
   DynamicImage& image = renderer.work.dynamic;
   const DynamicLights& from = renderer.posed_lights;
@@ -183,7 +183,7 @@ void light_picture(ShowDrawing& drawing, const ExhibitStage& stage, VisitorPictu
 
 }  // namespace
 
-void draw_moving(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& visitor) {
+void draw_moving(ShowDrawing& drawing, ExhibitStage& stage, Visitor& visitor) {
   Renderer& renderer = drawing.renderer;
   double began = seconds_now();
   VisitorPicture& picture = *visitor.picture;

@@ -7,7 +7,7 @@
 // goes to samples alone, and the next pass comes when there are so many more of them that it pays
 // (show/draw/decide.h).
 #pragma once
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/show.h"
 
 namespace wellspring::show {
@@ -36,7 +36,7 @@ void begin_skin_light(Show& show, const Visitor& visitor);
 void compute_skin_light(ExhibitStage& stage, ShowDrawing& drawing);
 void finish_skin_light(ShowDrawing& drawing, ShowTotals& totals);
 // Draws the moving things. Reads the visitor's keyframe, which may not change meanwhile.
-void draw_moving(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& visitor);
+void draw_moving(ShowDrawing& drawing, ExhibitStage& stage, Visitor& visitor);
 void finish_moving(ShowDrawing& drawing, ShowTotals& totals, Visitor& visitor);
 
 // Notes, when a picture was drawn, whether moving things are in it or are to be laid over it.

@@ -6,7 +6,7 @@
 
 #include "show/answer/cameras.h"
 #include "show/state/delivery.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/show.h"
 #include "show/state/visitor_picture.h"
 

@@ -10,7 +10,7 @@
 #include "light/sample/light_tables.h"
 #include "show/exhibit/exhibit_objects.h"
 #include "show/moving/exhibit_scene.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_world.h"
 

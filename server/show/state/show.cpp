@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "light/visible/visibility.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 
 namespace wellspring::show {
 
@@ -38,9 +38,9 @@ const Teller& teller_of(const ShowCast& cast, const ShowVisits& visits, const Vi
   return who.own_teller ? *who.own_teller : cast.teller;
 }
 
-Teller& teller_of(Show& show, Visitor& visitor) {
+Teller& teller_of(ShowCast& cast, ShowVisits& visits, Visitor& visitor) {
   return const_cast<Teller&>(
-      teller_of(std::as_const(show).cast, std::as_const(show).visits, std::as_const(visitor)));
+      teller_of(std::as_const(cast), std::as_const(visits), std::as_const(visitor)));
 }
 
 std::vector<Teller*> tellers_of(ShowCast& cast, ShowVisits& visits) {

@@ -56,7 +56,7 @@ struct ShowHouse {
   double announced_until = -1e9;  // show time
 };
 
-struct ShowDrawing;  // show/state/drawing.h
+struct ShowDrawing;  // show/state/renderer.h
 
 struct Show {
   Show();
@@ -83,7 +83,7 @@ const Visitor& visitor_of(const ShowVisits& visits, uint64_t id);
 // nobody's.
 const Visitor* leader_of(const ShowVisits& visits, const Visitor& visitor);
 // Return the storyteller that the visitor sees and hears.
-Teller& teller_of(Show& show, Visitor& visitor);
+Teller& teller_of(ShowCast& cast, ShowVisits& visits, Visitor& visitor);
 const Teller& teller_of(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor);
 std::vector<Teller*> tellers_of(ShowCast& cast,
                                 ShowVisits& visits);  // the house's storyteller, then visitors' own

@@ -34,14 +34,14 @@ void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& 
 
 void begin_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
-  pose_world(show.stage, show.cast, show.time, teller_of(show, visitor),
+  pose_world(show.stage, show.cast, show.time, teller_of(show.cast, show.visits, visitor),
              animation_times(show, visitor));
   show.cast.posed_for = number_who_touched(show.visits, visitor);
 }
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
-  if (show.cast.posed_as == teller_of(show, visitor).number &&
+  if (show.cast.posed_as == teller_of(show.cast, show.visits, visitor).number &&
       show.cast.posed_for == number_who_touched(show.visits, visitor))
     return;
   begin_world_of(show, visitor);

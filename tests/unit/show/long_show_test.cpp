@@ -7,7 +7,7 @@
 #include <cmath>
 #include <malloc.h>
 
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "unit/show/kiosk_house.h"
 #include "unit/show/show_stage.h"

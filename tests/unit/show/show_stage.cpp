@@ -9,7 +9,7 @@
 
 #include "image/image.h"
 #include "show/draw/picture.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/make_show.h"
 #include "show/tick.h"
 

@@ -6,7 +6,7 @@
 
 #include "image/image.h"
 #include "show/http/answer.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/make_show.h"
 #include "unit/show/show_stage.h"
 #include "wire/json.h"

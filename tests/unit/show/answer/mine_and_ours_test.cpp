@@ -97,7 +97,9 @@ TEST_F(MineAndOurs, NothingThatOneSaysChangesAnythingForTheOther) {
   ASSERT_GT(told[0].size(), 20u);
   // How often the same is said depends on when pictures are drawn.
   EXPECT_EQ(std::set(told[0].begin(), told[0].end()), std::set(told[1].begin(), told[1].end()));
-  EXPECT_LT(mean_difference(seen[0], seen[1]), 3);
+  // Diffuse light that is learned meanwhile changes a picture by up to 7 grey levels, another place
+  // by 70. Lamps and the hour are told as well.
+  EXPECT_LT(mean_difference(seen[0], seen[1]), 12);
 }
 
 TEST_F(MineAndOurs, EachHasTheirOwnStorytellerWhoTellsThemAlone) {

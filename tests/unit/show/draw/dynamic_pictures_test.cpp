@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "light/technique/technique.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
 #include "unit/folder.h"

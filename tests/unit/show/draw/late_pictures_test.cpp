@@ -14,7 +14,7 @@
 #include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"
 #include "show/draw/picture.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "show/tick.h"
 #include "unit/show/show_stage.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "show/http/answer.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {

@@ -12,7 +12,7 @@
 #include "cache/point_image.h"
 #include "show/http/answer.h"
 #include "show/draw/pace.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 

@@ -8,7 +8,7 @@
 #include "show/draw/pace.h"
 #include "show/draw/picture.h"
 #include "show/http/report.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 

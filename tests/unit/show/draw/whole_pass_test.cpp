@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "show/draw/late_samples.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "unit/show/show_stage.h"
 

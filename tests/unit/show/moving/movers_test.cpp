@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "show/exhibit/exhibit_objects.h"
-#include "show/state/drawing.h"
+#include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/visitor_world.h"
 #include "unit/show/exhibit/room_package.h"

@@ -90,7 +90,7 @@ struct HeldPropTest : testing::Test, ShowStage {
     return places;
   }
   vec3 wrist(size_t i = 0) {
-    const Teller& teller = teller_of(*show, visitor_number(i));
+    const Teller& teller = teller_of(show->cast, show->visits, visitor_number(i));
     const Character& character = *teller.storyteller.character;
     JointFrame frame =
         eval_joint_frame(character, teller.pose, find_joint(character, "r_radiocarpal"));
