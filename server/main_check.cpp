@@ -22,8 +22,11 @@ int main(int argc, char** argv) {
   if (answer_version(argc, argv)) return 0;
   log::start("check");
   CLI::App app{"Validates an exhibit package and lists every problem with file and place."};
-  std::string folder;
-  app.add_option("package", folder, "folder of the exhibit, e.g. content/castle")->required();
+  std::string folder, schema;
+  auto* package = app.add_option("package", folder, "folder of the exhibit, e.g. content/castle");
+  app.add_option("--schema", schema, "instead: print the JSON Schema of a file, for editors")
+      ->check(CLI::IsMember({"exhibit", "house"}))
+      ->excludes(package);
   std::string house;
   app.add_option("--house", house, "a house file that goes with it");
   RecordingOptions recordings;
@@ -33,6 +36,15 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (!schema.empty()) {
+    const auto fields = schema == "house" ? house_schema() : exhibit_schema();
+    std::cout << fields.dump(2) << "\n";
+    return 0;
+  }
+  if (folder.empty()) {
+    std::cerr << "check: which package? e.g. content/castle\n";
+    return 2;
   }
   std::vector<Problem> problems;
   int fatal = 0;

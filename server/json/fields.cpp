@@ -12,11 +12,14 @@ namespace wellspring::json {
 
 using nlohmann::json;
 
+static const json no_fields = json::object();
+
 static std::string join(std::initializer_list<const char*> words) {
   return list_names(std::vector<std::string>(words.begin(), words.end()), words.size());
 }
 
 void Faults::add(const std::string& where, const std::string& what) {
+  if (tell_) return tell_({where, what});
   if (file_.empty()) {
     if (!first) first = Fault{where, what};
     return;
@@ -30,6 +33,13 @@ void Faults::add(const std::string& where, const std::string& what) {
 
 void Faults::add_kind(const std::string& where, const std::string& kind) {
   add(where, (file_.empty() ? "must be " : "is not ") + kind);
+}
+
+void Faults::add_unknown(const std::string& where, const std::string& name,
+                         const std::vector<std::string>& known) {
+  const std::string hint = did_you_mean(name, known);
+  if (tell_) add_slight(where, "is not a field of this object and is ignored" + hint);
+  else add(where, "is unknown" + hint + "; there are " + list_names(known, known.size()));
 }
 
 bool JsonValue::number(double low, double high, double& to) const {
@@ -95,11 +105,11 @@ std::vector<JsonValue> JsonValue::list(size_t least, size_t most, const char* ki
   std::vector<JsonValue> entries;
   if (!value_->is_array() || value_->size() < least)
     return fail_kind(std::string("a list of ") + kind), entries;
-  if (value_->size() > most)
-    return fail("must have at most " + std::to_string(most) + " entries"), entries;
-  entries.reserve(value_->size());
-  for (size_t i = 0; i < value_->size(); i++)
+  const size_t count = std::min(value_->size(), most);
+  entries.reserve(count);
+  for (size_t i = 0; i < count; i++)
     entries.emplace_back((*value_)[i], *faults_, where_ + "/" + std::to_string(i));
+  if (value_->size() > most) fail("must have at most " + std::to_string(most) + " entries");
   return entries;
 }
 
@@ -115,19 +125,50 @@ std::optional<JsonValue> JsonValue::find(const char* name) const {
 }
 
 FieldReader::FieldReader(const JsonValue& value) : JsonValue(value) {
-  static const json none = json::object();
-  if (!object()) value_ = &none;
+  if (!object()) value_ = &no_fields;
+}
+
+FieldReader::FieldReader(nlohmann::ordered_json& schema) : JsonValue(no_fields), schema_(&schema) {
+  schema["type"] = "object";
+}
+
+bool FieldReader::note(const char* name, nlohmann::ordered_json kind, const char* about,
+                       Need need) {
+  if (*about) kind["description"] = about;
+  (*schema_)["properties"][name] = std::move(kind);
+  if (need == Need::required) (*schema_)["required"].push_back(name);
+  return false;
+}
+
+nlohmann::ordered_json FieldReader::list_schema(const nlohmann::ordered_json& entry, size_t least,
+                                                size_t most) {
+  nlohmann::ordered_json schema = {{"type", "array"}, {"items", entry}};
+  if (least > 0) schema["minItems"] = least;
+  if (most != SIZE_MAX) schema["maxItems"] = most;
+  return schema;
+}
+
+nlohmann::ordered_json FieldReader::map_schema(const nlohmann::ordered_json& member) {
+  return {{"type", "object"}, {"additionalProperties", member}};
 }
 
 std::optional<JsonValue> FieldReader::take(const char* name, Need need) {
+  if (!faults_) return std::nullopt;
   if (faults_->strict) known_.emplace_back(name);
   auto field = find(name);
   if (!field && need == Need::required) fail(name, "is missing");
   return field;
 }
 
-bool FieldReader::text(const char* name, std::string& to, const char*, Need need,
+std::optional<JsonValue> FieldReader::take(const char* name, const nlohmann::ordered_json& kind,
+                                           const char* about, Need need) {
+  if (schema_) note(name, kind, about, need);
+  return take(name, need);
+}
+
+bool FieldReader::text(const char* name, std::string& to, const char* about, Need need,
                        size_t most_bytes) {
+  if (schema_) return note(name, {{"type", "string"}}, about, need);
   const auto field = take(name, need);
   return field && field->text(to, most_bytes, need);
 }
@@ -150,7 +191,8 @@ bool FieldReader::name(const char* name, std::string& to, const char* about, Nee
 }
 
 bool FieldReader::word(const char* name, std::initializer_list<const char*> words, std::string& to,
-                       const char*, Need need) {
+                       const char* about, Need need) {
+  if (schema_) return note(name, {{"enum", words}}, about, need);
   const auto field = take(name, need);
   if (!field) return false;
   if (need == Need::optional && field->value() == "") return to.clear(), true;
@@ -159,8 +201,13 @@ bool FieldReader::word(const char* name, std::initializer_list<const char*> word
 }
 
 void FieldReader::switch_or_number(const char* name, double low, double high,
-                                   std::optional<std::variant<bool, float>>& to, const char*,
+                                   std::optional<std::variant<bool, float>>& to, const char* about,
                                    Need need) {
+  if (schema_)
+    note(name,
+         {{"anyOf",
+           {{{"type", "boolean"}}, {{"type", "number"}, {"minimum", low}, {"maximum", high}}}}},
+         about, need);
   const auto field = take(name, need);
   float number = 0;
   if (!field) return;
@@ -169,7 +216,8 @@ void FieldReader::switch_or_number(const char* name, double low, double high,
   else if (field->number(low, high, number)) to = number;
 }
 
-void FieldReader::place(const char* name, std::optional<vec2>& to, const char*, Need need) {
+void FieldReader::place(const char* name, std::optional<vec2>& to, const char* about, Need need) {
+  if (schema_) note(name, list_schema({{"type", "number"}}, 2, 2), about, need);
   const auto field = take(name, need);
   double numbers[2];
   if (field && field->numbers(2, 0, 1, numbers)) to = vec2(numbers[0], numbers[1]);
@@ -214,14 +262,20 @@ std::vector<std::pair<std::string, JsonValue>> FieldReader::members() {
   return all;
 }
 
+void FieldReader::describe_choice(
+    std::initializer_list<std::initializer_list<const char*>> sets) const {
+  if (!schema_) return;
+  for (const auto& set : sets) (*schema_)["oneOf"].push_back({{"required", set}});
+}
+
 void FieldReader::finish() const {
-  if (!faults_->strict) return;
+  if (schema_) (*schema_)["additionalProperties"] = false;
+  if (!faults_ || !faults_->strict) return;
   std::vector<std::string> known = known_;
   std::ranges::sort(known);
   for (const auto& [name, unused] : value_->items())
     if (std::ranges::find(known, name) == known.end())
-      faults_->add(where_ + "/" + name, "is unknown" + did_you_mean(name, known) + "; there are " +
-                                            list_names(known, known.size()));
+      faults_->add_unknown(where_ + "/" + name, name, known);
 }
 
 }  // namespace wellspring::json

@@ -207,7 +207,7 @@ struct Book {
 
 // Heard from a place, or everywhere: made by the page (`kind`), or a file.
 struct AmbientSound {
-  std::string id, kind, file;  // kind: one of sound_kinds; empty where there is a file
+  std::string id, kind, file;  // kind: fire, water, room or wind; empty where there is a file
   std::optional<dvec3> position;
   double gain = 1, radius = 8;  // 0 to 1; metres at which it is gone
 };

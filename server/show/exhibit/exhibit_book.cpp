@@ -12,141 +12,114 @@ namespace {
 struct BookReader {
   Exhibit& exhibit;
 
-  void want_languages(Fields& fields, const std::string& place, const LocalText& text) {
+  void want_languages(FieldReader& fields, const std::string& place, const LocalText& text) {
     for (const std::string& lang : exhibit.languages)
       if (!text.empty() && !text.contains(lang))
-        fields.problem(place, "has nothing in '" + lang + "'", false);
+        fields.warn(place, "has nothing in '" + lang + "'");
   }
 
-  LocalText text(Fields& fields, const char* name, bool required) {
-    LocalText text = fields.local_text(name, required);
+  LocalText text(FieldReader& fields, const char* name, const char* about,
+                 Need need = Need::optional) {
+    LocalText text = read_local_text(fields, name, about, need);
     want_languages(fields, name, text);
     return text;
   }
 
-  std::string id(Fields& fields, std::set<std::string>& taken) {
-    std::string id = fields.text("id", true);
-    if (!id.empty() && !taken.insert(id).second)
-      fields.problem("id", "'" + id + "' is taken by another one of this list");
+  std::string id(FieldReader& fields, std::set<std::string>& taken) {
+    std::string id;
+    if (fields.text("id", id, "", Need::required) && !taken.insert(id).second)
+      fields.fail("id", "'" + id + "' is taken by another one of this list");
     return id;
   }
 
-  // The name of a file that browsers will be given; empty: none, or one that cannot be.
-  std::string file(Fields& fields, const char* name, Medium medium) {
-    std::string file = fields.text(name, false);
-    if (file.empty() && fields.has(name)) fields.problem(name, "is empty");
+  // Reads the name of a file that browsers will be given; empty: none, or one that cannot be.
+  std::string file(FieldReader& fields, const char* name, const char* about, Medium medium) {
+    std::string file;
+    if (fields.text(name, file, about) && file.empty()) fields.fail(name, "is empty");
     return add_served_file(exhibit, fields, name, file, medium) ? file : "";
   }
 
-  LocalText alt(Fields& fields, bool shows) {
-    LocalText alt = text(fields, "alt", false);
+  LocalText alt(FieldReader& fields, bool shows) {
+    LocalText alt = text(fields, "alt", "what is seen, for those who do not see it");
     if (shows && alt.empty())
-      fields.problem("alt", "is missing: what is seen, for those who do not see it", false);
+      fields.warn("alt", "is missing: what is seen, for those who do not see it");
     return alt;
   }
 
-  BookPage page(Fields& fields, std::set<std::string>& taken, bool partner) {
+  BookPage page(FieldReader& fields, std::set<std::string>& taken, bool partner) {
     BookPage page;
     page.id = id(fields, taken);
-    page.title = text(fields, "title", true);
-    page.text = fields.local_texts("text", true);
-    if (page.text.size() > most_paragraphs)
-      fields.problem("text", "has more than " + std::to_string(most_paragraphs) + " paragraphs");
+    page.title = text(fields, "title", "", Need::required);
+    page.text = read_local_texts(fields, "text", most_paragraphs, "paragraphs", Need::required);
     for (size_t i = 0; i < page.text.size(); i++)
       want_languages(fields, "text/" + std::to_string(i), page.text[i]);
-    page.image = file(fields, "image", Medium::image);
+    page.image = file(fields, "image", "JPEG or PNG", Medium::image);
     page.alt = alt(fields, fields.has("image"));
-    if (partner) page.link = fields.text("link", false);
-    else page.credit = text(fields, "credit", false);
-    bool good_link = page.link.starts_with("https://") && page.link.size() > 8 &&
-                     std::all_of(page.link.begin(), page.link.end(),
-                                 [](unsigned char c) { return c > ' ' && c != 0x7f; });
-    if (fields.has("link") && partner && !good_link)
-      fields.problem("link", "must be an address that begins with https://");
-    fields.finish();
+    if (partner) page.link = read_address(fields, "link", "https", false);
+    else page.credit = text(fields, "credit", "who owns the picture");
     return page;
   }
 
-  BookSlide slide(Fields& fields) {
+  BookSlide slide(FieldReader& fields) {
     BookSlide slide;
-    slide.title = text(fields, "title", false);
-    slide.text = text(fields, "text", false);
-    slide.image = file(fields, "image", Medium::image);
-    slide.video = file(fields, "video", Medium::video);
+    slide.title = text(fields, "title", "");
+    slide.text = text(fields, "text", "");
+    slide.image = file(fields, "image", "JPEG or PNG", Medium::image);
+    slide.video = file(fields, "video", "WebM or MP4", Medium::video);
     bool image = fields.has("image"), video = fields.has("video");
-    if (image && video) fields.problem("video", "is there beside an \"image\": one of them only");
+    if (image && video) fields.fail("video", "is there beside an \"image\": one of them only");
     if (!image && !video && slide.text.empty())
-      fields.problem("", "has neither \"image\" nor \"video\" nor \"text\"");
+      fields.fail("has neither \"image\" nor \"video\" nor \"text\"");
     slide.alt = alt(fields, image || video);
-    slide.seconds = fields.number("seconds", false, slide.seconds, shortest_slide, longest_slide);
-    fields.finish();
+    fields.number("seconds", shortest_slide, longest_slide, slide.seconds, "how long it is shown");
     return slide;
+  }
+
+  BookPresentation presentation(FieldReader& fields, std::set<std::string>& taken) {
+    BookPresentation presentation;
+    presentation.id = id(fields, taken);
+    presentation.title = text(fields, "title", "", Need::required);
+    fields.parts(
+        "slides", most_slides, "at least one",
+        [&](FieldReader& one) { presentation.slides.push_back(slide(one)); }, Need::required);
+    if (presentation.slides.empty()) fields.fail("slides", "must have at least one slide");
+    return presentation;
   }
 };
 
-// False with a problem: the list is full.
-bool has_place(Fields& fields, size_t count, size_t most, const char* what) {
-  if (count < most) return true;
-  fields.problem("", "is one more than the " + std::to_string(most) + " " + what);
-  return false;
-}
-
 }  // namespace
 
-void read_book(Exhibit& exhibit, Fields& root) {
+void read_book(Exhibit& exhibit, FieldReader& root) {
   BookReader reader{exhibit};
-  root.object("book", false, [&](Fields book_fields) {
+  root.part("book", "what a kiosk's guests read", [&](FieldReader& fields) {
     Book book;
     std::set<std::string> topics, partners, presentations;
-    book_fields.objects("topics", false, [&](Fields fields) {
-      if (has_place(fields, book.topics.size(), most_topics, "topics a book may have"))
-        book.topics.push_back(reader.page(fields, topics, false));
+    fields.parts("topics", most_topics, "", [&](FieldReader& page) {
+      book.topics.push_back(reader.page(page, topics, false));
     });
-    book_fields.objects("partners", false, [&](Fields fields) {
-      if (has_place(fields, book.partners.size(), most_partners, "partners a book may have"))
-        book.partners.push_back(reader.page(fields, partners, true));
+    fields.parts("partners", most_partners, "", [&](FieldReader& page) {
+      book.partners.push_back(reader.page(page, partners, true));
     });
-    book_fields.objects("presentations", false, [&](Fields fields) {
-      if (!has_place(fields, book.presentations.size(), most_presentations,
-                     "presentations a book may have"))
-        return;
-      BookPresentation presentation;
-      presentation.id = reader.id(fields, presentations);
-      presentation.title = reader.text(fields, "title", true);
-      fields.objects("slides", true, [&](Fields slide_fields) {
-        if (has_place(slide_fields, presentation.slides.size(), most_slides,
-                      "slides a presentation may have"))
-          presentation.slides.push_back(reader.slide(slide_fields));
-      });
-      if (presentation.slides.empty()) fields.problem("slides", "must have at least one slide");
-      fields.finish();
-      book.presentations.push_back(std::move(presentation));
+    fields.parts("presentations", most_presentations, "", [&](FieldReader& one) {
+      book.presentations.push_back(reader.presentation(one, presentations));
     });
-    book_fields.finish();
     exhibit.book = std::move(book);
   });
 }
 
-void read_ambient_sounds(Exhibit& exhibit, Fields& root) {
+void read_ambient_sounds(Exhibit& exhibit, FieldReader& root) {
   BookReader reader{exhibit};
   std::set<std::string> taken;
-  root.objects("sounds", false, [&](Fields fields) {
-    if (!has_place(fields, exhibit.sounds.size(), most_sounds, "sounds an exhibit may have"))
-      return;
+  root.parts("sounds", most_sounds, "", [&](FieldReader& fields) {
     AmbientSound sound;
     sound.id = reader.id(fields, taken);
-    sound.kind = fields.text("kind", false);
-    sound.file = reader.file(fields, "file", Medium::sound);
+    fields.word("kind", {"fire", "water", "room", "wind"}, sound.kind, "made by the browser");
+    sound.file = reader.file(fields, "file", "Ogg, MP3, WAV or FLAC", Medium::sound);
     if (fields.has("kind") == fields.has("file"))
-      fields.problem("", "has either a \"kind\" or a \"file\"");
-    bool known = std::find(std::begin(sound_kinds), std::end(sound_kinds), sound.kind) !=
-                 std::end(sound_kinds);
-    if (fields.has("kind") && !known)
-      fields.problem("kind", "is '" + sound.kind + "' but must be fire, water, room or wind");
-    if (fields.has("position")) sound.position = fields.triple("position", true);
-    sound.gain = fields.number("gain", false, sound.gain, 0, 1);
-    sound.radius = fields.number("radius", false, sound.radius, 0.1, 1000);
-    fields.finish();
+      fields.fail("has either a \"kind\" or a \"file\"");
+    fields.spot("position", most_metres, sound.position, "without one it is everywhere");
+    fields.number("gain", 0, 1, sound.gain, "how loud it is");
+    fields.number("radius", 0.1, 1000, sound.radius, "metres at which it is gone");
     exhibit.sounds.push_back(std::move(sound));
   });
 }

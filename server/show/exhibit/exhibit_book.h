@@ -10,11 +10,10 @@ inline constexpr size_t most_topics = 40, most_partners = 40, most_presentations
 // Seconds that a slide may be shown.
 inline constexpr double shortest_slide = 1, longest_slide = 600;
 // A page can make these sounds by itself.
-inline constexpr const char* sound_kinds[] = {"fire", "water", "room", "wind"};
 
 // Fill exhibit.book and exhibit.sounds, and exhibit.files with what they name. Problems are noted
 // with their place: what the page could not show is fatal; a text that a language lacks is not.
-void read_book(Exhibit& exhibit, Fields& root);
-void read_ambient_sounds(Exhibit& exhibit, Fields& root);
+void read_book(Exhibit& exhibit, FieldReader& root);
+void read_ambient_sounds(Exhibit& exhibit, FieldReader& root);
 
 }  // namespace wellspring::show

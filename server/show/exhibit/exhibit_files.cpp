@@ -95,8 +95,8 @@ std::string media_type(Medium medium, std::string_view bytes) {
   return "";
 }
 
-bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const std::string& name,
-                     Medium medium) {
+bool add_served_file(Exhibit& exhibit, FieldReader& fields, const char* field,
+                     const std::string& name, Medium medium) {
   ServedFile file;
   const MediumRules rules = rules_of(medium);
   if (auto found = exhibit.files.find(name);
@@ -105,7 +105,7 @@ bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const 
   file.path = package_file(fields, field, exhibit.folder, name);
   if (file.path.empty()) return false;
   auto refuse = [&](const std::string& what) {
-    fields.problem(field, "'" + name + "' " + what);
+    fields.fail(field, "'" + name + "' " + what);
     return false;
   };
   if (!is_plain_name(name))
@@ -137,26 +137,26 @@ bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const 
 
 namespace fs = std::filesystem;
 
-std::string package_file(Fields& fields, const char* field, const std::string& folder,
+std::string package_file(FieldReader& fields, const char* field, const std::string& folder,
                          const std::string& name) {
   if (name.empty()) return "";
   fs::path relative(name);
   bool escapes = relative.is_absolute() || std::any_of(relative.begin(), relative.end(),
                                                        [](const fs::path& p) { return p == ".."; });
   if (escapes) {
-    fields.problem(field, "'" + name + "' leaves the package's folder");
+    fields.fail(field, "'" + name + "' leaves the package's folder");
     return "";
   }
   std::error_code ec;
   const fs::path path = find_file(folder, relative).value_or(fs::path(folder) / relative);
   fs::path real = fs::weakly_canonical(path, ec), root = fs::weakly_canonical(folder, ec);
   if (ec || !lies_in(real, root)) {
-    fields.problem(field, "'" + name + "' leaves the package's folder");
+    fields.fail(field, "'" + name + "' leaves the package's folder");
     return "";
   }
   if (!fs::is_regular_file(path, ec)) {
-    fields.problem(field, "there is no file '" + name + "' in the package" +
-                              did_you_mean(name, list_files(root)));
+    fields.fail(field, "there is no file '" + name + "' in the package" +
+                           did_you_mean(name, list_files(root)));
     return "";
   }
   return path.string();
@@ -168,9 +168,10 @@ constexpr double one_degree = 3.14159265358979323846 / 180;
 constexpr double least_scale = 1e-6, most_scale = 1e6;
 
 // The scene of the file that `field` names; nothing where it cannot be read, which is told.
-std::optional<Scene> read_scene_file(Exhibit& exhibit, Fields& fields, const char* field,
-                                     std::vector<Problem>& problems) {
-  std::string name = fields.text(field, true);
+std::optional<Scene> read_scene_file(Exhibit& exhibit, FieldReader& fields, const char* field,
+                                     std::vector<Problem>& problems, Need need) {
+  std::string name;
+  fields.text(field, name, "a glTF file", need);
   std::string path = package_file(fields, field, exhibit.folder, name);
   if (path.empty()) return {};
   try {
@@ -191,36 +192,38 @@ std::optional<Scene> read_scene_file(Exhibit& exhibit, Fields& fields, const cha
 }
 
 // All files or none: names would be missed that are in one that cannot be read.
-void read_files(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
-  if (!root.has("scenes")) {
-    if (auto scene = read_scene_file(exhibit, root, "scene", problems))
-      exhibit.scene = std::move(*scene);
-    return;
-  }
-  if (root.has("scene")) root.problem("scene", "is there beside \"scenes\": one of them only");
-  root.value("scene");
+void read_files(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& problems) {
+  root.describe_choice({{"scene"}, {"scenes"}});
+  const bool many = root.has("scenes");
+  if (many && root.has("scene")) root.fail("scene", "is there beside \"scenes\": one of them only");
+  if (!many && !root.has("scene")) root.fail("scene", "is missing");
+  if (auto scene = read_scene_file(exhibit, root, "scene", problems, Need::optional))
+    exhibit.scene = std::move(*scene);
   std::optional<Scene> all;
   bool readable = true;
-  root.objects("scenes", true, [&](Fields fields) {
-    ScenePlace place;
-    place.position = fields.triple("position", false);
-    place.yaw = fields.number("yaw_deg", false, 0, -720, 720) * one_degree;
-    place.scale = fields.number("scale", false, 1, least_scale, most_scale);
-    std::optional<Scene> scene = read_scene_file(exhibit, fields, "file", problems);
-    fields.finish();
-    readable &= scene.has_value();
-    if (!scene) return;
-    place_scene(*scene, place);
-    if (all) join_scene(*all, std::move(*scene));
-    else all = std::move(scene);
-  });
-  if (!all && readable) root.problem("scenes", "must name at least one file");
+  root.parts("scenes", SIZE_MAX, "several glTF files instead of \"scene\"",
+             [&](FieldReader& fields) {
+               ScenePlace place;
+               fields.vector("position", most_metres, place.position);
+               if (fields.number("yaw_deg", -720, 720, place.yaw)) place.yaw *= one_degree;
+               fields.number("scale", least_scale, most_scale, place.scale);
+               std::optional<Scene> scene =
+                   read_scene_file(exhibit, fields, "file", problems, Need::required);
+               readable &= scene.has_value();
+               if (!scene) return;
+               place_scene(*scene, place);
+               if (all) join_scene(*all, std::move(*scene));
+               else all = std::move(scene);
+             });
+  if (many && !all && readable) root.fail("scenes", "must name at least one file");
   if (all && readable) exhibit.scene = std::move(*all);
 }
 
-void read_environment(Exhibit& exhibit, Fields fields, std::vector<Problem>& problems) {
-  exhibit.scene.environment.radiance = vec3(fields.triple("radiance", false, dvec3(1)));
-  std::string picture = fields.text("image", false);
+void read_environment(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& problems) {
+  exhibit.scene.environment.radiance = vec3(1);
+  fields.vector("radiance", most_metres, exhibit.scene.environment.radiance);
+  std::string picture;
+  fields.text("image", picture, "latitude-longitude .hdr");
   std::string picture_path = package_file(fields, "image", exhibit.folder, picture);
   if (!picture_path.empty()) {
     try {
@@ -229,37 +232,39 @@ void read_environment(Exhibit& exhibit, Fields fields, std::vector<Problem>& pro
       problems.push_back({error.file, error.where, error.what_});
     }
   }
-  fields.object("sky", false, [&](Fields sky) {
+  fields.part("sky", "a clear sky with its sun", [&](FieldReader& sky) {
     SkySettings settings;
-    settings.elevation = sky.number("elevation_deg", true, settings.elevation, -18, 90);
-    settings.azimuth = sky.number("azimuth_deg", true, settings.azimuth, -360, 360);
-    settings.turbidity = sky.number("turbidity", false, settings.turbidity, 1, 10);
-    settings.strength = sky.number("strength", false, settings.strength, 0, 1e6);
-    sky.finish();
-    if (!picture.empty()) fields.problem("sky", "is there beside an \"image\": one of them only");
+    sky.number("elevation_deg", -18, 90, settings.elevation, "of the sun", Need::required);
+    sky.number("azimuth_deg", -360, 360, settings.azimuth, "of the sun", Need::required);
+    sky.number("turbidity", 1, 10, settings.turbidity, "2 is clear air, 10 is haze");
+    sky.number("strength", 0, 1e6, settings.strength, "multiplies its light");
+    if (!picture.empty()) fields.fail("sky", "is there beside an \"image\": one of them only");
     else if (!sky_problem(settings)) add_sky(settings, exhibit.scene);
   });
-  fields.finish();
 }
 
 }  // namespace
 
-void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
+void read_scene(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& problems) {
   read_files(exhibit, root, problems);
   const bool loaded = !exhibit.scene.objects.empty();
   ScenePlace place;
-  place.scale = root.number("scale", false, 1, least_scale, most_scale);
-  exhibit.scene.cull_back_faces = !root.flag("draw_back_faces", false);
-  double light = root.number("light_scale", false, 1, 0, 1e6);
+  root.number("scale", least_scale, most_scale, place.scale,
+              "of the whole scene: 0.01 for a file in centimetres");
+  bool back_faces = false;
+  root.boolean("draw_back_faces", back_faces,
+               "the eye sees the backs of single-sided faces, too, against glTF's rule");
+  exhibit.scene.cull_back_faces = !back_faces;
+  double light = 1;
+  root.number("light_scale", 0, 1e6, light, "multiplies all lights and emission of the scene");
   if (loaded) place_scene(exhibit.scene, place);
   if (light != 1) scale_light(exhibit.scene, float(light));
-  root.object("environment", false,
-              [&](Fields fields) { read_environment(exhibit, std::move(fields), problems); });
+  root.part("environment", "what is around the scene",
+            [&](FieldReader& fields) { read_environment(exhibit, fields, problems); });
   if (loaded && add_missing_light(exhibit.scene))
-    root.problem("environment",
-                 "the scene has no light of any kind: it is lit from everywhere by a radiance of 1 "
-                 "(write \"environment\": {\"radiance\": [1, 1, 1]}, or give it lamps or a sky)",
-                 false);
+    root.warn("environment",
+              "the scene has no light of any kind: it is lit from everywhere by a radiance of 1 "
+              "(write \"environment\": {\"radiance\": [1, 1, 1]}, or give it lamps or a sky)");
 }
 
 }  // namespace wellspring::show

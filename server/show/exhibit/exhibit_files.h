@@ -22,18 +22,18 @@ std::string media_type(Medium medium, std::string_view first_bytes);
 
 // Adds the file `name` of the package to exhibit.files. False with a problem noted at `field` when
 // it cannot be served, or without one when `name` is empty. Reads all of it: images are decoded.
-bool add_served_file(Exhibit& exhibit, Fields& fields, const char* field, const std::string& name,
-                     Medium medium);
+bool add_served_file(Exhibit& exhibit, FieldReader& fields, const char* field,
+                     const std::string& name, Medium medium);
 
 // Files of an exhibit package, named in its JSON.
 
 // The path of a file inside the package's folder that is there. Empty when not, with the problem
 // noted at `field`; also for an empty name.
-std::string package_file(Fields& fields, const char* field, const std::string& folder,
+std::string package_file(FieldReader& fields, const char* field, const std::string& folder,
                          const std::string& name);
 
 // Reads "scene" or "scenes", "scale", "light_scale" and "environment". If a file cannot be read
 // exhibit.scene.objects is empty.
-void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems);
+void read_scene(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& problems);
 
 }  // namespace wellspring::show

@@ -14,32 +14,26 @@
 
 namespace wellspring::show {
 
-void read_lamps(Exhibit& exhibit, Fields& root) {
-  root.objects("lamps", false, [&](Fields fields) {
+void read_lamps(Exhibit& exhibit, FieldReader& root) {
+  root.parts("lamps", most_lamps, "what visitors switch", [&](FieldReader& fields) {
     ExhibitLamp lamp;
-    lamp.id = fields.text("id", true);
-    if (!lamp.id.empty() && find_lamp(exhibit, lamp.id) >= 0)
-      fields.problem("id", "'" + lamp.id + "' is taken by another lamp");
-    lamp.title = fields.local_text("title", true);
+    if (fields.text("id", lamp.id, "", Need::required) && find_lamp(exhibit, lamp.id) >= 0)
+      fields.fail("id", "'" + lamp.id + "' is taken by another lamp");
+    lamp.title = read_local_text(fields, "title", "", Need::required);
     for (const std::string& lang : exhibit.languages)
       if (!lamp.title.empty() && !lamp.title.contains(lang))
-        fields.problem("title", "has nothing in '" + lang + "'", false);
-    lamp.on = fields.flag("on", true);
-    lamp.shared = fields.flag("shared", false);
-    LampNames names{lamp.id, fields.texts("nodes"), fields.texts("materials")};
+        fields.warn("title", "has nothing in '" + lang + "'");
+    fields.boolean("on", lamp.on, "at first");
+    fields.boolean("shared", lamp.shared, "who switches it does so for everybody");
+    LampNames names{lamp.id, read_texts(fields, "nodes", "lights and things of the scene"),
+                    read_texts(fields, "materials", "all that is made of them")};
     if (names.nodes.empty() && names.materials.empty())
-      fields.problem("", "names neither \"nodes\" nor \"materials\" of the scene");
-    fields.finish();
-    if (exhibit.lamps.size() == most_lamps) {
-      fields.problem(
-          "", "is one more than the " + std::to_string(most_lamps) + " lamps an exhibit may have");
-      return;
-    }
+      fields.fail("names neither \"nodes\" nor \"materials\" of the scene");
     const bool loaded = !exhibit.scene.objects.empty();  // else every name would be missed
     for (const LampFault& fault : add_lamp(names, exhibit.scene))
       if (loaded)
-        fields.problem((fault.is_material ? "materials/" : "nodes/") + std::to_string(fault.index),
-                       fault.what);
+        fields.fail((fault.is_material ? "materials/" : "nodes/") + std::to_string(fault.index),
+                    fault.what);
     exhibit.lamps.push_back(std::move(lamp));
   });
 }
@@ -64,64 +58,71 @@ constexpr double least_between = 1 / most_turns;  // seconds
 bool has_place(const PunctualLight& light) { return light.type != PunctualType::directional; }
 bool has_direction(const PunctualLight& light) { return light.type != PunctualType::point; }
 
-vec3 read_direction(Fields& fields, bool required, vec3 otherwise) {
-  const dvec3 given = fields.triple("direction", required, dvec3(otherwise));
+vec3 read_direction(FieldReader& fields, Need need, vec3 otherwise) {
+  dvec3 given(otherwise);
+  fields.vector("direction", most_metres, given, "where it shines to", need);
   if (glm::length(given) > 1e-6) return vec3(glm::normalize(given));
-  fields.problem("direction", "must not be zero");
+  fields.fail("direction", "must not be zero");
   return otherwise;
 }
 
+// Reads a place in the file's coordinates.
+void read_place(const Exhibit& exhibit, FieldReader& fields, Need need, vec3& place) {
+  dvec3 given;
+  if (fields.vector("position", most_metres, given, "", need))
+    place = vec3(given - exhibit.scene.origin);
+}
+
 // A light that the scene does not have.
-PunctualLight read_new_light(const Exhibit& exhibit, Fields& fields) {
+PunctualLight read_new_light(const Exhibit& exhibit, FieldReader& fields) {
+  // A schema has the fields of all types, and needs none of them.
+  const bool all = fields.describes();
+  const Need need = all ? Need::optional : Need::required;
   PunctualLight light;
-  const std::string type = fields.text("type", true);
-  if (type == "spot") light.type = PunctualType::spot;
-  else if (type == "sun") light.type = PunctualType::directional;
-  else if (type != "point" && !type.empty())
-    fields.problem("type", "'" + type + "' is none of point, spot and sun");
-  if (has_place(light))
-    light.position = vec3(fields.triple("position", true) - exhibit.scene.origin);
-  if (has_direction(light)) light.direction = read_direction(fields, true, light.direction);
-  const dvec3 color = fields.triple("color", false, dvec3(1));
+  fields.choice("type", {"point", "spot", "sun"}, light.type, "of a new light", need);
+  if (all || has_place(light)) read_place(exhibit, fields, need, light.position);
+  if (all || has_direction(light)) light.direction = read_direction(fields, need, light.direction);
+  vec3 color(1);
+  fields.vector("color", most_metres, color);
   for (int i = 0; i < 3; i++)
-    if (color[i] < 0) fields.problem("color/" + std::to_string(i), "must not be below 0");
-  light.intensity =
-      vec3(glm::max(color, dvec3(0))) *
-      float(fields.number(has_place(light) ? "candela" : "lux", true, 1, 0, most_candela));
-  if (has_place(light) && fields.has("reach"))
-    light.range = float(fields.number("reach", false, 10, 0.1, 1000));
-  if (light.type != PunctualType::spot) return light;
-  light.outer_cone = float(glm::radians(fields.number("outer_cone_deg", false, 45, 1, 90)));
-  const double inner = glm::degrees(double(light.outer_cone)) / 2;
-  light.inner_cone = float(glm::radians(fields.number("inner_cone_deg", false, inner, 0, 90)));
+    if (color[i] < 0) fields.fail("color/" + std::to_string(i), "must not be below 0");
+  float strength = 1;
+  if (all || has_place(light))
+    fields.number("candela", 0, most_candela, strength, "of a point or a spot", need);
+  if (all || !has_place(light)) fields.number("lux", 0, most_candela, strength, "of a sun", need);
+  light.intensity = glm::max(color, vec3(0)) * strength;
+  if (all || has_place(light))
+    fields.number("reach", 0.1, 1000, light.range, "metres at which it has faded to nothing");
+  if (!all && light.type != PunctualType::spot) return light;
+  light.outer_cone = glm::radians(45.0f);
+  fields.degrees("outer_cone_deg", 1, 90, light.outer_cone, "of a spot");
+  light.inner_cone = light.outer_cone / 2;
+  fields.degrees("inner_cone_deg", 0, 90, light.inner_cone, "of a spot");
   if (light.inner_cone > light.outer_cone)
-    fields.problem("inner_cone_deg", "is wider than the outer cone");
+    fields.fail("inner_cone_deg", "is wider than the outer cone");
   return light;
 }
 
 // Reads a key. A value that it leaves out is as in the one before, in the first as in the light
 // itself.
-void read_key(const Exhibit& exhibit, ChangingLight& light, Fields fields) {
+void read_key(const Exhibit& exhibit, ChangingLight& light, FieldReader& fields) {
   const bool first = light.track.empty();
   TrackKey key{0, light.light.position, light.light.direction, 1};
   if (!first) key = light.track.back();
   const double before = key.time;
   const vec3 looked = key.direction;
-  key.time = fields.number("time", true, 0, 0, longest_track);
-  if (first && key.time != 0) fields.problem("time", "of the first entry must be 0");
+  key.time = 0;
+  fields.number("time", 0, longest_track, key.time, "seconds", Need::required);
+  if (first && key.time != 0) fields.fail("time", "of the first entry must be 0");
   if (!first && key.time < before + least_between * (1 - 1e-9))
-    fields.problem("time",
-                   fmt::format("must be at least {} s after the entry before", least_between));
-  if (has_place(light.light))
-    key.position =
-        vec3(fields.triple("position", false, dvec3(key.position) + exhibit.scene.origin) -
-             exhibit.scene.origin);
-  if (has_direction(light.light)) key.direction = read_direction(fields, false, key.direction);
+    fields.fail("time", fmt::format("must be at least {} s after the entry before", least_between));
+  if (fields.describes() || has_place(light.light))
+    read_place(exhibit, fields, Need::optional, key.position);
+  if (fields.describes() || has_direction(light.light))
+    key.direction = read_direction(fields, Need::optional, key.direction);
   if (!first && dot(key.direction, looked) < widest_turn)
-    fields.problem("direction",
-                   "turns by more than 120 degrees: an entry in between says which way");
-  key.intensity = float(fields.number("intensity", false, double(key.intensity), 0, 1000));
-  fields.finish();
+    fields.fail("direction", "turns by more than 120 degrees: an entry in between says which way");
+  fields.number("intensity", 0, 1000, key.intensity, "a factor");
   light.track.push_back(key);
 }
 
@@ -130,28 +131,27 @@ bool is_same(const TrackKey& a, const TrackKey& b) {
          glm::length(a.direction - b.direction) < same_place && a.intensity == b.intensity;
 }
 
-void read_track(const Exhibit& exhibit, ChangingLight& light, Fields& fields) {
-  fields.objects("track", false, [&](Fields key) { read_key(exhibit, light, std::move(key)); });
-  light.loop = fields.flag("loop", true);
+void read_track(const Exhibit& exhibit, ChangingLight& light, FieldReader& fields) {
+  fields.parts("track", most_track_keys, "at least two entries",
+               [&](FieldReader& key) { read_key(exhibit, light, key); });
+  fields.boolean("loop", light.loop, "the track begins again at its end");
   std::vector<TrackKey>& track = light.track;
   if (fields.has("track") && track.size() < 2)
-    fields.problem("track", "must have at least two entries");
-  if (track.size() > most_track_keys)
-    fields.problem("track", fmt::format("has more than {} entries", most_track_keys));
+    fields.fail("track", "must have at least two entries");
   if (track.size() >= 2 && light.loop && !is_same(track.front(), track.back()))
-    fields.problem("track",
-                   "ends otherwise than it begins, so the light would jump: give the last entry "
-                   "the values of the first, or say \"loop\": false");
+    fields.fail("track",
+                "ends otherwise than it begins, so the light would jump: give the last entry "
+                "the values of the first, or say \"loop\": false");
   const bool dims = std::ranges::any_of(
       track, [&](const TrackKey& key) { return key.intensity != track.front().intensity; });
   if (dims && light.flicker.depth > 0)
-    fields.problem("flicker",
-                   "is there beside an intensity that changes on the track: one of them");
+    fields.fail("flicker", "is there beside an intensity that changes on the track: one of them");
 }
 
-// The scene's light of that name; false: there is none to go on with.
-bool find_light(const Exhibit& exhibit, ChangingLight& light, Fields& fields) {
-  light.name = fields.text("node", true);
+// Finds the scene's light of that name; false: there is none to go on with.
+bool find_light(const Exhibit& exhibit, ChangingLight& light, FieldReader& fields) {
+  fields.text("node", light.name, "a light of the scene",
+              fields.describes() ? Need::optional : Need::required);
   if (light.name.empty() || exhibit.scene.objects.empty()) return false;  // nothing was loaded
   std::string fault;
   const std::vector<int> found = find_lights(exhibit.scene, light.name, fault);
@@ -160,7 +160,7 @@ bool find_light(const Exhibit& exhibit, ChangingLight& light, Fields& fields) {
     if (!found.empty() && other.of_scene == found.front())
       fault = "'" + light.name + "' is another entry's light already";
   if (!fault.empty()) {
-    fields.problem("node", fault);
+    fields.fail("node", fault);
     return false;
   }
   light.of_scene = found.front();
@@ -169,37 +169,43 @@ bool find_light(const Exhibit& exhibit, ChangingLight& light, Fields& fields) {
   return true;
 }
 
-void read_light(Exhibit& exhibit, Fields fields) {
+// Reads a light that the scene does not have, and the lamp that switches it.
+void read_own_light(const Exhibit& exhibit, ChangingLight& light, FieldReader& fields) {
+  if (fields.has("node"))
+    fields.fail("node", "is there beside a \"type\", which makes a light of its own");
+  fields.take("node");
+  fields.text("name", light.name, "of a new light",
+              fields.describes() ? Need::optional : Need::required);
+  light.light = read_new_light(exhibit, fields);
+  light.light.name = light.name;
+  std::string lamp;
+  fields.text("lamp", lamp, "id of the lamp that switches a new light");
+  if (lamp.empty()) return;
+  light.lamp = find_lamp(exhibit, lamp);
+  if (light.lamp < 0) fields.fail("lamp", "there is no lamp '" + lamp + "'");
+}
+
+void read_light(Exhibit& exhibit, FieldReader& fields) {
   ChangingLight light;
-  if (fields.has("type")) {
-    if (fields.has("node"))
-      fields.problem("node", "is there beside a \"type\", which makes a light of its own");
-    fields.value("node");
-    light.name = fields.text("name", true);
-    light.light = read_new_light(exhibit, fields);
-    light.light.name = light.name;
-    if (const std::string lamp = fields.text("lamp", false); !lamp.empty()) {
-      light.lamp = find_lamp(exhibit, lamp);
-      if (light.lamp < 0) fields.problem("lamp", "there is no lamp '" + lamp + "'");
-    }
-  } else if (!find_light(exhibit, light, fields)) {
-    return;
-  }
+  fields.describe_choice({{"node"}, {"type", "name"}});
+  const bool all = fields.describes();
+  const bool own = all || fields.has("type");
+  const bool found = (!all && own) || find_light(exhibit, light, fields);
+  if (own) read_own_light(exhibit, light, fields);
   for (const ChangingLight& other : exhibit.lights)
-    if (!light.name.empty() && other.name == light.name)
-      fields.problem("name", "'" + light.name + "' is taken by another light");
+    if (found && !light.name.empty() && other.name == light.name)
+      fields.fail("name", "'" + light.name + "' is taken by another light");
   light.flicker = read_flicker(fields);
   read_track(exhibit, light, fields);
   if (!fields.has("flicker") && !fields.has("track"))
-    fields.problem("",
-                   "has neither \"flicker\" nor \"track\": a light that stays as it is belongs "
-                   "into the scene");
-  fields.finish();
-  exhibit.lights.push_back(std::move(light));
+    fields.fail(
+        "has neither \"flicker\" nor \"track\": a light that stays as it is belongs "
+        "into the scene");
+  if (found) exhibit.lights.push_back(std::move(light));
 }
 
 // The scene's sun of that name, if it can be the day's; -1: it cannot.
-int find_sun(const Exhibit& exhibit, const std::string& name, int lamp, Fields& fields) {
+int find_sun(const Exhibit& exhibit, const std::string& name, int lamp, FieldReader& fields) {
   std::string fault;
   const std::vector<int> found = find_lights(exhibit.scene, name, fault);
   if (fault.empty()) {
@@ -215,35 +221,37 @@ int find_sun(const Exhibit& exhibit, const std::string& name, int lamp, Fields& 
       fault = "'" + name + "' is one of \"lights\" already";
     if (fault.empty()) return light;
   }
-  fields.problem("sun", fault);
+  fields.fail("sun", fault);
   return -1;
 }
 
-void read_day_fields(Exhibit& exhibit, Fields fields) {
+void read_day_fields(Exhibit& exhibit, FieldReader& fields) {
   DaySettings settings;
-  settings.at = fields.number("at", true, settings.at, 0, 24);
-  settings.from = fields.number("from", false, settings.from, 0, 24);
-  settings.to = fields.number("to", false, settings.to, 0, 24);
-  settings.latitude = fields.number("latitude_deg", false, settings.latitude, -66, 66);
-  if (!(settings.from < settings.to)) fields.problem("to", "must be later than \"from\"");
+  fields.number("at", 0, 24, settings.at, "the hour at which the scene has it so", Need::required);
+  fields.number("from", 0, 24, settings.from, "the first hour that can be chosen");
+  fields.number("to", 0, 24, settings.to, "the last hour that can be chosen");
+  fields.number("latitude_deg", -66, 66, settings.latitude);
+  if (!(settings.from < settings.to)) fields.fail("to", "must be later than \"from\"");
   else if (settings.at < settings.from || settings.at > settings.to)
-    fields.problem("at", "must lie between \"from\" and \"to\"");
-  const std::string name = fields.text("lamp", true), sun = fields.text("sun", true);
+    fields.fail("at", "must lie between \"from\" and \"to\"");
+  std::string name, sun;
+  fields.text("lamp", name, "id of the lamp that is daylight", Need::required);
+  fields.text("sun", sun, "node of the scene's sun, a part of that lamp", Need::required);
   const int lamp = find_lamp(exhibit, name);
-  if (lamp < 0 && !name.empty()) fields.problem("lamp", "there is no lamp '" + name + "'");
-  fields.finish();
+  if (lamp < 0 && !name.empty()) fields.fail("lamp", "there is no lamp '" + name + "'");
   if (lamp < 0 || sun.empty() || exhibit.scene.objects.empty()) return;
   const int light = find_sun(exhibit, sun, lamp, fields);
   if (light < 0) return;
   const std::string problem = day_problem(settings, exhibit.scene.lights[size_t(light)]);
-  if (!problem.empty()) return fields.problem("", problem);
+  if (!problem.empty()) return fields.fail(problem);
   set_day(settings, lamp, light, exhibit);
 }
 
 }  // namespace
 
-void read_day(Exhibit& exhibit, Fields& root) {
-  root.object("day", false, [&](Fields fields) { read_day_fields(exhibit, std::move(fields)); });
+void read_day(Exhibit& exhibit, FieldReader& root) {
+  root.part("day", "visitors may choose the hour of the day",
+            [&](FieldReader& fields) { read_day_fields(exhibit, fields); });
 }
 
 void set_day(const DaySettings& settings, int lamp, int light, Exhibit& exhibit) {
@@ -255,20 +263,20 @@ void set_day(const DaySettings& settings, int lamp, int light, Exhibit& exhibit)
   scene.lamps.push_back({scene.lamps[size_t(lamp)].name + ": sun", {light}, {}});
 }
 
-Flicker read_flicker(Fields& fields) {
+Flicker read_flicker(FieldReader& fields) {
   Flicker flicker;
-  fields.object("flicker", false, [&](Fields said) {
-    flicker.depth = float(said.number("depth", false, 0.3, 0, 1));
-    flicker.hz = float(said.number("hz", false, 4, 0.1, most_turns));
-    said.finish();
+  fields.part("flicker", "brightness that rises and falls at random", [&](FieldReader& said) {
+    flicker = {.depth = 0.3f, .hz = 4};
+    said.number("depth", 0, 1, flicker.depth, "up to how much of it");
+    said.number("hz", 0.1, most_turns, flicker.hz, "times a second");
   });
   return flicker;
 }
 
-void read_lights(Exhibit& exhibit, Fields& root) {
-  root.objects("lights", false, [&](Fields fields) { read_light(exhibit, std::move(fields)); });
-  if (exhibit.lights.size() > most_changing_lights)
-    root.problem("lights", fmt::format("are more than {}", most_changing_lights));
+void read_lights(Exhibit& exhibit, FieldReader& root) {
+  root.parts("lights", most_changing_lights,
+             "lights that flicker or move: of the scene (node), or new ones (type)",
+             [&](FieldReader& fields) { read_light(exhibit, fields); });
 }
 
 void take_lights(Exhibit& exhibit) {

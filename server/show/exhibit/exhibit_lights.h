@@ -13,20 +13,20 @@ namespace wellspring::show {
 // The lamps that a package names, out of its exhibit.json: see content/README.md.
 
 // Fills exhibit.lamps, and exhibit.scene.lamps one for one. Call when the scene is there.
-void read_lamps(Exhibit& exhibit, Fields& root);
+void read_lamps(Exhibit& exhibit, FieldReader& root);
 
 // As the exhibit is at first: which of its lamps are on, and the scene's.
 std::vector<char> first_lamps(const Exhibit& exhibit);
 LampLevels first_levels(const Exhibit& exhibit);
 
 // Reads the object "flicker"; without one the light is steady.
-Flicker read_flicker(Fields& fields);
+Flicker read_flicker(FieldReader& fields);
 
 // Fills exhibit.lights; what of them are lights of the scene stay there. Call when lamps are read.
-void read_lights(Exhibit& exhibit, Fields& root);
+void read_lights(Exhibit& exhibit, FieldReader& root);
 
 // Fills exhibit.day. Call when lights are read.
-void read_day(Exhibit& exhibit, Fields& root);
+void read_day(Exhibit& exhibit, FieldReader& root);
 // A day of which nothing is a problem; `lamp` and `light`: of the exhibit's scene, its daylight and
 // its sun. The sun gets a lamp of its own, behind all the others.
 void set_day(const DaySettings& settings, int lamp, int light, Exhibit& exhibit);

@@ -18,4 +18,7 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems);
 // ExhibitError when a problem is fatal; logs the others.
 Exhibit load_exhibit(const std::string& folder);
 
+// Returns the JSON Schema of exhibit.json, out of the same list of fields.
+nlohmann::ordered_json exhibit_schema();
+
 }  // namespace wellspring::show

@@ -68,67 +68,54 @@ std::string no_node(const Scene& scene, const std::string& name) {
   return "the scene has no node '" + name + "'" + did_you_mean(name, names);
 }
 
-bool is_address(const std::string& text) {
-  return text.starts_with("https://") && text.size() > 8 &&
-         text.find_first_of(" \t\n\"<>") == std::string::npos;
-}
-
 // Reads what pages say of it.
-void read_label(const Exhibit& exhibit, PointOfInterest& point, Fields& fields) {
-  point.title = fields.local_text("title", false);
-  point.text = fields.local_text("text", false);
-  point.story = fields.text("story", false);
+void read_label(const Exhibit& exhibit, PointOfInterest& point, FieldReader& fields) {
+  point.title = read_local_text(fields, "title", "");
+  point.text = read_local_text(fields, "text", "");
+  fields.text("story", point.story, "id of the story about it");
   const bool known = std::ranges::any_of(
       exhibit.stories, [&](const StoryText& story) { return story.id == point.story; });
   if (!point.story.empty() && !known)
-    fields.problem("story", "there is no story '" + point.story + "'");
-  fields.object("provenance", false, [&](Fields facts) {
-    for (const std::string& name : facts.names()) {
-      if (std::ranges::find(provenance_elements, name) == std::end(provenance_elements))
-        facts.problem(name, "is none of the fifteen elements of the Dublin Core", false);
-      else point.provenance[name] = facts.local_text(name.c_str(), true);
-    }
+    fields.fail("story", "there is no story '" + point.story + "'");
+  fields.part("provenance", "elements of the Dublin Core", [&](FieldReader& facts) {
+    for (const char* name : provenance_elements)
+      if (LocalText text = read_local_text(facts, name, ""); !text.empty())
+        point.provenance[name] = std::move(text);
   });
-  point.manifest = fields.text("manifest", false);
-  if (!point.manifest.empty() && !is_address(point.manifest))
-    fields.problem("manifest", "must be an address that begins with https://");
-  point.around = fields.flag("around", false);
-  fields.object("door", false, [&](Fields door) {
-    point.door.exhibit = door.text("exhibit", true);
-    point.door.viewpoint = door.text("viewpoint", false);
+  point.manifest = read_address(fields, "manifest", "https address of its IIIF manifest", false);
+  fields.boolean("around", point.around, "may be looked at from all sides");
+  fields.part("door", "where it leads", [&](FieldReader& door) {
+    door.text("exhibit", point.door.exhibit, "id of another exhibit", Need::required);
+    door.text("viewpoint", point.door.viewpoint, "of that exhibit; without it its start");
     if (!std::filesystem::exists(exhibit.folder + "/../" + point.door.exhibit + "/exhibit.json"))
-      door.problem("exhibit", "there is no exhibit '" + point.door.exhibit + "' beside this one",
-                   false);
-    door.finish();
+      door.warn("exhibit", "there is no exhibit '" + point.door.exhibit + "' beside this one");
   });
 }
 
 }  // namespace
 
-void read_objects(Exhibit& exhibit, Fields& root) {
+void read_objects(Exhibit& exhibit, FieldReader& root) {
   const Scene& scene = exhibit.scene;
-  root.members("objects", [&](const std::string& id, Fields fields) {
-    PointOfInterest point;
-    point.id = id;
-    point.node = fields.text("node", true);
-    read_label(exhibit, point, fields);
-    point.objects = find_objects(scene, point.node);
-    if (point.objects.empty() && !scene.objects.empty())
-      fields.problem("node", no_node(scene, point.node));
-    const Bounds bounds = bounds_of(scene, point.objects);
-    const bool empty = !(bounds.low.x <= bounds.high.x);
-    const vec3 size = empty ? vec3(0) : bounds.high - bounds.low;
-    if (point.around && 0.5 * double(glm::length(size)) > largest_around)
-      fields.problem("around",
-                     fmt::format("is for things up to {:g} m; this is {:.3g} m from end "
-                                 "to end",
-                                 2 * largest_around, glm::length(size)),
-                     false);
-    dvec3 middle = scene.origin + (empty ? dvec3(0) : dvec3(0.5f * (bounds.low + bounds.high)));
-    point.place = fields.triple("at", false, middle);
-    fields.finish();
-    exhibit.points.push_back(std::move(point));
-  });
+  root.members(
+      "objects", "names for parts of the scene", [&](const std::string& id, FieldReader& fields) {
+        PointOfInterest point;
+        point.id = id;
+        fields.text("node", point.node, "name in the glTF file", Need::required);
+        read_label(exhibit, point, fields);
+        point.objects = find_objects(scene, point.node);
+        if (point.objects.empty() && !scene.objects.empty())
+          fields.fail("node", no_node(scene, point.node));
+        const Bounds bounds = bounds_of(scene, point.objects);
+        const bool empty = !(bounds.low.x <= bounds.high.x);
+        const vec3 size = empty ? vec3(0) : bounds.high - bounds.low;
+        if (point.around && 0.5 * double(glm::length(size)) > largest_around)
+          fields.warn("around",
+                      fmt::format("is for things up to {:g} m; this is {:.3g} m from end to end",
+                                  2 * largest_around, glm::length(size)));
+        point.place = scene.origin + (empty ? dvec3(0) : dvec3(0.5f * (bounds.low + bounds.high)));
+        fields.vector("at", most_metres, point.place, "where visitors look; without it its middle");
+        exhibit.points.push_back(std::move(point));
+      });
 }
 
 namespace {
@@ -136,7 +123,7 @@ namespace {
 constexpr double turn_degree = 3.14159265358979323846 / 180;
 constexpr const char* side_names[] = {"left", "right"};
 
-// From the hand to the farthest corner.
+// Returns the distance from the hand to the farthest corner.
 float reach_of(const ExhibitProp& prop) {
   float reach = 0;
   for (const Instance& instance : prop.scene.instances)
@@ -169,7 +156,7 @@ std::string too_much(const ExhibitProp& prop) {
   return "";
 }
 
-void read_prop_file(const Exhibit& exhibit, Fields& fields, ExhibitProp& prop,
+void read_prop_file(const Exhibit& exhibit, FieldReader& fields, ExhibitProp& prop,
                     std::vector<Problem>& problems) {
   const std::string path = package_file(fields, "file", exhibit.folder, prop.file);
   if (path.empty()) return;
@@ -186,11 +173,11 @@ void read_prop_file(const Exhibit& exhibit, Fields& fields, ExhibitProp& prop,
   for (const std::string& warning : prop.scene.warnings)
     problems.push_back({path, "", warning, false});
   if (const std::string wrong = too_much(prop); !wrong.empty())
-    fields.problem("file", "'" + prop.file + "' " + wrong);
+    fields.fail("file", "'" + prop.file + "' " + wrong);
 }
 
 // The gesture of every storyteller's library, and hands.
-void check_hands(const Exhibit& exhibit, Fields& fields, const ExhibitProp& prop) {
+void check_hands(const Exhibit& exhibit, FieldReader& fields, const ExhibitProp& prop) {
   for (const StorytellerPlace& place : exhibit.storytellers) {
     const GestureLibrary& library = place.gestures ? *place.gestures : default_gestures();
     const int clip = find_gesture(library, prop.gesture);
@@ -198,60 +185,55 @@ void check_hands(const Exhibit& exhibit, Fields& fields, const ExhibitProp& prop
     for (const GestureClip& one : library.clips)
       if (can_hold(one)) holding.push_back(one.name);
     if (clip < 0) {
-      fields.problem("gesture", "there is no gesture '" + prop.gesture + "'" +
-                                    did_you_mean(prop.gesture, holding));
+      fields.fail("gesture", "there is no gesture '" + prop.gesture + "'" +
+                                 did_you_mean(prop.gesture, holding));
       return;
     }
     if (!can_hold(library.clips[size_t(clip)])) {
-      fields.problem("gesture", "the gesture '" + prop.gesture +
-                                    "' can hold nothing: its \"hold\" must lie well after its "
-                                    "\"stroke\", and as far before its end");
+      fields.fail("gesture", "the gesture '" + prop.gesture +
+                                 "' can hold nothing: its \"hold\" must lie well after its "
+                                 "\"stroke\", and as far before its end");
       return;
     }
     if (!place.character.joints.empty() &&
         make_rig(place.character).arm[size_t(prop.side)].wrist < 0)
-      fields.problem("hand",
-                     "the figure of '" + place.id + "' has no " + side_names[prop.side] +
-                         " hand: nothing is seen in it",
-                     false);
+      fields.warn("hand", "the figure of '" + place.id + "' has no " + side_names[prop.side] +
+                              " hand: nothing is seen in it");
   }
 }
 
-void read_prop(Exhibit& exhibit, Fields fields, std::vector<Problem>& problems) {
+void read_prop(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& problems) {
   ExhibitProp prop;
-  prop.id = fields.text("id", true);
+  fields.text("id", prop.id, "", Need::required);
   if (find_prop(exhibit, prop.id) >= 0)
-    fields.problem("id", "'" + prop.id + "' is taken by another prop");
-  if (prop.id == "nothing") fields.problem("id", "'nothing' is what a free hand holds");
-  const std::string hand = fields.text("hand", false, "right");
-  if (hand != "left" && hand != "right") fields.problem("hand", "is 'left' or 'right'");
-  prop.side = hand == "left" ? 0 : 1;
-  prop.gesture = fields.text("gesture", false, prop.gesture);
+    fields.fail("id", "'" + prop.id + "' is taken by another prop");
+  if (prop.id == "nothing") fields.fail("id", "'nothing' is what a free hand holds");
+  prop.side = 1;
+  fields.choice("hand", {"left", "right"}, prop.side, "that holds it; right");
+  fields.text("gesture", prop.gesture, "how the arm holds it: one of the gesture library; hold_up");
   prop.flicker = read_flicker(fields);
-  fields.object("grip", false, [&](Fields grip) {
-    const dvec3 place = grip.triple("position", false);
-    const dvec3 turn = grip.triple("turn_deg", false) * turn_degree;
+  fields.part("grip", "how it lies in the fist", [&](FieldReader& grip) {
+    dvec3 place(0), turn(0);
+    grip.vector("position", most_metres, place);
+    grip.vector("turn_deg", most_metres, turn);
+    turn *= turn_degree;
     dmat4 to_fist = glm::rotate(dmat4(1), turn.z, dvec3(0, 0, 1));
     to_fist = glm::rotate(to_fist, turn.y, dvec3(0, 1, 0));
     to_fist = glm::rotate(to_fist, turn.x, dvec3(1, 0, 0));
     prop.to_fist = mat4(glm::translate(to_fist, -place));
-    grip.finish();
   });
-  prop.file = fields.text("file", true);
+  fields.text("file", prop.file, "a small glTF file, with its lights", Need::required);
   read_prop_file(exhibit, fields, prop, problems);
   check_hands(exhibit, fields, prop);
-  fields.finish();
-  if (exhibit.props.size() == most_props)
-    fields.problem("",
-                   fmt::format("is one more than the {} props an exhibit may have", most_props));
-  else exhibit.props.push_back(std::move(prop));
+  exhibit.props.push_back(std::move(prop));
 }
 
 }  // namespace
 
-void read_props(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
-  root.objects("props", false,
-               [&](Fields fields) { read_prop(exhibit, std::move(fields), problems); });
+void read_props(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& problems) {
+  root.parts("props", most_props,
+             "things that storytellers can hold: <hold name=\"id\"/> in a story",
+             [&](FieldReader& fields) { read_prop(exhibit, fields, problems); });
 }
 
 std::vector<vec3> eye_places(const Exhibit& exhibit) {
@@ -324,61 +306,60 @@ struct Clips {
 };
 
 // Notes lights and cameras that it moves as problems: they stay at rest.
-void check_lights(const Exhibit& exhibit, const ExhibitAnimation& animation, Fields& fields) {
+void check_lights(const Exhibit& exhibit, const ExhibitAnimation& animation, FieldReader& fields) {
   const Scene& scene = exhibit.scene;
   const SceneMotion& motion = *scene.motions[size_t(animation.motion)].of;
   const gltf::Clip& clip = motion.clips[size_t(animation.clip)];
   if (std::ranges::none_of(motion.movers,
                            [&](const Mover& one) { return moves(motion, clip, one); }))
-    fields.problem("clip", "the animation '" + clip.name + "' moves nothing that can be seen",
-                   false);
+    fields.warn("clip", "the animation '" + clip.name + "' moves nothing that can be seen");
   for (size_t i = 0; i < motion.movers.size(); i++) {
     const int instance = scene.motions[size_t(animation.motion)].instances[i];
     if (instance < 0 || !moves(motion, clip, motion.movers[i])) continue;
     const Mesh& mesh = scene.meshes[size_t(scene.instances[size_t(instance)].mesh)];
     const Material& material = scene.materials[size_t(mesh.material)];
     if (material.emission == vec3(0)) continue;
-    fields.problem("clip",
-                   "'" + scene.objects[scene.instances[size_t(instance)].object] +
-                       "' shines and moves: it is seen to shine, and lights nothing",
-                   false);
+    fields.warn("clip", "'" + scene.objects[scene.instances[size_t(instance)].object] +
+                            "' shines and moves: it is seen to shine, and lights nothing");
     return;
   }
 }
 
-void read_animation(Exhibit& exhibit, Fields fields) {
+void read_animation(Exhibit& exhibit, FieldReader& fields) {
   ExhibitAnimation animation;
-  animation.id = fields.text("id", true);
+  fields.text("id", animation.id, "", Need::required);
   if (std::ranges::find(exhibit.animations, animation.id, &ExhibitAnimation::id) !=
       exhibit.animations.end())
-    fields.problem("id", "'" + animation.id + "' is taken by another animation");
-  animation.title = fields.local_text("title", false);
-  const std::string start = fields.text("play", false, "loop");
-  if (start != "loop" && start != "touch") fields.problem("play", "is 'loop' or 'touch'");
-  if (start == "touch") animation.start = ExhibitAnimation::Start::touch;
+    fields.fail("id", "'" + animation.id + "' is taken by another animation");
+  animation.title = read_local_text(fields, "title", "");
+  fields.choice("play", {"loop", "touch"}, animation.start,
+                "by itself, or when its object is touched");
   const bool touched = animation.start == ExhibitAnimation::Start::touch;
-  animation.shared = fields.flag("shared", !touched);
+  animation.shared = !touched;
+  fields.boolean("shared", animation.shared, "who starts it does so for everybody");
   if (!animation.shared && !touched)
-    fields.problem("shared", "what plays by itself does so for everybody");
-  const std::string object = fields.text("object", touched);
+    fields.fail("shared", "what plays by itself does so for everybody");
+  std::string object, clip, file;
+  fields.text("object", object, "whose touch starts it: one of objects",
+              touched ? Need::required : Need::optional);
+  fields.text("clip", clip, "its name in the glTF file; its number without", Need::required);
+  fields.text("file", file, "of several, the one it is in");
   if (const PointOfInterest* point = find_point(exhibit, object))
     animation.point = int(point - exhibit.points.data());
-  else if (!object.empty()) fields.problem("object", unknown_object(exhibit, object));
-  const std::string clip = fields.text("clip", true);
+  else if (!object.empty()) fields.fail("object", unknown_object(exhibit, object));
   const bool loaded = !exhibit.scene.objects.empty();
-  const Clips clips{exhibit.scene, fields.text("file", false)};
+  const Clips clips{exhibit.scene, file};
   if (clips.find(clip, animation)) {
     if (animation.seconds > 0) check_lights(exhibit, animation, fields);
-    else fields.problem("clip", "the animation '" + clip + "' takes no time");
+    else fields.fail("clip", "the animation '" + clip + "' takes no time");
   } else if (loaded && !clip.empty()) {
-    fields.problem("clip", clips.unknown(clip));
+    fields.fail("clip", clips.unknown(clip));
   }
-  fields.finish();
   exhibit.animations.push_back(std::move(animation));
 }
 
 // Two of them at one node would pull it to and fro.
-void check_shared_nodes(const Exhibit& exhibit, Fields& root) {
+void check_shared_nodes(const Exhibit& exhibit, FieldReader& root) {
   for (size_t a = 0; a < exhibit.animations.size(); a++)
     for (size_t b = 0; b < a; b++) {
       const ExhibitAnimation &one = exhibit.animations[a], &other = exhibit.animations[b];
@@ -387,10 +368,8 @@ void check_shared_nodes(const Exhibit& exhibit, Fields& root) {
       for (const gltf::Track& track : motion.clips[size_t(one.clip)].tracks)
         for (const gltf::Track& same : motion.clips[size_t(other.clip)].tracks)
           if (track.node == same.node && track.path == same.path) {
-            root.problem(
-                "animations",
-                "'" + other.id + "' and '" + one.id + "' move the same node: the later one is seen",
-                false);
+            root.warn("animations", "'" + other.id + "' and '" + one.id +
+                                        "' move the same node: the later one is seen");
             return;
           }
     }
@@ -398,11 +377,9 @@ void check_shared_nodes(const Exhibit& exhibit, Fields& root) {
 
 }  // namespace
 
-void read_animations(Exhibit& exhibit, Fields& root) {
-  root.objects("animations", false,
-               [&](Fields fields) { read_animation(exhibit, std::move(fields)); });
-  if (exhibit.animations.size() > most_animations)
-    root.problem("animations", fmt::format("are more than {}", most_animations));
+void read_animations(Exhibit& exhibit, FieldReader& root) {
+  root.parts("animations", most_animations, "which of the scene's animations are played",
+             [&](FieldReader& fields) { read_animation(exhibit, fields); });
   check_shared_nodes(exhibit, root);
 }
 

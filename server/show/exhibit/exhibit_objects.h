@@ -10,7 +10,7 @@ namespace wellspring::show {
 
 // Fills exhibit.points. Call when the scene and the stories are there; without a scene no name is
 // missed.
-void read_objects(Exhibit& exhibit, Fields& root);
+void read_objects(Exhibit& exhibit, FieldReader& root);
 
 // The fifteen elements of the Dublin Core (ISO 15836-1), in the order in which they are shown.
 inline constexpr const char* provenance_elements[] = {
@@ -28,7 +28,7 @@ inline constexpr float farthest_prop = 1.5f;
 
 // Fills exhibit.props. Called when the storytellers are there. A thing that is too large, or cannot
 // be read or held, is a problem.
-void read_props(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems);
+void read_props(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& problems);
 
 // Says where visitors' eyes are likely to be.
 
@@ -40,7 +40,7 @@ std::vector<vec3> all_eye_places(const Exhibit& exhibit);
 // Which animations of its scene an exhibit plays, and what they move.
 
 // `animations` of exhibit.json; after its objects.
-void read_animations(Exhibit& exhibit, Fields& root);
+void read_animations(Exhibit& exhibit, FieldReader& root);
 
 // Takes what the exhibit's animations move out of its scene, and forgets all other animations.
 void take_movers(Exhibit& exhibit);

@@ -27,7 +27,7 @@ bool is_story_name(const std::string& text) {
 
 struct StoryReader {
   const Exhibit& exhibit;
-  Fields& fields;
+  FieldReader& fields;
   std::vector<Problem>& problems;
 
   // Adds the lines of a text; `where` is its place in exhibit.json, or its file.
@@ -51,8 +51,7 @@ struct StoryReader {
     const std::string where = exhibit.folder + "/exhibit.json: " + fields.where() + "/" + place;
     if (value.is_array() && !value.empty()) {
       for (size_t i = 0; i < value.size(); i++) {
-        if (!value[i].is_string())
-          fields.problem(place + "/" + std::to_string(i), "must be a text");
+        if (!value[i].is_string()) fields.fail(place + "/" + std::to_string(i), "must be a text");
         else
           add(lines, where + "/" + std::to_string(i),
               [&] { return read_story_line(value[i].get<std::string>(), where); });
@@ -65,8 +64,8 @@ struct StoryReader {
     } else if (value.is_string() && may_be_text) {
       add(lines, where, [&] { return read_story(value.get<std::string>(), where); });
     } else {
-      fields.problem(
-          place, "must be a list of sentences, or the name of a .story, .ssml, .txt or .vtt file");
+      fields.fail(place,
+                  "must be a list of sentences, or the name of a .story, .ssml, .txt or .vtt file");
     }
   }
 };
@@ -140,59 +139,67 @@ struct Checker {
 
 }  // namespace
 
-LocalScript read_script(const Exhibit& exhibit, Fields& fields, const char* name, bool required,
-                        bool may_be_text, std::vector<Problem>& problems) {
+// Returns the JSON Schema of a text that is told.
+static nlohmann::ordered_json script_schema(bool may_be_text) {
+  const nlohmann::ordered_json text = {{"type", "string"}};
+  const nlohmann::ordered_json by_language = FieldReader::map_schema(
+      {{"anyOf", nlohmann::ordered_json::array({text, FieldReader::list_schema(text, 1)})}});
+  if (!may_be_text) return by_language;
+  return {{"anyOf", nlohmann::ordered_json::array({text, by_language})}};
+}
+
+LocalScript read_script(const Exhibit& exhibit, FieldReader& fields, const char* name,
+                        bool may_be_text, std::vector<Problem>& problems, Need need) {
   LocalScript script;
-  const json* value = fields.value(name);
-  if (!value) {
-    if (required) fields.problem(name, "is missing");
-    return script;
-  }
+  const auto field = fields.take(name, script_schema(may_be_text),
+                                 "for each language sentences, or a file of them", need);
+  if (!field) return script;
+  const json& value = field->value();
   StoryReader reader{exhibit, fields, problems};
-  if (value->is_string() && may_be_text) {
-    reader.read(*value, name, may_be_text, script[exhibit.languages.front()]);
+  if (value.is_string() && may_be_text) {
+    reader.read(value, name, may_be_text, script[exhibit.languages.front()]);
     return script;
   }
-  if (!value->is_object()) {
-    fields.problem(name, "must hold a text for each language");
-    return script;
-  }
-  for (const auto& [lang, text] : value->items()) {
+  if (!value.is_object()) return field->fail("must hold a text for each language"), script;
+  for (const auto& [lang, text] : value.items()) {
     std::string place = std::string(name) + "/" + lang;
-    if (!is_language_tag(lang)) fields.problem(place, "is no language tag such as en");
+    if (!is_language_tag(lang)) fields.fail(place, "is no language tag such as en");
     else reader.read(text, place, may_be_text, script[lang]);
   }
   std::erase_if(script, [](const auto& entry) { return entry.second.empty(); });
   return script;
 }
 
-LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name,
+LocalText read_sounds(const Exhibit& exhibit, FieldReader& fields, const char* name,
                       const LocalScript& script) {
   LocalText sounds;
-  fields.object(name, false, [&](Fields files) {
-    for (const std::string& lang : files.names()) {
-      std::string file = files.text(lang.c_str(), true);
+  const auto field = fields.take(name, FieldReader::map_schema({{"type", "string"}}),
+                                 "recordings: for each language a file");
+  if (!field) return sounds;
+  FieldReader::read_object(*field, [&](FieldReader& files) {
+    for (const auto& [lang, value] : files.members()) {
+      std::string file;
+      if (!value.text(file, max_text_bytes, Need::required)) continue;
       std::string path = package_file(files, lang.c_str(), exhibit.folder, file);
-      if (!script.contains(lang)) files.problem(lang, "is a recording without a text");
+      if (!script.contains(lang)) value.fail("is a recording without a text");
       else if (!path.empty()) sounds[lang] = path;
     }
-    files.finish();
   });
   return sounds;
 }
 
-VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& otherwise) {
+VoiceManner read_manner(FieldReader& fields, const char* name, const VoiceManner& otherwise) {
   VoiceManner manner = otherwise;
-  fields.object(name, false, [&](Fields voice) {
-    manner.words_per_minute =
-        int(voice.number("words_per_minute", false, manner.words_per_minute, 80, 450));
-    manner.pitch = int(voice.number("pitch", false, manner.pitch, 0, 100));
-    manner.variant = voice.text("variant", false, manner.variant);
+  fields.part(name, "how the synthesiser speaks for it", [&](FieldReader& voice) {
+    double words = manner.words_per_minute, pitch = manner.pitch;
+    voice.number("words_per_minute", 80, 450, words);
+    voice.number("pitch", 0, 100, pitch);
+    manner.words_per_minute = int(words), manner.pitch = int(pitch);
+    voice.text("variant", manner.variant, "f3, m2, ...");
     bool plain = std::all_of(manner.variant.begin(), manner.variant.end(), [](unsigned char c) {
       return std::isalnum(c) || c == '-' || c == '_';
     });
-    if (!plain || manner.variant.size() > 40) voice.problem("variant", "is no name such as f3");
-    voice.finish();
+    if (!plain || manner.variant.size() > 40) voice.fail("variant", "is no name such as f3");
   });
   return manner;
 }
@@ -213,16 +220,17 @@ void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems) {
     }
 }
 
-void read_questions(Exhibit& exhibit, Fields& root) {
-  root.objects("questions", false, [&](Fields fields) {
-    AnsweredQuestion one;
-    one.question = fields.local_texts("question", true);
-    one.answer = fields.local_text("answer", true);
-    fields.finish();
-    if (!one.question.empty() && !one.answer.empty()) exhibit.questions.push_back(std::move(one));
-  });
-  if (exhibit.questions.size() > most_questions)
-    root.problem("questions", "are more than " + std::to_string(most_questions));
+void read_questions(Exhibit& exhibit, FieldReader& root) {
+  root.parts("questions", most_questions, "what visitors may ask, and what is said to it",
+             [&](FieldReader& fields) {
+               AnsweredQuestion one;
+               one.question =
+                   read_local_texts(fields, "question", SIZE_MAX,
+                                    "ways to ask it; the first is offered", Need::required);
+               one.answer = read_local_text(fields, "answer", "", Need::required);
+               if (!one.question.empty() && !one.answer.empty())
+                 exhibit.questions.push_back(std::move(one));
+             });
 }
 
 namespace {
@@ -231,46 +239,49 @@ constexpr double longest = 3600;  // seconds that a kiosk may be told to wait
 constexpr double smallest_screen = 0.1, largest_screen = 10;  // metres
 
 // Reads the times that are given; the others stay as they are.
-void read_times(KioskTimes& times, Fields fields) {
-  auto read = [&](const char* name, double& seconds) {
-    seconds = fields.number(name, false, seconds, 0, longest);
+void read_times(KioskTimes& times, FieldReader& fields) {
+  auto read = [&](const char* name, double& seconds, const char* about) {
+    fields.number(name, 0, longest, seconds, about);
   };
-  read("hold_person", times.hold_person);
-  read("sleep_after", times.sleep_after);
-  read("leave_after", times.leave_after);
-  read("leave_untouched", times.leave_untouched);
-  read("leave_playing", times.leave_playing);
-  read("farewell", times.farewell);
-  read("sleep_latest", times.sleep_latest);
-  fields.finish();
+  read("hold_person", times.hold_person, "seconds that a head counts as there after it was seen");
+  read("sleep_after", times.sleep_after, "seconds without motion");
+  read("leave_after", times.leave_after, "seconds without a head or a touch of an engaged guest");
+  read("leave_untouched", times.leave_untouched,
+       "seconds without a touch of a guest whom no camera sees");
+  read("leave_playing", times.leave_playing, "likewise while something plays");
+  read("farewell", times.farewell, "its length in seconds");
+  read("sleep_latest", times.sleep_latest, "seconds from its beginning, where nothing moves");
 }
 
 }  // namespace
 
-void read_kiosks(Exhibit& exhibit, Fields& root) {
+void read_kiosks(Exhibit& exhibit, FieldReader& root) {
   std::set<std::string> named;
-  root.objects("kiosks", false, [&](Fields fields) {
-    const std::string name = fields.text("name", true);
-    if (!named.insert(name).second)
-      fields.problem("name", "'" + name + "' is taken by another kiosk");
+  root.parts("kiosks", SIZE_MAX, "", [&](FieldReader& fields) {
+    std::string name;
+    fields.text("name", name, "as its page and its cameras say it", Need::required);
+    if (!named.insert(name).second) fields.fail("name", "'" + name + "' is taken by another kiosk");
     auto is_it = [&](const KioskSettings& one) { return one.name == name; };
     auto kiosk = std::find_if(exhibit.kiosks.begin(), exhibit.kiosks.end(), is_it);
-    if (kiosk == exhibit.kiosks.end()) kiosk = exhibit.kiosks.insert(kiosk, KioskSettings{name});
-    kiosk->viewpoint = fields.text("viewpoint", false, kiosk->viewpoint);
+    if (kiosk == exhibit.kiosks.end())
+      kiosk = exhibit.kiosks.insert(kiosk, KioskSettings{.name = name});
+    fields.text("viewpoint", kiosk->viewpoint, "its window; without it the storyteller's");
     if (!kiosk->viewpoint.empty() && find_viewpoint(exhibit, kiosk->viewpoint) < 0)
-      fields.problem("viewpoint", unknown_viewpoint(exhibit, kiosk->viewpoint));
-    kiosk->teller = fields.text("teller", false, kiosk->teller);
+      fields.fail("viewpoint", unknown_viewpoint(exhibit, kiosk->viewpoint));
+    fields.text("teller", kiosk->teller, "id of the storyteller who comes there");
     if (!kiosk->teller.empty() && find_storyteller(exhibit, kiosk->teller) < 0)
-      fields.problem("teller", unknown_storyteller(exhibit, kiosk->teller));
-    kiosk->volume = float(fields.number("volume", false, double(kiosk->volume), 0, 1));
-    fields.object("screen", false, [&](Fields screen) {
-      kiosk->screen = {float(screen.number("width", true, 0, smallest_screen, largest_screen)),
-                       float(screen.number("height", true, 0, smallest_screen, largest_screen))};
-      screen.finish();
-    });
-    fields.object("times", false,
-                  [&](Fields times) { read_times(kiosk->times, std::move(times)); });
-    fields.finish();
+      fields.fail("teller", unknown_storyteller(exhibit, kiosk->teller));
+    fields.number("volume", 0, 1, kiosk->volume);
+    fields.part("screen", "its lit part: the picture follows the guest's head",
+                [&](FieldReader& screen) {
+                  kiosk->screen = {};
+                  screen.number("width", smallest_screen, largest_screen, kiosk->screen.width,
+                                "metres", Need::required);
+                  screen.number("height", smallest_screen, largest_screen, kiosk->screen.height,
+                                "metres", Need::required);
+                });
+    fields.part("times", "how long it waits",
+                [&](FieldReader& times) { read_times(kiosk->times, times); });
   });
 }
 

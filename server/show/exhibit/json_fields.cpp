@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/exhibit/json_fields.h"
 
-#include <cmath>
-#include <filesystem>
+#include <cctype>
 #include <fmt/core.h>
-#include <sstream>
 
 #include "base/load_error.h"
 #include "base/read_file.h"
 #include "base/unicode.h"
-#include "wire/json.h"
 
 namespace wellspring::show {
 namespace {
@@ -30,42 +27,47 @@ std::string to_string(const Problem& problem) {
 ExhibitError::ExhibitError(std::vector<Problem> problems_)
     : std::runtime_error(join(problems_)), problems(std::move(problems_)) {}
 
-using nlohmann::json;
-
 namespace {
-const json empty_object = json::object();
+
 constexpr size_t max_file_bytes = 8 << 20;
 
 // Names are compared with those of scenes and of files (base/unicode.h).
-void normalise(json& value) {
+void normalise(nlohmann::json& value) {
   if (value.is_string()) value = nfc(value.get_ref<const std::string&>());
   if (value.is_array())
-    for (json& item : value) normalise(item);
+    for (nlohmann::json& item : value) normalise(item);
   if (!value.is_object()) return;
-  json made = json::object();
+  nlohmann::json made = nlohmann::json::object();
   for (auto& [name, item] : value.items()) {
     normalise(item);
     made[nfc(name)] = std::move(item);
   }
   value = std::move(made);
 }
+
 }  // namespace
 
-std::optional<json> read_json_file(const std::string& file, std::vector<Problem>& problems) {
-  auto refuse = [&](std::string what) {
-    problems.push_back({file, "", std::move(what)});
-    return std::nullopt;
-  };
+void read_fields(const nlohmann::json& object, const std::string& file,
+                 std::vector<Problem>& problems, const std::function<void(FieldReader&)>& read) {
+  Faults faults([&](const Fault& fault) {
+    problems.push_back({file, fault.where, fault.what, fault.grave});
+  });
+  FieldReader::read_object({object, faults}, read);
+}
+
+void read_fields(const std::string& file, std::vector<Problem>& problems,
+                 const std::function<void(FieldReader&)>& read) {
+  auto tell = [&](const std::string& what) { problems.push_back({file, "", what}); };
   std::string text;
   try {
     text = read_file(file, max_file_bytes);
   } catch (const LoadError& error) {
-    return refuse(error.what_);
+    return tell(error.what_);
   }
   auto parsed = parse_json(text);
-  if (const WireError* error = std::get_if<WireError>(&parsed)) return refuse(error->message);
-  normalise(std::get<json>(parsed));
-  return std::get<json>(std::move(parsed));
+  if (const JsonError* error = std::get_if<JsonError>(&parsed)) return tell(error->message);
+  normalise(std::get<nlohmann::json>(parsed));
+  read_fields(std::get<nlohmann::json>(parsed), file, problems, read);
 }
 
 bool is_language_tag(const std::string& tag) {
@@ -75,134 +77,80 @@ bool is_language_tag(const std::string& tag) {
   return true;
 }
 
-Fields::Fields(const json& object, std::string file, std::string where,
-               std::vector<Problem>& problems)
-    : object_(object.is_object() ? object : empty_object),
-      file_(std::move(file)),
-      where_(std::move(where)),
-      problems_(problems) {
-  if (!object.is_object()) problems_.push_back({file_, where_, "must be an object"});
+namespace {
+
+const nlohmann::ordered_json& text_schema() {
+  static const nlohmann::ordered_json schema = {
+      {"anyOf", {{{"type", "string"}}, FieldReader::map_schema({{"type", "string"}})}}};
+  return schema;
 }
 
-void Fields::problem(const std::string& name, const std::string& what, bool fatal) {
-  problems_.push_back({file_, name.empty() ? where_ : where_ + "/" + name, what, fatal});
+// Texts for people may have more than one line.
+bool read_plain_text(const JsonValue& value, std::string& to) {
+  if (!value.value().is_string()) return value.fail("must be a text"), false;
+  to = value.value().get<std::string>();
+  if (to.size() <= most_local_text_bytes) return true;
+  value.fail(fmt::format("must be a text of at most {} bytes", most_local_text_bytes));
+  return false;
 }
 
-std::vector<std::string> Fields::names() const {
-  std::vector<std::string> names;
-  if (object_.is_object())
-    for (const auto& [name, value] : object_.items()) names.push_back(name);
-  return names;
-}
-
-bool Fields::has(const char* name) const { return object_.contains(name); }
-
-const json* Fields::get(const char* name, bool required, json::value_t type,
-                        const char* type_name) {
-  read_.insert(name);
-  auto found = object_.find(name);
-  if (found == object_.end()) {
-    if (required) problem(name, "is missing");
-    return nullptr;
-  }
-  bool fits = type == json::value_t::number_float ? found->is_number() : found->type() == type;
-  if (!fits) {
-    problem(name, std::string("must be ") + type_name);
-    return nullptr;
-  }
-  return &*found;
-}
-
-std::string Fields::text(const char* name, bool required, const std::string& otherwise) {
-  const json* value = get(name, required, json::value_t::string, "a text");
-  return value ? value->get<std::string>() : otherwise;
-}
-
-double Fields::number(const char* name, bool required, double otherwise, double low, double high) {
-  const json* value = get(name, required, json::value_t::number_float, "a number");
-  if (!value) return otherwise;
-  double number = value->get<double>();
-  if (!std::isfinite(number) || number < low || number > high) {
-    problem(name, fmt::format("is {} but must be from {} to {}", number, low, high));
-    return otherwise;
-  }
-  return number;
-}
-
-bool Fields::flag(const char* name, bool otherwise) {
-  const json* value = get(name, false, json::value_t::boolean, "true or false");
-  return value ? value->get<bool>() : otherwise;
-}
-
-dvec3 Fields::triple(const char* name, bool required, dvec3 otherwise) {
-  const json* value = get(name, required, json::value_t::array, "three numbers");
-  if (!value) return otherwise;
-  dvec3 result(0);
-  if (value->size() != 3) {
-    problem(name, "must be three numbers");
-    return otherwise;
-  }
-  for (int i = 0; i < 3; i++) {
-    const json& part = (*value)[size_t(i)];
-    if (!part.is_number() || !std::isfinite(part.get<double>()) ||
-        std::abs(part.get<double>()) > 1e9) {
-      problem(std::string(name) + "/" + std::to_string(i), "must be a number below 1e9");
-      return otherwise;
+LocalText read_local_text(const JsonValue& value) {
+  LocalText texts;
+  if (value.value().is_string()) {
+    read_plain_text(value, texts["en"]);
+  } else if (!value.value().is_object()) {
+    value.fail("must be a text, or texts by language");
+  } else {
+    for (const auto& [tag, unused] : value.value().items()) {
+      const JsonValue text = *value.find(tag.c_str());
+      std::string found;
+      if (!is_language_tag(tag)) text.fail("is no language tag such as en");
+      else if (read_plain_text(text, found)) texts[tag] = std::move(found);
     }
-    result[i] = part.get<double>();
   }
-  return result;
+  return texts;
 }
 
-LocalText Fields::read_local_text(const json& value, const std::string& place) {
-  LocalText result;
-  if (value.is_string()) result["en"] = value.get<std::string>();
-  else if (!value.is_object()) problem(place, "must be a text, or texts by language");
-  else
-    for (const auto& [tag, text] : value.items()) {
-      if (!is_language_tag(tag)) problem(place + "/" + tag, "is no language tag such as en");
-      else if (!text.is_string()) problem(place + "/" + tag, "must be a text");
-      else result[tag] = text.get<std::string>();
-    }
-  return result;
+}  // namespace
+
+LocalText read_local_text(FieldReader& fields, const char* name, const char* about, Need need) {
+  const auto field = fields.take(name, text_schema(), about, need);
+  return field ? read_local_text(*field) : LocalText{};
 }
 
-LocalText Fields::local_text(const char* name, bool required) {
-  const json* found = value(name);
-  if (!found && required) problem(name, "is missing");
-  return found ? read_local_text(*found, name) : LocalText{};
+std::vector<LocalText> read_local_texts(FieldReader& fields, const char* name, size_t most,
+                                        const char* about, Need need) {
+  std::vector<LocalText> texts;
+  const auto field =
+      fields.take(name, FieldReader::list_schema(text_schema(), 0, most), about, need);
+  if (field)
+    for (const JsonValue& one : field->list(0, most, "texts"))
+      texts.push_back(read_local_text(one));
+  return texts;
 }
 
-std::vector<LocalText> Fields::local_texts(const char* name, bool required) {
-  std::vector<LocalText> result;
-  if (const json* list = get(name, required, json::value_t::array, "a list of texts"))
-    for (size_t i = 0; i < list->size(); i++)
-      result.push_back(read_local_text((*list)[i], std::string(name) + "/" + std::to_string(i)));
-  return result;
+std::vector<std::string> read_texts(FieldReader& fields, const char* name, const char* about) {
+  std::vector<std::string> texts;
+  const auto field =
+      fields.take(name, FieldReader::list_schema({{"type", "string"}}, 0), about, Need::optional);
+  if (!field) return texts;
+  for (const JsonValue& one : field->list(0, SIZE_MAX, "texts"))
+    if (std::string text; one.text(text)) texts.push_back(std::move(text));
+  return texts;
 }
 
-const json* Fields::value(const char* name) {
-  read_.insert(name);
-  auto found = object_.find(name);
-  return found == object_.end() ? nullptr : &*found;
-}
-
-std::vector<std::string> Fields::texts(const char* name) {
-  std::vector<std::string> result;
-  if (const json* value = get(name, false, json::value_t::array, "a list of texts"))
-    for (size_t i = 0; i < value->size(); i++) {
-      if ((*value)[i].is_string()) result.push_back((*value)[i].get<std::string>());
-      else problem(std::string(name) + "/" + std::to_string(i), "must be a text");
-    }
-  return result;
-}
-
-void Fields::finish() {
-  const std::vector<std::string> known(read_.begin(), read_.end());
-  for (const auto& [name, value] : object_.items())
-    if (!read_.contains(name))
-      problem(name, "is not a field of this object and is ignored" + did_you_mean(name, known),
-              false);
+std::string read_address(FieldReader& fields, const char* name, const char* about, bool plain) {
+  std::string address;
+  if (!fields.text(name, address, about, Need::optional, most_address_bytes)) return "";
+  const size_t begin = address.starts_with("https://")           ? 8
+                       : address.starts_with("http://") && plain ? 7
+                                                                 : 0;
+  if (begin > 0 && address.size() > begin &&
+      address.find_first_of(" \t\n\"<>") == std::string::npos)
+    return address;
+  fields.fail(name, std::string("must be an address that begins with https://") +
+                        (plain ? " or http://" : ""));
+  return "";
 }
 
 }  // namespace wellspring::show

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a curator's JSON: typed access that notes every problem with its JSON pointer and goes
-// on.
+// Reads a curator's JSON: every fault is noted with file and place, not only the first, and reading
+// goes on. Adds the kinds of fields that only a museum's files have.
 #pragma once
+#include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "json/fields.h"
 #include "show/exhibit/exhibit.h"
 
 namespace wellspring::show {
-
-// Faults of an exhibit package are all noted with file and place, not only the first.
 
 struct Problem {
   std::string file, where, what;
@@ -28,65 +26,37 @@ struct ExhibitError : std::runtime_error {
 
 bool is_language_tag(const std::string& tag);
 
-// Nothing, and a fatal problem: it cannot be read, is larger than 8 MiB, or is no JSON.
-std::optional<nlohmann::json> read_json_file(const std::string& file,
-                                             std::vector<Problem>& problems);
+// Calls read(FieldReader&) with an object, which is of `file`; notes each fault as a problem.
+void read_fields(const nlohmann::json& object, const std::string& file,
+                 std::vector<Problem>& problems, const std::function<void(FieldReader&)>& read);
+// The same with the object in a file, its texts in Unicode's form C. A file that cannot be read, is
+// larger than 8 MiB, or is no JSON is a fatal problem.
+void read_fields(const std::string& file, std::vector<Problem>& problems,
+                 const std::function<void(FieldReader&)>& read);
 
-// A JSON object and its place. Reading a missing optional field gives the default; a wrong one
-// gives the default and a fatal problem. finish() notes fields nobody read (a misspelt name) as not
-// fatal.
-class Fields {
- public:
-  Fields(const nlohmann::json& object, std::string file, std::string where,
-         std::vector<Problem>& problems);
+// Bounds a coordinate: metres.
+inline constexpr double most_metres = 1e9;
+// Bounds a text for people, and an address, in bytes.
+inline constexpr size_t most_local_text_bytes = 20'000, most_address_bytes = 300;
 
-  bool has(const char* name) const;
-  std::string text(const char* name, bool required, const std::string& otherwise = "");
-  double number(const char* name, bool required, double otherwise, double low, double high);
-  bool flag(const char* name, bool otherwise);
-  dvec3 triple(const char* name, bool required, dvec3 otherwise = dvec3(0));
-  // A text, or an object of texts by language tag.
-  LocalText local_text(const char* name, bool required);
-  // A list of these.
-  std::vector<LocalText> local_texts(const char* name, bool required);
-  std::vector<std::string> texts(const char* name);
-  // Calls each(Fields) for every object in the array (or, for `members`, of the object: name,
-  // Fields).
-  template <class Each>
-  void objects(const char* name, bool required, const Each& each) {
-    if (const nlohmann::json* array =
-            get(name, required, nlohmann::json::value_t::array, "an array"))
-      for (size_t i = 0; i < array->size(); i++)
-        each(Fields((*array)[i], file_, where_ + "/" + name + "/" + std::to_string(i), problems_));
-  }
-  template <class Each>
-  void members(const char* name, const Each& each) {
-    if (const nlohmann::json* object =
-            get(name, false, nlohmann::json::value_t::object, "an object"))
-      for (const auto& [key, value] : object->items())
-        each(key, Fields(value, file_, where_ + "/" + name + "/" + key, problems_));
-  }
-  template <class Each>
-  void object(const char* name, bool required, const Each& each) {
-    if (const nlohmann::json* found =
-            get(name, required, nlohmann::json::value_t::object, "an object"))
-      each(Fields(*found, file_, where_ + "/" + name, problems_));
-  }
-  std::vector<std::string> names() const;  // names of all fields that are there
-  // The value of a field as it is, noted as read; null: it is not there.
-  const nlohmann::json* value(const char* name);
-  const std::string& where() const { return where_; }
-  void problem(const std::string& name, const std::string& what, bool fatal = true);
-  void finish();
+// Reads a text, or an object of texts by language tag.
+LocalText read_local_text(FieldReader& fields, const char* name, const char* about,
+                          Need need = Need::optional);
+// Reads a list of these.
+std::vector<LocalText> read_local_texts(FieldReader& fields, const char* name, size_t most,
+                                        const char* about, Need need = Need::optional);
+// Reads a list of texts.
+std::vector<std::string> read_texts(FieldReader& fields, const char* name, const char* about);
+// Reads an address that begins with https:// or, where `plain` is true, with http://.
+std::string read_address(FieldReader& fields, const char* name, const char* about, bool plain);
 
- private:
-  const nlohmann::json* get(const char* name, bool required, nlohmann::json::value_t type,
-                            const char* type_name);
-  LocalText read_local_text(const nlohmann::json& value, const std::string& place);
-  const nlohmann::json& object_;
-  std::string file_, where_;
-  std::vector<Problem>& problems_;
-  std::set<std::string> read_;
-};
+// Returns the JSON Schema of a file whose fields are read by read(FieldReader&), draft 2020-12.
+template <class Read>
+nlohmann::ordered_json describe_fields(const char* title, const Read& read) {
+  nlohmann::ordered_json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                                   {"title", title}};
+  schema.update(FieldReader::object_schema(read));
+  return schema;
+}
 
 }  // namespace wellspring::show

@@ -6,7 +6,6 @@
 
 #include "base/log.h"
 #include "show/exhibit/exhibit_story.h"
-#include "show/exhibit/json_fields.h"
 
 namespace wellspring::show {
 
@@ -62,12 +61,10 @@ float kiosk_volume(const HouseSettings& settings, const HouseState& house, float
   return house.quiet ? std::min(volume, settings.quiet_volume) : volume;
 }
 
-using nlohmann::json;
-
 namespace {
 
 // "00:00" to "24:00" to minutes; -1: it is no time.
-int read_time(const json& value) {
+int read_time(const nlohmann::json& value) {
   if (!value.is_string()) return -1;
   const std::string& text = value.get_ref<const std::string&>();
   auto digit = [&](size_t i) { return text[i] >= '0' && text[i] <= '9' ? text[i] - '0' : 100; };
@@ -77,8 +74,9 @@ int read_time(const json& value) {
   return hour * 60 + minute;
 }
 
-// Two times, noted at `place` where they are not.
-std::optional<MinuteSpan> read_span(Fields& fields, const std::string& place, const json& value) {
+// Reads two times.
+std::optional<MinuteSpan> read_span(const JsonValue& field) {
+  const nlohmann::json& value = field.value();
   const bool two = value.is_array() && value.size() == 2;
   const MinuteSpan span{two ? read_time(value[0]) : -1, two ? read_time(value[1]) : -1};
   const char* wrong = nullptr;
@@ -86,32 +84,56 @@ std::optional<MinuteSpan> read_span(Fields& fields, const std::string& place, co
   else if (span.begin == minutes_a_day) wrong = "begins at 24:00; that is 00:00 of the next day";
   else if (span.begin == span.end) wrong = "begins and ends at the same time";
   if (!wrong) return span;
-  fields.problem(place, wrong);
+  field.fail(wrong);
   return std::nullopt;
 }
 
-void read_hours(HouseSettings& house, Fields fields) {
+void read_hours(HouseSettings& house, FieldReader& fields) {
   house.always_open = false;
   auto day = [&](const char* name, std::optional<MinuteSpan>& open) {
-    const json* value = fields.value(name);
-    if (!value) return;
-    const bool closed = value->is_array() && value->empty();
-    open = closed ? std::nullopt : read_span(fields, name, *value);
+    const auto field = fields.take(name, FieldReader::list_schema({{"type", "string"}}, 0, 2),
+                                   "two times such as 09:00 and 17:00, or none: closed");
+    if (!field) return;
+    const bool closed = field->value().is_array() && field->value().empty();
+    open = closed ? std::nullopt : read_span(*field);
   };
   std::optional<MinuteSpan> every;
   day("every", every);
   house.open.fill(every);
   for (size_t i = 0; i < house.open.size(); i++) day(weekday_names[i], house.open[i]);
-  fields.finish();
 }
 
-void read_quiet(HouseSettings& house, Fields& root) {
-  const json* list = root.value("quiet");
+void read_quiet(HouseSettings& house, FieldReader& root) {
+  const nlohmann::ordered_json pair = FieldReader::list_schema({{"type", "string"}}, 2, 2);
+  const auto list = root.take("quiet", FieldReader::list_schema(pair, 0),
+                              "pairs of times between which it is quiet, every day");
   if (!list) return;
-  if (!list->is_array()) return root.problem("quiet", "must be a list of pairs of times");
-  for (size_t i = 0; i < list->size(); i++)
-    if (const auto span = read_span(root, "quiet/" + std::to_string(i), (*list)[i]))
-      house.quiet.push_back(*span);
+  for (const JsonValue& one : list->list(0, SIZE_MAX, "pairs of times"))
+    if (const auto span = read_span(one)) house.quiet.push_back(*span);
+}
+
+void read_reload(HouseSettings& house, FieldReader& root) {
+  const auto field =
+      root.take("reload", {{"type", "string"}}, "the time at which kiosk pages begin anew");
+  if (!field) return;
+  const int minute = read_time(field->value());
+  if (minute >= 0 && minute < minutes_a_day) house.reload = minute;
+  else field->fail("must be a time from \"00:00\" to \"23:59\"");
+}
+
+void read_settings(HouseSettings& house, Exhibit& exhibit, FieldReader& root) {
+  root.part("hours", "when it is open; without them always",
+            [&](FieldReader& hours) { read_hours(house, hours); });
+  read_quiet(house, root);
+  root.number("volume", 0, 1, house.volume, "of all kiosks");
+  root.number("quiet_volume", 0, 1, house.quiet_volume, "at quiet times");
+  root.boolean("headphones", house.headphones, "kiosks have some, for quiet times");
+  read_reload(house, root);
+  house.address = read_address(root, "address", "this server's address for people's phones", true);
+  while (house.address.ends_with('/')) house.address.pop_back();
+  if (house.address.find_first_of("?#") != std::string::npos)
+    root.fail("address", "must be an address without '?' and '#'");
+  read_kiosks(exhibit, root);
 }
 
 }  // namespace
@@ -119,28 +141,17 @@ void read_quiet(HouseSettings& house, Fields& root) {
 HouseSettings read_house(const std::string& file, Exhibit& exhibit,
                          std::vector<Problem>& problems) {
   HouseSettings house;
-  const auto read = read_json_file(file, problems);
-  if (!read) return house;
-  Fields root(*read, file, "", problems);
-  root.object("hours", false, [&](Fields hours) { read_hours(house, std::move(hours)); });
-  read_quiet(house, root);
-  house.volume = float(root.number("volume", false, double(house.volume), 0, 1));
-  house.quiet_volume = float(root.number("quiet_volume", false, double(house.quiet_volume), 0, 1));
-  house.headphones = root.flag("headphones", house.headphones);
-  if (const json* reload = root.value("reload")) {
-    const int minute = read_time(*reload);
-    if (minute >= 0 && minute < minutes_a_day) house.reload = minute;
-    else root.problem("reload", "must be a time from \"00:00\" to \"23:59\"");
-  }
-  house.address = root.text("address", false);
-  while (house.address.ends_with('/')) house.address.pop_back();
-  const bool web = house.address.starts_with("https://") || house.address.starts_with("http://");
-  if (!house.address.empty() && (!web || house.address.size() > 300 ||
-                                 house.address.find_first_of(" \t\n\"<>?#") != std::string::npos))
-    root.problem("address", "must be an address that begins with https:// or http://");
-  read_kiosks(exhibit, root);
-  root.finish();
+  read_fields(file, problems, [&](FieldReader& root) { read_settings(house, exhibit, root); });
   return house;
+}
+
+nlohmann::ordered_json house_schema() {
+  return describe_fields("A house of Wellspring (docs/kiosk.md explains every field)",
+                         [](FieldReader& root) {
+                           HouseSettings house;
+                           Exhibit none;
+                           read_settings(house, none, root);
+                         });
 }
 
 HouseSettings load_house(const std::string& file, Exhibit& exhibit) {

@@ -73,4 +73,7 @@ HouseSettings read_house(const std::string& file, Exhibit& exhibit, std::vector<
 // As above. Throws ExhibitError where a problem is fatal; logs the others.
 HouseSettings load_house(const std::string& file, Exhibit& exhibit);
 
+// Returns the JSON Schema of a house file, out of the same list of fields.
+nlohmann::ordered_json house_schema();
+
 }  // namespace wellspring::show

@@ -67,14 +67,15 @@ HttpReply refuse(int status, const char* code, const std::string& message) {
 
 Announcement read_announcement(const json& body, std::vector<Problem>& problems) {
   Announcement announcement;
-  Fields fields(body, "body", "", problems);
-  announcement.text = fields.local_text("text", true);
-  announcement.seconds = fields.number("seconds", false, 60, 1, longest_announcement);
-  announcement.urgent = fields.flag("urgent", false);
-  fields.finish();
-  for (const auto& [lang, text] : announcement.text)
-    if (text.size() > most_announced_bytes)
-      fields.problem("text", "is longer than 2000 bytes in '" + lang + "'");
+  announcement.seconds = 60;
+  read_fields(body, "body", problems, [&](FieldReader& fields) {
+    announcement.text = read_local_text(fields, "text", "", Need::required);
+    fields.number("seconds", 1, longest_announcement, announcement.seconds);
+    fields.boolean("urgent", announcement.urgent);
+    for (const auto& [lang, text] : announcement.text)
+      if (text.size() > most_announced_bytes)
+        fields.fail("text", "is longer than 2000 bytes in '" + lang + "'");
+  });
   std::erase_if(announcement.text, [](const auto& one) { return one.second.empty(); });
   return announcement;
 }

@@ -222,11 +222,11 @@ TEST(ExhibitBook, ListsHaveAnEnd) {
     return package.of("\"book\": {\"" + std::string(name) + "\": [" + repeated(count, page) + "]}");
   };
   EXPECT_EQ(list("topics", most_topics), Places{});
-  EXPECT_EQ(list("topics", most_topics + 1), Places{"/book/topics/40"});
-  EXPECT_EQ(list("partners", most_partners + 1), Places{"/book/partners/40"});
+  EXPECT_EQ(list("topics", most_topics + 1), Places{"/book/topics"});
+  EXPECT_EQ(list("partners", most_partners + 1), Places{"/book/partners"});
   EXPECT_EQ(package.of_slides(repeated(most_slides, slide)), Places{});
   EXPECT_EQ(package.of_slides(repeated(most_slides + 1, slide)),
-            Places{"/book/presentations/0/slides/60"});
+            Places{"/book/presentations/0/slides"});
   auto paragraph = [](size_t) { return both; };
   EXPECT_EQ(package.of_topic("\"text\": [" + repeated(most_paragraphs + 1, paragraph) + "]"),
             Places{"/book/topics/0/text"});
@@ -236,7 +236,7 @@ TEST(ExhibitBook, ListsHaveAnEnd) {
   };
   EXPECT_EQ(package.of(R"("book": {"presentations": [)" +
                        repeated(most_presentations + 1, presentation) + "]}"),
-            Places{"/book/presentations/20"});
+            Places{"/book/presentations"});
 }
 
 TEST(ExhibitBook, FilesAreOpenedAndDecoded) {
@@ -320,8 +320,7 @@ TEST(ExhibitSounds, AreChecked) {
   EXPECT_EQ(package.of(R"("sounds": [{"id": "a", "kind": "fire"}, {"id": "a", "kind": "wind"}])"),
             Places{"/sounds/1/id"});
   auto one = [](size_t i) { return R"({"kind": "room", "id": "s)" + std::to_string(i) + "\"}"; };
-  EXPECT_EQ(package.of("\"sounds\": [" + repeated(most_sounds + 1, one) + "]"),
-            Places{"/sounds/16"});
+  EXPECT_EQ(package.of("\"sounds\": [" + repeated(most_sounds + 1, one) + "]"), Places{"/sounds"});
 }
 
 TEST(MediaType, IsKnownByTheFirstBytes) {

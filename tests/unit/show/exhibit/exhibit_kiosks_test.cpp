@@ -12,10 +12,8 @@ namespace {
 
 std::vector<Problem> read(Exhibit& exhibit, const std::string& text) {
   std::vector<Problem> problems;
-  const nlohmann::json json = nlohmann::json::parse(text);
-  Fields root(json, "exhibit.json", "", problems);
-  read_kiosks(exhibit, root);
-  root.finish();
+  read_fields(nlohmann::json::parse(text), "exhibit.json", problems,
+              [&](FieldReader& root) { read_kiosks(exhibit, root); });
   return problems;
 }
 

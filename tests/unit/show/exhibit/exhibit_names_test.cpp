@@ -162,7 +162,7 @@ TEST(ExhibitFiles, MistakesHaveAPlace) {
   package.manifest["scenes"] = {{{"file", "none.gltf"}, {"scale", 0}, {"at", 1}}};
   package.read();
   EXPECT_EQ(package.says("/scenes/0/file", "no file"), 1) << package.told();
-  EXPECT_EQ(package.says("/scenes/0/scale", "must be from"), 1) << package.told();
+  EXPECT_EQ(package.says("/scenes/0/scale", "must be a number from"), 1) << package.told();
   EXPECT_EQ(package.says("/scenes/0/at", "ignored"), 1) << package.told();
   package.manifest["scenes"] = nlohmann::json::array();
   package.read();
@@ -175,7 +175,7 @@ TEST(ExhibitFiles, ViewpointsMayLean) {
   EXPECT_NEAR(package.read().viewpoints[0].view.roll, -pi / 6, 1e-6f);
   package.manifest["viewpoints"][0]["roll_deg"] = 181;
   package.read();
-  EXPECT_EQ(package.says("/viewpoints/0/roll_deg", "must be from"), 1) << package.told();
+  EXPECT_EQ(package.says("/viewpoints/0/roll_deg", "must be a number from"), 1) << package.told();
 }
 
 TEST(ExhibitFiles, ScaleIsOfTheWholeScene) {

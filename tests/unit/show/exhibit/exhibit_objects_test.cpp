@@ -10,10 +10,8 @@ namespace {
 
 std::vector<Problem> read_objects(Exhibit& exhibit, const std::string& text) {
   std::vector<Problem> problems;
-  const nlohmann::json json = nlohmann::json::parse(text);
-  Fields root(json, "exhibit.json", "", problems);
-  read_objects(exhibit, root);
-  root.finish();
+  read_fields(nlohmann::json::parse(text), "exhibit.json", problems,
+              [&](FieldReader& root) { read_objects(exhibit, root); });
   return problems;
 }
 

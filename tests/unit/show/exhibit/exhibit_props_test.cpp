@@ -61,7 +61,7 @@ TEST_F(PropsTest, WhatIsWrongIsNamedWithItsPlace) {
   prop()["grib"] = 1;
   prop()["file"] = "missing.glb";
   package.read();
-  EXPECT_EQ(package.says("/props/0/hand", "is 'left' or 'right'"), 1) << package.told();
+  EXPECT_EQ(package.says("/props/0/hand", "one of left, right"), 1) << package.told();
   EXPECT_EQ(package.says("/props/0/flicker/depth", "1"), 1) << package.told();
   EXPECT_EQ(package.says("/props/0/file", "missing.glb"), 1) << package.told();
   EXPECT_NE(package.told().find("grib"), std::string::npos);
