@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "stream/asio.h"
 #include "stream/core.h"
+#include "stream/frame_counter.h"
 #include "stream/transport.h"
 #include "wire/http.h"
 #include "wire/link.h"

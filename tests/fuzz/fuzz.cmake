@@ -9,8 +9,8 @@ if(WELLSPRING_FUZZ)
   # What is left out are coroutines, which Clang 14 cannot make of GCC's library.
   set_source_files_properties(kiosk/process/link.cpp PROPERTIES HEADER_FILE_ONLY ON)
   add_library(fuzz_requests STATIC EXCLUDE_FROM_ALL
-    server/stream/address.cpp server/stream/target.cpp server/stream/reply.cpp server/stream/reply.cpp
-    server/stream/target.cpp server/stream/transport.cpp)
+    server/stream/address.cpp server/stream/certificate.cpp server/stream/reply.cpp
+    server/stream/target.cpp)
   target_link_libraries(fuzz_requests PUBLIC wire boost_tls)
   set(requests fuzz_requests)
 endif()
@@ -86,7 +86,7 @@ if(NOT WELLSPRING_FUZZ)
   foreach(name ${fuzz_names})
     string(APPEND declared "void fuzz_${name}(Bytes bytes);\n")
     string(APPEND rows "    {\"${name}\", fuzz_${name}},\n")
-    list(APPEND fuzz_sources tests/fuzz/fuzz_${name}.cpp)
+    list(APPEND fuzz_sources ${PROJECT_SOURCE_DIR}/tests/fuzz/fuzz_${name}.cpp)
   endforeach()
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/embedded/fuzz/targets.h @ONLY CONTENT
 "// Made by tests/fuzz/fuzz.cmake.
@@ -110,11 +110,12 @@ inline constexpr Target targets[] = {
   target_link_libraries(fuzz_make_seeds PRIVATE avatar light frame ledger show GTest::gtest)
   target_include_directories(fuzz_make_seeds PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   set_target_properties(fuzz_make_seeds PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
-  add_executable(fuzz_replay ${fuzz_sources} tests/fuzz/replay_test.cpp)
+  add_executable(fuzz_replay ${fuzz_sources} ${PROJECT_SOURCE_DIR}/tests/fuzz/replay_test.cpp)
   target_link_libraries(fuzz_replay PRIVATE ${fuzz_layers} GTest::gtest_main)
   target_include_directories(fuzz_replay PRIVATE ${PROJECT_SOURCE_DIR}/tests ${CMAKE_BINARY_DIR}/embedded)
   target_compile_options(fuzz_replay PRIVATE ${WELLSPRING_LITTLE})
   wellspring_precompile(fuzz_replay test)
+  wellspring_together(fuzz_replay tests/fuzz)
   target_compile_definitions(fuzz_replay PRIVATE WELLSPRING_SOURCE="${PROJECT_SOURCE_DIR}")
   set_target_properties(fuzz_replay PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   add_test(NAME unit.fuzz_replay COMMAND fuzz_replay --gtest_brief=1)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Certificates and their keys.
 #include "fuzz/fuzz.h"
-#include "stream/transport.h"
+#include "stream/certificate.h"
 
 namespace wellspring::fuzz {
 

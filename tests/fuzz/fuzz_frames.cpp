@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of WebSockets.
 #include "fuzz/fuzz.h"
-#include "stream/core.h"
+#include "stream/frame_counter.h"
 
 namespace wellspring::fuzz {
 

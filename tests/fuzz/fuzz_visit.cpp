@@ -14,7 +14,7 @@ void fuzz_visit(Bytes bytes) {
   stage.join(16, 16, "de");
   stage.join(16, 16, "en", "kiosk");
   stage.connect();
-  stage.browsers.push_back({std::make_shared<Link>(9, LinkKind::eye, "test")});
+  stage.browsers.emplace_back().link = std::make_shared<Link>(9, LinkKind::eye, "test");
   stage.browsers.back().link->local = true;
   stage.arrivals.put(stage.browsers.back().link);
   stage.steps(2);

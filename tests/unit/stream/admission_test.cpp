@@ -5,7 +5,7 @@
 #include "base/layers.h"
 #include "stream/address.h"
 #include "stream/admission.h"
-#include "stream/core.h"
+#include "stream/frame_counter.h"
 #include "unit/stream/raw_client.h"
 
 namespace wellspring::test {
