@@ -30,7 +30,7 @@ struct Target {
 };
 constexpr Target targets[] = {{"crown", "crown"}, {"figure", "horse"}};
 
-struct Scenery {
+struct SteeredScenery {
   const World& world;
   const Lights& lights;
   const VisibilityPass& visibility;
@@ -61,7 +61,7 @@ struct Analysis {
   std::vector<float> attention, weights;
   Image8 picture;
 
-  void run(const Frame& shown, const Scenery& at, float task_weight) {
+  void run(const Frame& shown, const SteeredScenery& at, float task_weight) {
     tonemap(shown, {}, picture);
     const size_t middle = at.pixels[at.pixels.size() / 2], width = size_t(at.view.width);
     const AttentionHint pointer{vec2(float(middle % width) + 0.5f, float(middle / width) + 0.5f),
@@ -96,7 +96,8 @@ struct Answers {
 constexpr Answers answers[] = {{"gather", 4, 2}, {"path", 12, 4}};
 
 // `task_weight` below 0: without attention.
-Curve run(const Scenery& at, const Answers& by, float task_weight, uint64_t seed, double most) {
+Curve run(const SteeredScenery& at, const Answers& by, float task_weight, uint64_t seed,
+          double most) {
   RenderCache cache;
   Compositor compositor;
   Analysis analysis;
@@ -143,7 +144,7 @@ Curve run(const Scenery& at, const Answers& by, float task_weight, uint64_t seed
 }
 
 // The mean of runs of the same pictures.
-Curve run_all(const Scenery& at, const Answers& by, float task_weight, bool quick) {
+Curve run_all(const SteeredScenery& at, const Answers& by, float task_weight, bool quick) {
   const int seeds = quick ? 1 : 3;
   const double most = quick ? 0.5 * by.most : by.most;
   Curve mean;
@@ -166,7 +167,7 @@ double samples_to(const Curve& curve, const std::vector<double>& error, double w
   return std::nan("");
 }
 
-void compare(BenchReport& report, const Target& target, const Scenery& at, const Answers& by,
+void compare(BenchReport& report, const Target& target, const SteeredScenery& at, const Answers& by,
              bool quick) {
   const Curve even = run_all(at, by, -1, quick);
   double wanted = std::max(double(seen_well), even.thing.back());
@@ -216,7 +217,8 @@ void bench_attention_steer(BenchReport& report, const BenchOptions& options) {
     truths.folder = truths_folder(options);
     truths.max_depth = scene.max_depth;
     const Truth truth = find_truth(world, lights, view, truths);
-    Scenery at{world, lights, visibility, view, truth, scene.max_depth, thing->objects.front(), {}};
+    SteeredScenery at{
+        world, lights, visibility, view, truth, scene.max_depth, thing->objects.front(), {}};
     at.pixels = find_pixels(visibility, view, thing->objects.front());
     if (at.pixels.empty()) continue;
     for (const Answers& by : answers) compare(report, target, at, by, options.quick);

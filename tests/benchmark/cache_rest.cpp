@@ -24,7 +24,7 @@
 namespace wellspring::test {
 namespace {
 
-constexpr double rate = 60;  // the simulated clock's pictures
+constexpr double clock_rate = 60;  // the simulated clock's pictures
 constexpr double full_width = 1280, full_pixels = 1280.0 * 720.0;
 constexpr double judged_at[] = {0.5, 1, 2, 5, 20};
 constexpr float moving_clamp = 4, still_clamp = 12;  // as ShowSettings
@@ -104,15 +104,15 @@ void stand(BenchReport& report, const BenchOptions& options, const Stand& at,
   bool settled = false;
   for (double seconds : judged_at) {
     if (options.quick && seconds > 2) break;
-    for (; frame < int(std::lround(seconds * rate)); frame++) {
-      settled = wants_reference(frame / rate, settled, float(shown.stats.filled + shown.empty),
-                                shown.stats.converged);
+    for (; frame < int(std::lround(seconds * clock_rate)); frame++) {
+      settled = wants_reference(frame / clock_rate, settled,
+                                float(shown.stats.filled + shown.empty), shown.stats.converged);
       moment.technique = find_technique(settled ? "path" : "gather");
       moment.transport.clamp = settled ? still_clamp : moving_clamp;
       moment.frame = frame;
       moment.changed = frame == 0;
       moment.seed = mix64(uint64_t(frame + 1) * 0x9e3779b9u);
-      owed += samples_a_second / rate * pixels / full_pixels;
+      owed += samples_a_second / clock_rate * pixels / full_pixels;
       int budget = int(owed);
       owed -= budget;
       spent += budget;

@@ -19,20 +19,20 @@ namespace wellspring::test {
 namespace {
 
 constexpr int pixels_a_sample = 400;
-constexpr int judged_after[] = {5, 14, 40, 100, 300};  // pictures
+constexpr int starved_judged_after[] = {5, 14, 40, 100, 300};  // pictures
 
-struct Place {
+struct StarvedPlace {
   std::string scene, name;
   Viewpoint camera;
 };
 
 void starve(BenchReport& report, const BenchOptions& options, const VisitMoment& begun,
-            const Truth& truth, const Place& place, const char* name) {
+            const Truth& truth, const StarvedPlace& place, const char* name) {
   std::unique_ptr<VisitMethod> method = make_visit_method(name);
   VisitMoment moment = begun;
   VisitPicture shown;
   int pixels = moment.view.width * moment.view.height, budget = pixels / pixels_a_sample;
-  for (int pictures : judged_after) {
+  for (int pictures : starved_judged_after) {
     if (options.quick && pictures > 100) break;
     for (; moment.frame < pictures; moment.frame++) {
       moment.changed = moment.frame == 0;
@@ -60,10 +60,10 @@ void light_by_point(Scene& box) {
   box.lights.push_back(lamp);
 }
 
-std::vector<Place> places_of(const BenchOptions& options, const std::string& name,
-                             const Viewpoint& camera) {
+std::vector<StarvedPlace> places_of(const BenchOptions& options, const std::string& name,
+                                    const Viewpoint& camera) {
   if (name != "castle") return {{name, name, camera}};
-  std::vector<Place> places;
+  std::vector<StarvedPlace> places;
   Exhibit castle = load_exhibit((std::filesystem::path(options.content) / "castle").string());
   for (const ExhibitViewpoint& one : castle.viewpoints)
     places.push_back({name, one.view.name, one.view});
@@ -84,7 +84,7 @@ void bench_cache_starve(BenchReport& report, const BenchOptions& options) {
   for (auto [from, one_point] : scenes) {
     BenchScene scene = load_bench_scene(options, from);
     if (one_point) light_by_point(scene.scene);
-    std::vector<Place> places =
+    std::vector<StarvedPlace> places =
         places_of(options, from + std::string(one_point ? "_point" : ""), scene.camera);
     World world(scene.scene);
     world.commit();
@@ -96,12 +96,12 @@ void bench_cache_starve(BenchReport& report, const BenchOptions& options) {
     moment.transport.max_depth = truths.max_depth = scene.max_depth;
     moment.transport.clamp = 4;  // as ShowSettings::moving_clamp
     std::vector<vec3> eyes;
-    for (const Place& place : places) {
+    for (const StarvedPlace& place : places) {
       scene.camera = place.camera;
       eyes.push_back(bench_view(scene, width, height).position);
     }
     find_technique("gather")->prepare(world, eyes, lights);
-    for (const Place& place : places) {
+    for (const StarvedPlace& place : places) {
       scene.camera = place.camera;
       moment.view = bench_view(scene, width, height);
       Truth truth = find_truth(world, lights, moment.view, truths);

@@ -19,8 +19,9 @@
 namespace wellspring::test {
 namespace {
 
-constexpr double rate = 60, turn_speed = 1.5, ease = 0.07;  // as the page's keys (web/controls.js)
-constexpr int width = 320, height = 180;                    // margins are shares of them
+constexpr double turn_rate = 60, turn_speed = 1.5,
+                 key_ease = 0.07;         // as the page's keys (web/controls.js)
+constexpr int width = 320, height = 180;  // margins are shares of them
 
 View facing(double yaw) {
   View view;
@@ -38,14 +39,14 @@ std::vector<double> turn_by_keys(double seconds, uint64_t seed) {
   auto span = [&] { return 0.1 * std::exp2(4.3 * double(rng.next()) * 0x1p-32); };
   std::vector<double> yaws;
   double yaw = 0, turning = 0, key = 0, until = span();
-  for (int i = 0; i < int(seconds * rate); i++) {
-    if (i / rate >= until) {
+  for (int i = 0; i < int(seconds * turn_rate); i++) {
+    if (i / turn_rate >= until) {
       until += span();
       key = key != 0 ? 0 : rng.next() & 1 ? 1 : -1;
     }
-    turning += (key - turning) * (1 - std::exp(-1 / (rate * ease)));
+    turning += (key - turning) * (1 - std::exp(-1 / (turn_rate * key_ease)));
     if (std::abs(turning) < 0.01) turning = 0;
-    yaws.push_back(yaw += turning * turn_speed / rate);
+    yaws.push_back(yaw += turning * turn_speed / turn_rate);
   }
   return yaws;
 }
@@ -65,7 +66,7 @@ std::vector<double> unknown_shares(const std::vector<double>& yaws, double drawi
   Image8 blank, out;
   double finished = -1;
   for (size_t i = 0; i < yaws.size(); i++) {
-    double time = double(i) / rate;
+    double time = double(i) / turn_rate;
     View view = facing(yaws[i]);
     note_view(heading, time, view);
     if (time + 1e-9 >= finished) {
@@ -118,7 +119,7 @@ TurnErrors judge_turns(const VisitStage& stage, const VisibilityPass& visibility
   int keyframes = 0, surroundings_drawn = 0;
   std::optional<View> wide;
   for (size_t i = 0; i < yaws.size(); i++) {
-    double time = double(i) / rate;
+    double time = double(i) / turn_rate;
     View view = make_view(stage.exhibit().scene, at.position, at.yaw + float(yaws[i]), at.pitch,
                           at.fov, hall_width, hall_height);
     note_view(heading, time, view);

@@ -15,7 +15,7 @@ constexpr float least = 0.2f;  // weaker is no emotion (avatar/face/face.h)
 const std::string neutral = "neutral";
 
 // The neutral face for as long as the eye learns it, then each expression and back.
-std::vector<VisitorSequence> make_sequences(bool quick) {
+std::vector<VisitorSequence> make_expression_sequences(bool quick) {
   std::vector<VisitorSequence> all;
   const std::vector<float> strengths =
       quick ? std::vector{0.6f, 1.f} : std::vector{0.2f, 0.4f, 0.6f, 0.8f, 1.f};
@@ -55,7 +55,7 @@ std::string read_expression(const VisitorSeen& seen) {
 
 void bench_kiosk_expression(BenchReport& report, const BenchOptions& options) {
   VisitorStage stage = make_kiosk_stage(options);
-  const auto sequences = make_sequences(options.quick);
+  const auto sequences = make_expression_sequences(options.quick);
   VisitorWatch watch = kiosk_watch(options, "expression");
   watch.expression = true, watch.rate = 15;
   const auto seen = watch_visitors(stage, sequences, watch);

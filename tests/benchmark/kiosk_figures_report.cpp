@@ -29,7 +29,7 @@ VisitorSequence take_poses(int figure, float metres, VisitorLight light,
   return sequence;
 }
 
-std::vector<VisitorSequence> make_sequences(bool quick) {
+std::vector<VisitorSequence> make_figure_sequences(bool quick) {
   std::vector<VisitorSequence> all;
   auto row = [](vec3 from, vec3 to, int steps) {
     std::vector<vec3> poses;
@@ -83,7 +83,7 @@ constexpr const char* axes[] = {"yaw", "pitch", "roll"};
 
 void bench_kiosk_figures(BenchReport& report, const BenchOptions& options) {
   VisitorStage stage = make_kiosk_stage(options);
-  const auto sequences = make_sequences(options.quick);
+  const auto sequences = make_figure_sequences(options.quick);
   const auto seen = watch_visitors(stage, sequences, kiosk_watch(options, "figures"));
   std::map<std::string, std::map<int, Errors>> by_range;  // errors by figure, and of all figures
   std::map<int, Errors> by_yaw;

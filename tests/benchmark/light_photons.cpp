@@ -24,7 +24,7 @@ double cpu_now() {
 }
 
 constexpr int cores = 4;
-constexpr int sets = 9, wanted = 100'000, width = 640, height = 480;
+constexpr int sets = 9, wanted = 100'000, photons_width = 640, photons_height = 480;
 
 }  // namespace
 
@@ -33,12 +33,12 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
   World world(bench.scene);
   Lights lights = make_lights(world);
   Transport transport{world, *lights.tables};
-  View view = bench_view(bench, width, height);
+  View view = bench_view(bench, photons_width, photons_height);
 
   // The radius that the technique chooses for the scene.
   TransportSettings few;
   few.instant.photons = 1000;
-  InstantPass pass = draw_instant_pass(transport, few, width, 1, 0);
+  InstantPass pass = draw_instant_pass(transport, few, photons_width, 1, 0);
   float radius = pass.photons.empty() ? 0.01f : pass.photons[0].radius;
 
   double began = seconds_now();
@@ -67,11 +67,11 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
     lit = 0;
     std::atomic<int64_t> nanoseconds = 0;
     constexpr int tile = 24;
-    parallel_for((width / tile + 1) * (height / tile), [&](int t) {
-      int left = t % (width / tile + 1) * tile, top = t / (width / tile + 1) * tile;
+    parallel_for((photons_width / tile + 1) * (photons_height / tile), [&](int t) {
+      int left = t % (photons_width / tile + 1) * tile, top = t / (photons_width / tile + 1) * tile;
       std::vector<FirstSurface> seen[sets];
       for (int y = top; y < top + tile; y++)
-        for (int x = left; x < std::min(left + tile, width); x++) {
+        for (int x = left; x < std::min(left + tile, photons_width); x++) {
           Request request = pixel_request(view, 1, x, y, 0);
           Sampler sampler(request.seed);
           Sample sample;
@@ -99,8 +99,8 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
   report.add("light.caustics.photons_ms", cpu_ms / cores, "ms",
              {{"scene", bench.name},
               {"photons", kept},
-              {"width", width},
-              {"height", height},
+              {"width", photons_width},
+              {"height", photons_height},
               {"pixels_lit", lit.load()},
               {"radius", radius},
               {"store_cpu_ms", quantile(store, 0.5)},

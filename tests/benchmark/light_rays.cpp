@@ -20,7 +20,7 @@
 namespace wellspring::test {
 namespace {
 
-constexpr int width = 1280, height = 720;
+constexpr int rays_width = 1280, rays_height = 720;
 constexpr int their_path_length = 8;  // its default: the first vertex and its shadow ray count 1
 
 // The other program's scene: what a Wavefront file of polygons and diffuse colours says.
@@ -135,8 +135,8 @@ Yardstick load_yardstick(const std::filesystem::path& settings) {
   if (!lit || triangle_count(box.scene) == 0)
     throw std::runtime_error(settings.string() + ": not the Cornell box this benchmark knows");
   box.scene.lights.push_back(light);
-  box.view =
-      make_view_towards(box.scene, eye, target, vec3(up), glm::radians(float(fov)), width, height);
+  box.view = make_view_towards(box.scene, eye, target, vec3(up), glm::radians(float(fov)),
+                               rays_width, rays_height);
   return box;
 }
 
@@ -156,9 +156,9 @@ OtherRun run_other(const std::filesystem::path& settings, int frames) {
   constexpr int before = 2;  // frames that it draws and does not count
   std::string command = "cd '" + settings.parent_path().string() +
                         "' && timeout 300 pathtracer -c " + settings.filename().string() +
-                        " --size " + std::to_string(width) + " " + std::to_string(height) +
-                        " --benchmark " + std::to_string(before) + " " + std::to_string(frames) +
-                        " 2>/dev/null </dev/null";
+                        " --size " + std::to_string(rays_width) + " " +
+                        std::to_string(rays_height) + " --benchmark " + std::to_string(before) +
+                        " " + std::to_string(frames) + " 2>/dev/null </dev/null";
   double began = processor_seconds(RUSAGE_CHILDREN);
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return {};
@@ -236,7 +236,7 @@ void bench_light_rays(BenchReport& report, const BenchOptions& options) {
     ratios.push_back(own / other.rays_per_second);
     processor_ratios.push_back(other.processor_seconds_per_ray / own_processor);
   }
-  double samples = double(width) * height * settings.spp;
+  double samples = double(rays_width) * rays_height * settings.spp;
   nlohmann::json fields = {
       {"scene", "embree cornell_box"}, {"technique", "path"}, {"rays_per_sample", rays / samples}};
   report.add("light.path.rays_per_second", quantile(ours, 0.5), "1/s", fields);

@@ -12,12 +12,12 @@
 namespace wellspring::test {
 namespace {
 
-constexpr int width = 640, height = 360;
+constexpr int crowd_width = 640, crowd_height = 360;
 
 void measure(BenchReport& report, const BenchOptions& options, int visitors) {
   ServerProcess server(options, "castle");
-  const std::vector<Stroll> seen =
-      stroll_together({server.port, width, height, 3, options.quick ? 6.0 : 20.0}, visitors);
+  const std::vector<Stroll> seen = stroll_together(
+      {server.port, crowd_width, crowd_height, 3, options.quick ? 6.0 : 20.0}, visitors);
   std::vector<double> rates, latencies, gaps;
   for (const Stroll& one : seen) {
     rates.push_back(one.fps());

@@ -10,7 +10,7 @@
 namespace wellspring::test {
 namespace {
 
-constexpr double width = 920, height = 540;
+constexpr double plot_width = 920, plot_height = 540;
 constexpr double left = 84, right = 250, top = 72, bottom = 64;
 
 // Okabe and Ito 2008: told apart by every kind of colour vision, on white.
@@ -102,11 +102,12 @@ std::string draw_axis(const Axis& axis, bool vertical) {
       if (value < axis.low * 0.9999 || value > axis.high * 1.0001) continue;
       double at = axis.at(value);
       const char* style = digit == 1 ? "stroke=\"#c8c8c8\"" : "stroke=\"#ececec\"";
-      out += vertical ? line(left, at, width - right, at, style)
-                      : line(at, top, at, height - bottom, style);
+      out += vertical ? line(left, at, plot_width - right, at, style)
+                      : line(at, top, at, plot_height - bottom, style);
       if (digit != 1 && (sparse || (digit != 2 && digit != 5))) continue;
-      out += vertical ? text(left - 8, at + 4, tick_label(value), "text-anchor=\"end\"")
-                      : text(at, height - bottom + 18, tick_label(value), "text-anchor=\"middle\"");
+      out += vertical
+                 ? text(left - 8, at + 4, tick_label(value), "text-anchor=\"end\"")
+                 : text(at, plot_height - bottom + 18, tick_label(value), "text-anchor=\"middle\"");
     }
   return out;
 }
@@ -141,7 +142,7 @@ void spread(std::vector<Label>& labels) {
     label.y = std::max(label.wanted, highest);
     highest = label.y + apart;
   }
-  double lowest = height - bottom;
+  double lowest = plot_height - bottom;
   for (size_t i = labels.size(); i-- > 0;) {
     labels[i].y = std::min(labels[i].y, lowest);
     lowest = labels[i].y - apart;
@@ -151,11 +152,11 @@ void spread(std::vector<Label>& labels) {
 }  // namespace
 
 std::string make_svg(const Plot& plot) {
-  Axis x = make_axis(plot, false, left, width - right);
-  Axis y = make_axis(plot, true, height - bottom, top);
+  Axis x = make_axis(plot, false, left, plot_width - right);
+  Axis y = make_axis(plot, true, plot_height - bottom, top);
   std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " +
-                    number(width, "%.0f") + " " + number(height, "%.0f") + "\" width=\"" +
-                    number(width, "%.0f") + "\" height=\"" + number(height, "%.0f") +
+                    number(plot_width, "%.0f") + " " + number(plot_height, "%.0f") + "\" width=\"" +
+                    number(plot_width, "%.0f") + "\" height=\"" + number(plot_height, "%.0f") +
                     "\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" "
                     "font-size=\"12\" fill=\"#222\">\n"
                     "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
@@ -163,15 +164,15 @@ std::string make_svg(const Plot& plot) {
   out += text(left, 52, escaped(plot.subtitle), "fill=\"#555\"");
   out += draw_axis(x, false) + draw_axis(y, true);
   out += "<rect x=\"" + number(left) + "\" y=\"" + number(top) + "\" width=\"" +
-         number(width - left - right) + "\" height=\"" + number(height - top - bottom) +
+         number(plot_width - left - right) + "\" height=\"" + number(plot_height - top - bottom) +
          "\" fill=\"none\" stroke=\"#888\"/>\n";
-  out += text((left + width - right) / 2, height - 18, escaped(plot.x_label),
+  out += text((left + plot_width - right) / 2, plot_height - 18, escaped(plot.x_label),
               "text-anchor=\"middle\" font-size=\"13\"");
   out += text(0, 0, escaped(plot.y_label),
               "text-anchor=\"middle\" font-size=\"13\" transform=\"translate(22," +
-                  number((top + height - bottom) / 2) + ") rotate(-90)\"");
+                  number((top + plot_height - bottom) / 2) + ") rotate(-90)\"");
   if (plot.level > 0) {
-    out += line(left, y.at(plot.level), width - right, y.at(plot.level),
+    out += line(left, y.at(plot.level), plot_width - right, y.at(plot.level),
                 "stroke=\"#555\" stroke-dasharray=\"6 4\"");
     out += text(left + 8, y.at(plot.level) - 6, escaped(plot.level_name), "fill=\"#555\"");
   }
@@ -194,8 +195,8 @@ std::string make_svg(const Plot& plot) {
   spread(labels);
   for (const Label& label : labels) {
     const char* color = colors[label.curve % std::size(colors)];
-    out += mark(int(label.curve), width - right + 16, label.y, color);
-    out += text(width - right + 28, label.y + 4, escaped(plot.curves[label.curve].name),
+    out += mark(int(label.curve), plot_width - right + 16, label.y, color);
+    out += text(plot_width - right + 28, label.y + 4, escaped(plot.curves[label.curve].name),
                 std::string("fill=\"") + color + "\" font-weight=\"bold\"");
   }
   return out + "</svg>\n";

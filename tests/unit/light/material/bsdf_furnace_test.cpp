@@ -16,7 +16,7 @@ constexpr float angles[] = {0, 30, 60, 80, 88};
 constexpr double allowed = 0.005;
 
 // Directional albedo; its error bar comes from independent replicates of well spread samples.
-Mean albedo_of(const Bsdf& bsdf, uint64_t seed) {
+Mean furnace_albedo(const Bsdf& bsdf, uint64_t seed) {
   constexpr int replicates = 12, count = 1024;
   Mean mean;
   for (int r = 0; r < replicates; r++) {
@@ -42,7 +42,7 @@ void measure(std::vector<Place>& places) {
   parallel_for(int(places.size()), [&](int i) {
     Place& p = places[size_t(i)];
     Bsdf bsdf = bsdf_of(p.material.material, p.angle, p.material.front);
-    p.albedo = albedo_of(bsdf, uint64_t(i));
+    p.albedo = furnace_albedo(bsdf, uint64_t(i));
   });
 }
 

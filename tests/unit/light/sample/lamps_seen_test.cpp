@@ -45,7 +45,7 @@ struct Place {
 SurfacePlace on_floor(float x, float z) { return SurfacePlace{.position = {x, 0, z}, .extent = 4}; }
 
 // Averages the light that arrives from a drawn lamp, over many draws.
-Mean estimate(const Place& p, const LampsSeen* lamps, const SurfacePlace& place, int count) {
+Mean estimate_seen(const Place& p, const LampsSeen* lamps, const SurfacePlace& place, int count) {
   Transport transport{p.world, *p.lights.tables, nullptr, lamps};
   Mean mean;
   Sampler sampler(11);
@@ -100,8 +100,8 @@ TEST(LampsSeen, TheChoiceByThemIsUnbiasedAndLessNoisy) {
   for (SurfacePlace place :
        {on_floor(0.2f, 0.2f), on_floor(1.9f, 0.3f), on_floor(2.1f, 0.3f), on_floor(3.3f, 3.3f)}) {
     double expected = exact(p, place);
-    Mean with = estimate(p, p.seen.get(), place, 20000),
-         without = estimate(p, nullptr, place, 20000);
+    Mean with = estimate_seen(p, p.seen.get(), place, 20000),
+         without = estimate_seen(p, nullptr, place, 20000);
     expect_mean(with, expected, "by lamps seen", 0.05);
     expect_mean(without, expected, "by effects alone", 0.05);
     if (place.position.x < 1) {
@@ -117,7 +117,7 @@ TEST(LampsSeen, WhatWasNeverSeenIsStillFound) {
   LampsSeen wrong = *p.seen;
   for (LampsSeen::Shares& shares : wrong.shares)
     shares[sun] = shares[above] = 1, shares[below] = 255;
-  expect_mean(estimate(p, &wrong, place, 400000), exact(p, place), "learned wrong", 0.05);
+  expect_mean(estimate_seen(p, &wrong, place, 400000), exact(p, place), "learned wrong", 0.05);
 }
 
 // While a lamp is switched off the others are known as before, though their places in the list

@@ -10,17 +10,17 @@
 namespace wellspring::test {
 namespace {
 
-constexpr int lamps = 12;
+constexpr int lamp_count = 12;
 
 // A ring of equal lamps over the origin; `only` >= 0: that one alone.
 Scene ring(int only = -1) {
   Scene scene;
   scene.materials.resize(1);
   scene.objects = {""};
-  for (int i = 0; i < lamps; i++) {
+  for (int i = 0; i < lamp_count; i++) {
     if (only >= 0 && i != only) continue;
     PunctualLight light;
-    float angle = 2 * pi * float(i) / lamps;
+    float angle = 2 * pi * float(i) / lamp_count;
     light.position = {2 * std::cos(angle), 1, 2 * std::sin(angle)};
     light.intensity = vec3(1);
     scene.lights.push_back(light);
@@ -78,7 +78,7 @@ TEST(LightChoice, HighlightsAreFoundAndCountOnce) {
     for (float metallic : {0.0f, 1.0f}) {
       Floor floor = glossy_floor(roughness, metallic);
       double exact = 0;
-      for (int i = 0; i < lamps; i++) {
+      for (int i = 0; i < lamp_count; i++) {
         auto [alone, world, lights] = scenes::LitWorld(ring(i));
         Sampler sampler(1);
         exact += double(reflected(floor, sample_punctual_light({world, *lights.tables}, floor.place,

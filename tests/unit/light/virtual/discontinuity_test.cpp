@@ -47,7 +47,7 @@ std::vector<Sample> see_plane(vec3 normal, float distance = 2) {
   return samples;
 }
 
-size_t at(int x, int y) { return size_t(y * width + x); }
+size_t pixel_at(int x, int y) { return size_t(y * width + x); }
 
 void fill_random(std::vector<Sample>& samples, uint64_t seed) {
   Rng rng(seed);
@@ -68,13 +68,14 @@ void expect_same_sum(const std::vector<Sample>& a, const std::vector<Sample>& b)
 // Two halves of a picture that must not mix: each is constant before and after.
 void expect_apart(std::vector<Sample> samples, const char* what) {
   for (int y = 0; y < height; y++)
-    for (int x = 0; x < width; x++) samples[at(x, y)].smooth = vec3(x < width / 2 ? 1.0f : 5.0f);
+    for (int x = 0; x < width; x++)
+      samples[pixel_at(x, y)].smooth = vec3(x < width / 2 ? 1.0f : 5.0f);
   for (int n : {3, 5}) {
     std::vector<Sample> filtered = samples;
     filter_smooth(flat_view(), {n, n}, filtered);
     for (int y = 0; y < height; y++)
       for (int x = 0; x < width; x++)
-        ASSERT_NEAR(filtered[at(x, y)].smooth.x, x < width / 2 ? 1 : 5, 1e-5)
+        ASSERT_NEAR(filtered[pixel_at(x, y)].smooth.x, x < width / 2 ? 1 : 5, 1e-5)
             << what << " at " << x << "," << y;
   }
 }
@@ -88,11 +89,12 @@ TEST(Discontinuity, PatternOfSetsVanishesOnAPlane) {
     std::vector<Sample> samples = see_plane({0, 1, 0.3f});
     float mean = float(n * n - 1) / 2;
     for (int y = 0; y < height; y++)
-      for (int x = 0; x < width; x++) samples[at(x, y)].smooth = vec3(float(y % n * n + x % n));
+      for (int x = 0; x < width; x++)
+        samples[pixel_at(x, y)].smooth = vec3(float(y % n * n + x % n));
     filter_smooth(flat_view(), {n, n}, samples);
     for (int y = 2 * n; y < height - 2 * n; y++)
       for (int x = 2 * n; x < width - 2 * n; x++)
-        ASSERT_NEAR(samples[at(x, y)].smooth.x, mean, 1e-4) << n << ": " << x << "," << y;
+        ASSERT_NEAR(samples[pixel_at(x, y)].smooth.x, mean, 1e-4) << n << ": " << x << "," << y;
   }
 }
 
@@ -115,12 +117,12 @@ TEST(Discontinuity, NoLightIsWonOrLost) {
 TEST(Discontinuity, WiderWindowTakesAWiderPattern) {
   std::vector<Sample> samples = see_plane({0, 1, 0.3f});
   for (int y = 0; y < height; y++)
-    for (int x = 0; x < width; x++) samples[at(x, y)].smooth = vec3(float(y % 9 * 9 + x % 9));
+    for (int x = 0; x < width; x++) samples[pixel_at(x, y)].smooth = vec3(float(y % 9 * 9 + x % 9));
   const dvec3 before = sum_of(samples);
   filter_smooth(flat_view(), {3, 3}, samples);
   filter_smooth(flat_view(), {3, 3, 3}, samples);
   EXPECT_NEAR(sum_of(samples).x, before.x, 1e-6 * before.x);
-  EXPECT_NEAR(samples[at(12, 9)].smooth.x, 40, 1e-3);  // both windows are whole around it
+  EXPECT_NEAR(samples[pixel_at(12, 9)].smooth.x, 40, 1e-3);  // both windows are whole around it
 }
 
 // One call for two windows, in bands with room for both, is two calls.
@@ -166,9 +168,9 @@ TEST(Discontinuity, EdgesAreWhereNeighboursDiffer) {
       bool edge = false;
       for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); v++)
         for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); u++)
-          edge |=
-              (u != x || v != y) && is_edge(samples[at(x, y)], samples[at(u, v)], settings, pixel);
-      ASSERT_EQ(edges[at(x, y)] != 0, edge) << x << "," << y;
+          edge |= (u != x || v != y) &&
+                  is_edge(samples[pixel_at(x, y)], samples[pixel_at(u, v)], settings, pixel);
+      ASSERT_EQ(edges[pixel_at(x, y)] != 0, edge) << x << "," << y;
       found += edge;
     }
   EXPECT_GT(found, 50);
@@ -181,9 +183,9 @@ TEST(Discontinuity, NothingMixesAcrossEdges) {
   std::vector<Sample> behind = see_plane({0, 0, 1}, 2.5f);
   for (int y = 0; y < height; y++)
     for (int x = width / 2; x < width; x++) {
-      objects[at(x, y)].object = 2;
-      crease[at(x, y)].normal = normalize(vec3(1, 0, 1));
-      step[at(x, y)] = behind[at(x, y)];
+      objects[pixel_at(x, y)].object = 2;
+      crease[pixel_at(x, y)].normal = normalize(vec3(1, 0, 1));
+      step[pixel_at(x, y)] = behind[pixel_at(x, y)];
     }
   expect_apart(objects, "another object");
   expect_apart(crease, "a crease");
@@ -198,9 +200,9 @@ TEST(Discontinuity, TexturesAndEverythingElseStay) {
     s.albedo = vec3(0.1f + rng.uniform());
     s.rest = vec3(rng.uniform());
   }
-  samples[at(5, 5)].flags = 0;         // nothing hit
-  samples[at(9, 9)].albedo = vec3(0);  // a mirror: no irradiance is known there
-  samples[at(9, 9)].smooth = vec3(0);
+  samples[pixel_at(5, 5)].flags = 0;         // nothing hit
+  samples[pixel_at(9, 9)].albedo = vec3(0);  // a mirror: no irradiance is known there
+  samples[pixel_at(9, 9)].smooth = vec3(0);
   std::vector<Sample> filtered = samples;
   filter_smooth(flat_view(), {}, filtered);
   int changed = 0;
@@ -210,9 +212,9 @@ TEST(Discontinuity, TexturesAndEverythingElseStay) {
     ASSERT_EQ(samples[i].position, filtered[i].position);
     changed += samples[i].smooth != filtered[i].smooth;
   }
-  EXPECT_EQ(filtered[at(5, 5)].smooth, samples[at(5, 5)].smooth);
-  EXPECT_EQ(filtered[at(9, 9)].smooth, vec3(0));
-  EXPECT_GT(filtered[at(9, 10)].smooth.x, 0.1f);  // and does not darken its neighbours
+  EXPECT_EQ(filtered[pixel_at(5, 5)].smooth, samples[pixel_at(5, 5)].smooth);
+  EXPECT_EQ(filtered[pixel_at(9, 9)].smooth, vec3(0));
+  EXPECT_GT(filtered[pixel_at(9, 10)].smooth.x, 0.1f);  // and does not darken its neighbours
   EXPECT_GT(changed, width * height / 2);
 }
 

@@ -18,7 +18,7 @@ using namespace wellspring::test;
 
 namespace {
 
-double irradiance(const PointLight& light, vec3 place, vec3 normal) {
+double irradiance_by(const PointLight& light, vec3 place, vec3 normal) {
   vec3 line = light.position - place;
   double d2 = double(dot(line, line)), d = std::sqrt(d2);
   double here = double(dot(line, normal)) / d, there = -double(dot(line, light.normal)) / d;
@@ -27,7 +27,7 @@ double irradiance(const PointLight& light, vec3 place, vec3 normal) {
 
 double irradiance_of_sets(const InstantPass& pass, vec3 place, vec3 normal) {
   double sum = 0;
-  for (const PointLight& light : pass.lights) sum += irradiance(light, place, normal);
+  for (const PointLight& light : pass.lights) sum += irradiance_by(light, place, normal);
   return sum / pass.sets();
 }
 
@@ -62,8 +62,8 @@ TEST(RegionLights, AreWorthAllLights) {
       double low = 0, high = 0;
       for (uint32_t k = pass.regions.first[cell]; k < pass.regions.first[cell + 1]; k++) {
         const RegionLight& one = pass.regions.lights[k];
-        low += double(one.factor) * irradiance(pass.lights[one.light], floor, {0, 1, 0});
-        high += double(one.factor) * irradiance(pass.lights[one.light], ceiling, {0, -1, 0});
+        low += double(one.factor) * irradiance_by(pass.lights[one.light], floor, {0, 1, 0});
+        high += double(one.factor) * irradiance_by(pass.lights[one.light], ceiling, {0, -1, 0});
         asked++;
       }
       on_floor.add(low - irradiance_of_sets(pass, floor, {0, 1, 0}));
@@ -95,7 +95,7 @@ TEST(RegionLights, ChoiceForOnePlaceIsWorthItsSet) {
     const vec3 floor(0.1f, 0.001f, 0.1f);
     double all = 0;
     for (uint32_t k = pass.first[3]; k < pass.first[4]; k++)
-      all += irradiance(pass.lights[k], floor, {0, 1, 0});
+      all += irradiance_by(pass.lights[k], floor, {0, 1, 0});
     Mean mean;
     for (int i = 0; i < 4000; i++) {
       RegionLight chosen[16];
@@ -104,8 +104,8 @@ TEST(RegionLights, ChoiceForOnePlaceIsWorthItsSet) {
       ASSERT_LE(count, 5);
       double sum = 0;
       for (int k = 0; k < count; k++)
-        sum +=
-            double(chosen[k].factor) * irradiance(pass.lights[chosen[k].light], floor, {0, 1, 0});
+        sum += double(chosen[k].factor) *
+               irradiance_by(pass.lights[chosen[k].light], floor, {0, 1, 0});
       mean.add(sum);
     }
     expect_mean(mean, all, "four of a set");

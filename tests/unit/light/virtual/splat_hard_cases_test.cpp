@@ -11,7 +11,7 @@ using namespace wellspring::test;
 
 namespace {
 
-PunctualLight bulb(vec3 position, float intensity = 5) {
+PunctualLight hard_bulb(vec3 position, float intensity = 5) {
   PunctualLight light;
   light.position = position;
   light.intensity = vec3(intensity);
@@ -19,8 +19,8 @@ PunctualLight bulb(vec3 position, float intensity = 5) {
 }
 
 // A white room, `size` metres a side about `middle`, lit by `lights`, seen from near one wall.
-SplatStage make_room(std::vector<PunctualLight> lights, float size = 2, vec3 middle = vec3(0),
-                     int pixels = 64) {
+SplatStage make_hard_room(std::vector<PunctualLight> lights, float size = 2, vec3 middle = vec3(0),
+                          int pixels = 64) {
   Scene scene = empty_scene();
   add_mesh(scene, box_mesh(add_material(scene, diffuse(vec3(0.5f))), vec3(size), true), "room",
            at(middle));
@@ -56,7 +56,7 @@ Range range_of(const SplatStage& stage) {
 // by the discs that virtual lights are.
 TEST(SplatHardCases, ALightThatTouchesSurfacesDoesNotSpark) {
   for (float gap : {1e-2f, 1e-4f, 1e-6f, 0.0f}) {
-    SplatStage stage = make_room({bulb({-1 + gap, 0, -1 + gap})});
+    SplatStage stage = make_hard_room({hard_bulb({-1 + gap, 0, -1 + gap})});
     run(stage);
     Range range = range_of(stage);
     EXPECT_TRUE(range.fine) << gap;
@@ -78,7 +78,7 @@ TEST(SplatHardCases, GrazingPlanesAreNotRefined) {
   int white = add_material(scene, diffuse(vec3(0.5f)));
   add_quad(scene, white, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, "floor");
   add_quad(scene, white, {-50, 3, -50}, {100, 0, 0}, {0, 0, 100}, "ceiling");
-  scene.lights.push_back(bulb({0, 1.5f, -4}));
+  scene.lights.push_back(hard_bulb({0, 1.5f, -4}));
   View view = make_view_towards(scene, {0, 0.2, 0}, {0, 0.2, -10}, {0, 1, 0}, 1.0f, 256, 256);
   SplatStage stage(std::move(scene), view);
   run(stage);
@@ -109,7 +109,7 @@ TEST(SplatHardCases, FoliageCostsHardlyMoreThanPixelByPixel) {
     for (int k = 0; k < 3; k++) leaves.normals[t[k]] = normalize(face);
   }
   add_mesh(scene, leaves, "leaves");
-  scene.lights.push_back(bulb({0, 0, 0}));
+  scene.lights.push_back(hard_bulb({0, 0, 0}));
   View view = make_view_towards(scene, {0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.8f, 128, 128);
   SplatStage stage(std::move(scene), view);
   uint64_t lit = 0;
@@ -129,7 +129,7 @@ TEST(SplatHardCases, FoliageCostsHardlyMoreThanPixelByPixel) {
 }
 
 TEST(SplatHardCases, ALightBehindTheCameraLights) {
-  SplatStage stage = make_room({bulb({0.1f, 0.05f, 0.98f})});
+  SplatStage stage = make_hard_room({hard_bulb({0.1f, 0.05f, 0.98f})});
   run(stage);
   EXPECT_LT(dot(stage.scene.lights[0].position - stage.view.position, stage.view.forward), 0);
   EXPECT_TRUE(range_of(stage).fine);
@@ -138,9 +138,9 @@ TEST(SplatHardCases, ALightBehindTheCameraLights) {
 
 TEST(SplatHardCases, BlackAndMissingLightsCostNothing) {
   for (bool black : {true, false}) {
-    SplatStage stage = make_room({});
+    SplatStage stage = make_hard_room({});
     std::vector<SplatSource> sources;
-    if (black) sources.push_back(make_splat_source(bulb({0, 0, 0}, 0), 1));
+    if (black) sources.push_back(make_splat_source(hard_bulb({0, 0, 0}, 0), 1));
     draw_virtual_lights(stage.transport(), sources, {}, {}, {}, stage.drawn);
     stage.splat({});
     EXPECT_EQ(stage.drawn.lights.count, 0);
@@ -155,13 +155,13 @@ TEST(SplatHardCases, ThousandsOfLightsShareTheTexels) {
   std::vector<PunctualLight> lights;
   Rng rng(5);
   for (int i = 0; i < 5000; i++)
-    lights.push_back(bulb(
+    lights.push_back(hard_bulb(
         {1.8f * rng.uniform() - 0.9f, 1.8f * rng.uniform() - 0.9f, 1.8f * rng.uniform() - 0.9f},
         0.001f * float(1 + i % 7)));
   double flux = 0;
   for (const PunctualLight& light : lights)
     flux += double(light.intensity.x) * 4 * double(pi) * 0.5;
-  SplatStage stage = make_room(lights);
+  SplatStage stage = make_hard_room(lights);
   double mean = 0;
   for (uint32_t pass = 0; pass < 8; pass++) {
     stage.draw({}, {1, pass});
@@ -184,7 +184,7 @@ TEST(SplatHardCases, ATorchBehindGlassIsDimmedByIt) {
     if (pane)
       add_mesh(scene, box_mesh(add_material(scene, clear), vec3(0.2f)), "vitrine",
                at({0, 0, -0.2f}));
-    scene.lights.push_back(bulb({0, 0, -0.2f}));
+    scene.lights.push_back(hard_bulb({0, 0, -0.2f}));
     View view = make_view_towards(scene, {0, 0.6, 0.9}, {0, 0.9, -0.5}, {0, 1, 0}, 0.7f, 48, 48);
     SplatStage stage(std::move(scene), view);
     run(stage);
@@ -201,10 +201,10 @@ TEST(SplatHardCases, ATorchBehindGlassIsDimmedByIt) {
 
 TEST(SplatHardCases, FarFromTheOriginTheLightIsTheSame) {
   SplatSettings settings;
-  SplatStage near = make_room({bulb({0.3f, 0.2f, 0.1f})});
+  SplatStage near = make_hard_room({hard_bulb({0.3f, 0.2f, 0.1f})});
   run(near, settings);
   for (float away : {3e3f, 2e4f}) {
-    SplatStage far = make_room({bulb({0.3f, 0.2f, 0.1f})}, 2, vec3(away, -away, away));
+    SplatStage far = make_hard_room({hard_bulb({0.3f, 0.2f, 0.1f})}, 2, vec3(away, -away, away));
     run(far, settings);
     EXPECT_TRUE(range_of(far).fine);
     EXPECT_NEAR(range_of(far).mean / range_of(near).mean, 1, 0.05) << away;
@@ -214,7 +214,8 @@ TEST(SplatHardCases, FarFromTheOriginTheLightIsTheSame) {
 TEST(SplatHardCases, NumbersOfAnySizeStayFinite) {
   for (float size : {1e-6f, 1e-3f, 1e5f, 1e9f})
     for (float intensity : {1e-42f, 1e-30f, 1e30f, 3e38f}) {
-      SplatStage stage = make_room({bulb({0.3f, 0.2f, 0.1f}, intensity)}, size, vec3(0), 24);
+      SplatStage stage =
+          make_hard_room({hard_bulb({0.3f, 0.2f, 0.1f}, intensity)}, size, vec3(0), 24);
       run(stage);
       for (vec3 e : stage.picture.irradiance) {
         ASSERT_FALSE(std::isnan(e.x)) << size << ", " << intensity;
@@ -241,7 +242,7 @@ TEST(SplatHardCases, TrianglesWithoutAreaDoNoHarm) {
 }
 
 TEST(SplatHardCases, PixelsWithoutASurfaceStayDark) {
-  SplatStage stage = make_room({bulb({0, 0, 0})}, 2, vec3(0), 40);
+  SplatStage stage = make_hard_room({hard_bulb({0, 0, 0})}, 2, vec3(0), 40);
   const float none[] = {std::numeric_limits<float>::quiet_NaN(), -1, 0,
                         std::numeric_limits<float>::infinity()};
   for (size_t i = 0; i < stage.depth.size(); i += 7) stage.depth[i] = none[i % 4];

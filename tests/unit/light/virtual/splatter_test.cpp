@@ -11,7 +11,7 @@ using namespace wellspring::test;
 namespace {
 
 // The Cornell box, lit by a bulb under its ceiling instead of its lamp, without shadows.
-SplatStage make_box(int width = 128, int height = 128) {
+SplatStage make_lit_box(int width = 128, int height = 128) {
   Scene scene = make_cornell_box();
   for (Material& m : scene.materials) m.emission = vec3(0);
   PunctualLight light;
@@ -31,7 +31,7 @@ SplatSettings without_shadows() {
 }  // namespace
 
 TEST(Splatter, PixelByPixelIsTheSumOverAllVirtualLights) {
-  SplatStage stage = make_box(48, 40);
+  SplatStage stage = make_lit_box(48, 40);
   SplatSettings settings = without_shadows();
   settings.coarsest = 1000;
   stage.draw(settings);
@@ -42,7 +42,7 @@ TEST(Splatter, PixelByPixelIsTheSumOverAllVirtualLights) {
 }
 
 TEST(Splatter, SubsplatsAreCloseToThatSumAtAPartOfItsCost) {
-  SplatStage stage = make_box(256, 256);
+  SplatStage stage = make_lit_box(256, 256);
   SplatSettings settings = without_shadows();
   stage.draw(settings);
   stage.splat(settings);
@@ -54,7 +54,7 @@ TEST(Splatter, SubsplatsAreCloseToThatSumAtAPartOfItsCost) {
 }
 
 TEST(Splatter, EveryLitPixelIsOfOneSubsplat) {
-  SplatStage stage = make_box(150, 83);
+  SplatStage stage = make_lit_box(150, 83);
   SplatSettings settings = without_shadows();
   stage.draw(settings);
   stage.splat(settings);
@@ -71,7 +71,7 @@ TEST(Splatter, EveryLitPixelIsOfOneSubsplat) {
 }
 
 TEST(Splatter, ConvergenceBuysExactnessByMoreSubsplats) {
-  SplatStage stage = make_box(256, 256);
+  SplatStage stage = make_lit_box(256, 256);
   SplatSettings settings = without_shadows();
   stage.draw(settings);
   stage.splat(settings);
@@ -87,7 +87,7 @@ TEST(Splatter, ConvergenceBuysExactnessByMoreSubsplats) {
 
 // Same lights, same random numbers: the same bits; and the second picture needs no memory.
 TEST(Splatter, PicturesAreRepeatedInTheSameMemory) {
-  SplatStage stage = make_box(96, 64);
+  SplatStage stage = make_lit_box(96, 64);
   SplatSettings settings;
   std::vector<vec3> first;
   std::vector<const void*> memory;
