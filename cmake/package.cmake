@@ -5,7 +5,7 @@
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME server)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # packing builds nothing: not the tests, above all
 set(server_programs wellspring_server wellspring_voice wellspring_render wellspring_avatar
-  wellspring_clip wellspring_speak wellspring_check wellspring_new wellspring_bake)
+  wellspring_clip wellspring_speak wellspring_check wellspring_new wellspring_import wellspring_bake)
 install(TARGETS ${server_programs} DESTINATION libexec/wellspring COMPONENT server)
 install(TARGETS wellspring_kiosk DESTINATION libexec/wellspring COMPONENT kiosk)
 install(PROGRAMS deploy/wellspring.sh DESTINATION bin RENAME wellspring)
@@ -84,6 +84,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_SERVER_PACKAGE_NAME wellspring)
 set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "adduser, init-system-helpers")
+set(CPACK_DEBIAN_SERVER_PACKAGE_RECOMMENDS "libvips-tools, fonts-dejavu-core, fonts-urw-base35")
 set(CPACK_DEBIAN_SERVER_DESCRIPTION
   "Serves virtual museums to browsers, ray-traced for every visitor, with a storyteller.")
 set(CPACK_DEBIAN_KIOSK_PACKAGE_NAME wellspring-kiosk)

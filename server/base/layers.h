@@ -11,6 +11,7 @@ namespace json {}
 namespace wire {}
 namespace ledger {}
 namespace image {}
+namespace store {}
 namespace frame {}
 namespace attention {}
 namespace denoise {}
@@ -29,6 +30,11 @@ namespace frame {
 using namespace image;
 }  // namespace frame
 
+namespace store {
+using namespace image;
+using namespace json;
+}  // namespace store
+
 namespace wire {
 using namespace json;
 }  // namespace wire
@@ -40,10 +46,12 @@ using namespace frame;
 namespace world {
 using namespace gltf;
 using namespace image;
+using namespace store;
 }  // namespace world
 
 namespace light {
 using namespace world;
+using namespace store;
 using namespace frame;
 }  // namespace light
 
@@ -68,6 +76,7 @@ using namespace json;
 
 namespace show {
 using namespace picture;
+using namespace store;
 using namespace cache;
 using namespace denoise;
 using namespace light;
@@ -105,6 +114,7 @@ using namespace json;
 using namespace wire;
 using namespace ledger;
 using namespace image;
+using namespace store;
 using namespace frame;
 using namespace attention;
 using namespace denoise;

@@ -59,6 +59,8 @@ ImageCodes decode_webp(std::span<const uint8_t> bytes, int64_t most_pixels,
 // does.
 ImageCodes decode_jpeg_codes(std::span<const uint8_t> bytes, int64_t most_pixels,
                              const std::string& file);
+// Reads a JPEG of four inks as it stands in the file: cyan, magenta, yellow, black.
+ImageCodes decode_cmyk_jpeg(std::span<const uint8_t> bytes, const std::string& file);
 // Refuses whatever libjpeg warns of.
 Image8 decode_jpeg(std::span<const uint8_t> bytes, const std::string& file);
 

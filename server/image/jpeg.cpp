@@ -51,6 +51,11 @@ ImageCodes decode_jpeg_codes(std::span<const uint8_t> bytes, int64_t most_pixels
   return decode(bytes, most_pixels, file, &ImageCodes::codes8, TJPF_RGBA, true);
 }
 
+ImageCodes decode_cmyk_jpeg(std::span<const uint8_t> bytes, const std::string& file) {
+  return decode(bytes, int64_t(largest_side) * largest_side, file, &ImageCodes::codes8, TJPF_CMYK,
+                true);
+}
+
 void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector<uint8_t>& out,
                  size_t skip) {
   encode_jpeg(image, {0, 0, image.width, image.height}, quality, full_chroma, out, skip);

@@ -13,6 +13,7 @@
 #include "unit/denoise/tza.h"
 #include "unit/folder.h"
 #include "unit/show/exhibit/room_package.h"
+#include "unit/store/format/pictures.h"
 
 namespace wellspring::test {
 namespace {
@@ -178,6 +179,42 @@ void write_sums(const Corpus& corpus) {
   corpus.put("sums_file", "sums.sqlite", corpus.folder.read("sums.sqlite"));
 }
 
+void write_large_pictures(const Corpus& corpus) {
+  const auto put = [&](const char* name, const std::vector<TiffSpec>& pages, bool sub = false,
+                       const char* mode = "w") {
+    write_tiff(corpus.folder, pages, sub, mode);
+    corpus.put("tiff_picture", name, corpus.folder.read("test.tif"));
+  };
+  TiffSpec fine;
+  fine.width = 26, fine.height = 18, fine.compression = COMPRESSION_LZW;
+  TiffSpec coarse = fine;
+  coarse.width = 13, coarse.height = 9;
+  put("pages.tif", {fine, coarse});
+  put("sub.tif", {fine, coarse}, true, "w8");
+  fine.photometric = PHOTOMETRIC_YCBCR, fine.compression = COMPRESSION_JPEG;
+  put("jpeg.tif", {fine});
+  fine.photometric = PHOTOMETRIC_SEPARATED, fine.compression = COMPRESSION_ADOBE_DEFLATE;
+  fine.planar = PLANARCONFIG_SEPARATE, fine.channels = 4, fine.orientation = 6, fine.bits = 16;
+  put("inks.tif", {fine}, false, "wb");
+  TiffSpec lines;
+  lines.width = 30, lines.tile = 0, lines.bits = 1, lines.channels = 1;
+  lines.photometric = PHOTOMETRIC_MINISWHITE, lines.compression = COMPRESSION_CCITTFAX4;
+  lines.codes = [](int x, int y, int) { return (x + y) / 7 % 2; };
+  put("lines.tif", {lines});
+  lines.photometric = PHOTOMETRIC_PALETTE, lines.bits = 4, lines.compression = COMPRESSION_PACKBITS;
+  put("palette.tif", {lines});
+  // A page whose EXIF says that it is mirrored.
+  std::vector<uint8_t> jpeg;
+  encode_jpeg({6, 4, std::vector<uint8_t>(72, 99)}, 80, false, jpeg);
+  const std::string exif =
+      std::string("Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x05", 27) +
+      std::string(6, '\0');
+  std::string turned(jpeg.begin(), jpeg.end());
+  turned.insert(2, std::string("\xff\xe1\0", 3) + char(exif.size() + 2) + exif);
+  corpus.put("plain_picture", "turned.jpg", turned);
+  corpus.put("plain_picture", "small.png", png_of(5, 3, pattern));
+}
+
 }  // namespace
 }  // namespace wellspring::test
 
@@ -194,5 +231,6 @@ int main(int argc, char** argv) {
   write_speech(corpus);
   write_weights(corpus);
   write_sums(corpus);
+  write_large_pictures(corpus);
   return 0;
 }

@@ -21,6 +21,13 @@ const may_enter = {
     story: ['body', 'align', 'speech'],
     mind: ['figure', 'face', 'body', 'story'],
   },
+  store: {
+    '': [],
+    picture: [''],
+    format: ['picture', ''],
+    painting: ['picture', ''],
+    open: ['format', 'painting', 'picture', ''],
+  },
   world: {
     '': [],
     motion: [''],
@@ -89,9 +96,11 @@ const heavy = [
   [/^(boost\/(beast|asio)|boost\/)/, ['stream', 'kiosk']],
   [/^opencv2?\//, ['kiosk']],
   [/^embree[34]?\//, ['world']],
-  [/^(pugixml|sndfile)/, ['avatar']],
+  [/^pugixml/, ['avatar', 'store']],
+  [/^sndfile/, ['avatar']],
   [/^espeak-ng\//, []],  // GPL: the voice program's one file
   [/^(turbojpeg|png\.h|webp|stb_image|OpenEXR|Imf)/, ['image']],
+  [/^(tiffio|lcms2|cairo)/, ['store']],
   [/^(dnnl|omp)/, ['denoise']],
   [/^sqlite3/, ['ledger']],
 ];

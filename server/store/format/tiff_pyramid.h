@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens TIFF and BigTIFF files: pyramids of tiles in pages or SubIFDs, tiles or strips alone.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "store/picture/kept_levels.h"
+
+namespace wellspring::store {
+
+// A file of strips is read whole, and one of tiles without smaller versions is read once to make
+// them; both only up to `most_texels`. Pages of other pictures, such as labels, are left out. The
+// first page's colour profile and orientation are applied to all.
+std::shared_ptr<const PicturePyramid> load_tiff(const std::string& file,
+                                                int64_t most_texels = most_whole_texels);
+
+}  // namespace wellspring::store

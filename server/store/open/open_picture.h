@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tells formats of large pictures apart.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "store/picture/pyramid.h"
+
+namespace wellspring::store {
+
+// Opens a picture by what is found at `path`: a Deep Zoom .dzi or .xml, a folder of Zoomify
+// (ImageProperties.xml) or of IIIF level 0 (info.json), or these files themselves, a TIFF, a plain
+// JPEG, PNG or WebP, a .painting.json, of which `layer` is shown (empty: the first) with labels in
+// `language`. Throws LoadError, which names the file and the place in it.
+std::shared_ptr<const PicturePyramid> open_picture(const std::string& path,
+                                                   const std::string& layer = "",
+                                                   const std::string& language = "en");
+
+}  // namespace wellspring::store

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "store/picture/sample_picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/srgb.h"
+
+namespace wellspring::store {
+namespace {
+
+constexpr float most_taps = 16;
+
+vec3 texel_of(const Piece& piece, int x, int y) {
+  const uint8_t* p = &piece.bytes[(size_t(y) * size_t(piece.width) + size_t(x)) * 4];
+  return {decode_srgb(p[0]), decode_srgb(p[1]), decode_srgb(p[2])};
+}
+
+}  // namespace
+
+LargePicture::LargePicture(std::shared_ptr<PieceStore> of,
+                           std::shared_ptr<const PicturePyramid> picture)
+    : store(std::move(of)), pyramid(std::move(picture)) {
+  const std::vector<PyramidLevel>& levels = pyramid->levels();
+  coarsest = read_level(*pyramid, int(levels.size()) - 1);
+  for (const PyramidLevel& level : levels) {
+    const double wide = double(levels[0].width) / double(level.width);
+    const double high = double(levels[0].height) / double(level.height);
+    scale.push_back(float(std::log2(std::max(wide, high))));
+    sizes.push_back({level.columns(), level.rows()});
+  }
+  source = store->add(pyramid);
+}
+
+LargePicture::~LargePicture() { store->remove(source); }
+
+PictureSampler::PictureSampler(const PieceStore& store) : reader_(store), store_(store) {}
+
+PictureSampler::~PictureSampler() {
+  for (const Noted& noted : noted_)
+    if (noted.picture) noted.picture->seen.add(noted.piece.key, noted.piece.pixels);
+}
+
+const Piece* PictureSampler::find(PieceKey key) {
+  Found& found = found_[(key.bits ^ key.bits >> 24 ^ key.bits >> 48) % found_.size()];
+  if (found.key != key.bits) found = {key.bits, reader_.find(key)};
+  return found.piece;
+}
+
+// Notes what a pixel looks for; neighbours mostly look for the same two.
+void PictureSampler::see(const LargePicture& picture, PieceKey key) {
+  Noted& noted = noted_[key.level() & 1];
+  if (noted.piece.key != key) {
+    if (noted.picture) noted.picture->seen.add(noted.piece.key, noted.piece.pixels);
+    noted = {&picture, {key, 0}};
+  }
+  noted.piece.pixels++;
+}
+
+// Reads four texels of a level. False: one of them is not there.
+bool PictureSampler::read(const LargePicture& picture, int level, dvec2 at, vec3& color) {
+  const std::vector<PyramidLevel>& levels = picture.pyramid->levels();
+  const PyramidLevel& l = levels[size_t(level)];
+  const double x = glm::clamp(at.x, 0.0, 1.0) * double(l.width) - 0.5;
+  const double y = glm::clamp(at.y, 0.0, 1.0) * double(l.height) - 0.5;
+  const int64_t left = int64_t(std::floor(x)), top = int64_t(std::floor(y));
+  const float wx = float(x - double(left)), wy = float(y - double(top));
+  const int64_t columns[2] = {std::max<int64_t>(left, 0), std::min(left + 1, l.width - 1)};
+  const int64_t rows[2] = {std::max<int64_t>(top, 0), std::min(top + 1, l.height - 1)};
+  vec3 texels[4];
+  if (level == int(levels.size()) - 1) {
+    for (int i = 0; i < 4; i++)
+      texels[i] = texel_of(picture.coarsest, int(columns[i & 1]), int(rows[i >> 1]));
+  } else {
+    uint32_t tile_x[2], tile_y[2];
+    int in_x[2], in_y[2];
+    for (int i = 0; i < 2; i++) {
+      tile_x[i] = uint32_t(columns[i] / l.tile_width), in_x[i] = int(columns[i] % l.tile_width);
+      tile_y[i] = uint32_t(rows[i] / l.tile_height), in_y[i] = int(rows[i] % l.tile_height);
+    }
+    const bool one = tile_x[0] == tile_x[1] && tile_y[0] == tile_y[1];
+    const Piece* piece = nullptr;
+    for (int i = 0; i < 4; i++) {
+      const PieceKey key(picture.source, level, tile_x[i & 1], tile_y[i >> 1]);
+      if (i == 0 || !one) piece = find(key);
+      if (!piece) {
+        see(picture, key);
+        return false;
+      }
+      texels[i] = texel_of(*piece, in_x[i & 1], in_y[i >> 1]);
+    }
+  }
+  const vec3 above = texels[0] + (texels[1] - texels[0]) * wx;
+  const vec3 below = texels[2] + (texels[3] - texels[2]) * wx;
+  color = above + (below - above) * wy;
+  return true;
+}
+
+// Reads the finest level from `level` on that is there, which `got` tells.
+vec3 PictureSampler::read_finest(const LargePicture& picture, int level, dvec2 at, int& got) {
+  vec3 color(0);
+  for (got = level; !read(picture, got, at, color); got++) {}
+  return color;
+}
+
+vec3 PictureSampler::look(const LargePicture& picture, const PictureFootprint& f) {
+  const std::vector<PyramidLevel>& levels = picture.pyramid->levels();
+  const dvec2 size(double(levels[0].width), double(levels[0].height));
+  // These are the axes of the ellipse that a pixel covers (Heckbert 1989, section 3.5.8), in texels
+  // of the finest level: the singular values of the two steps.
+  const dvec2 across = f.across * size, down = f.down * size;
+  const double a = dot(across, across), b = dot(across, down), c = dot(down, down);
+  const double mean = 0.5 * (a + c), off = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
+  const double longer = std::sqrt(std::max(mean + off, 0.0));
+  const double shorter = std::sqrt(std::max(mean - off, 0.0));
+  dvec2 at = f.at;
+  if (!std::isfinite(at.x) || !std::isfinite(at.y)) at = dvec2(0);
+  if (!std::isfinite(longer)) return texel_of(picture.coarsest, 0, 0);
+  const double width = std::max({shorter, longer / most_taps, 1e-9});
+  int taps = glm::clamp(int(std::ceil(longer / std::max(width, 1.0) - 0.01)), 1, int(most_taps));
+  const float detail = float(std::log2(width)) + store_.coarser();
+  int fine = 0;
+  const int last = int(levels.size()) - 1;
+  while (fine < last && picture.scale[size_t(fine) + 1] <= detail) fine++;
+  const int coarse = std::min(fine + 1, last);
+  float blend = 0;
+  if (coarse > fine) {
+    const float from = picture.scale[size_t(fine)], to = picture.scale[size_t(coarse)];
+    blend = glm::clamp((detail - from) / std::max(to - from, 1e-6f), 0.0f, 1.0f);
+  }
+  // The longer axis' direction: the eigenvector of the larger eigenvalue.
+  dvec2 way = std::abs(b) > 1e-12 * mean ? dvec2(mean + off - c, b) : dvec2(a >= c, a < c);
+  way = across * way.x + down * way.y;
+  const double way_length = length(way);
+  way = way_length > 0 ? way * (longer / way_length) / size : dvec2(0);
+
+  vec3 sum(0);
+  int got = fine;
+  for (int i = 0; i < taps; i++) {
+    const dvec2 place = at + way * ((i + 0.5) / taps - 0.5);
+    vec3 color = read_finest(picture, fine, place, got);
+    if (got == fine && blend > 0) {
+      int other;
+      color += (read_finest(picture, coarse, place, other) - color) * blend;
+    }
+    sum += color;
+  }
+  auto note = [&](int level) {
+    if (level == last) return;
+    const PyramidLevel& l = levels[size_t(level)];
+    const int64_t x = int64_t(glm::clamp(at.x, 0.0, 1.0) * double(l.width));
+    const int64_t y = int64_t(glm::clamp(at.y, 0.0, 1.0) * double(l.height));
+    see(picture, {picture.source, level, uint32_t(std::min(x, l.width - 1) / l.tile_width),
+                  uint32_t(std::min(y, l.height - 1) / l.tile_height)});
+  };
+  note(fine);
+  if (blend > 0) note(coarse);
+  return sum / float(taps);
+}
+
+}  // namespace wellspring::store

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks up very large pictures as a pixel sees them: the level of detail by the pixel's footprint,
+// trilinear, up to 16 taps along its longer axis (Taibo, Seoane and Hernandez, "Dynamic Virtual
+// Textures", section 4.3), of the finest level that is there. There is never a hole.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "base/vec.h"
+#include "store/picture/pyramid.h"
+#include "store/seen_pieces.h"
+
+namespace wellspring::store {
+
+// Holds a picture that can be looked up.
+struct LargePicture {
+  std::shared_ptr<PieceStore> store;
+  std::shared_ptr<const PicturePyramid> pyramid;
+  int source = 0;
+  Piece coarsest;  // the whole last level
+  // Logarithm to base 2 of how many texels of the finest level a level's texel is wide.
+  std::vector<float> scale;
+  LevelSizes sizes;
+  mutable SeenPieces seen;  // pieces that were looked for since somebody took them
+
+  // Adds the source to the store, and reads its coarsest level. Throws LoadError.
+  LargePicture(std::shared_ptr<PieceStore> store, std::shared_ptr<const PicturePyramid> pyramid);
+  ~LargePicture();
+  LargePicture(const LargePicture&) = delete;
+  LargePicture& operator=(const LargePicture&) = delete;
+};
+
+// Holds what a pixel sees of a picture: its middle, 0 to 1 from the upper left, and how far that
+// moves from pixel to pixel. Doubles: a float does not tell apart the texels of 2^24 a side.
+struct PictureFootprint {
+  dvec2 at{0};
+  dvec2 across{0}, down{0};
+};
+
+// Looks up on one thread, for as short as a PieceReader lives.
+class PictureSampler {
+ public:
+  explicit PictureSampler(const PieceStore& store);
+  ~PictureSampler();
+  PictureSampler(const PictureSampler&) = delete;
+  PictureSampler& operator=(const PictureSampler&) = delete;
+
+  // Returns linear RGB, and notes what it looked for with the picture. Coordinates beyond the
+  // picture read its edge.
+  vec3 look(const LargePicture& picture, const PictureFootprint& footprint);
+
+ private:
+  struct Found {
+    uint64_t key = 0;
+    const Piece* piece = nullptr;
+  };
+  const Piece* find(PieceKey key);
+  void see(const LargePicture& picture, PieceKey key);
+  bool read(const LargePicture& picture, int level, dvec2 at, vec3& color);
+  vec3 read_finest(const LargePicture& picture, int level, dvec2 at, int& got);
+
+  const PieceReader reader_;
+  const PieceStore& store_;
+  std::array<Found, 8> found_;  // pieces of the last look-ups, by level
+  struct Noted {
+    const LargePicture* picture = nullptr;
+    SeenPiece piece;
+  };
+  Noted noted_[2];
+};
+
+}  // namespace wellspring::store
