@@ -47,8 +47,24 @@ static std::string list_of(const Request& request, beast::string_view name) {
   return list;
 }
 
+// Pages of other sites may read what is below this path: browsers ask first what they may do.
+static bool is_shared_path(std::string_view target) { return target.starts_with("/iiif/"); }
+
 static const char* allowed_methods(const Request& request) {
-  return is_posted_path(view(request.target())) ? "POST" : "GET, HEAD";
+  const std::string_view target = view(request.target());
+  return is_posted_path(target)   ? "POST"
+         : is_shared_path(target) ? "GET, HEAD, OPTIONS"
+                                  : "GET, HEAD";
+}
+
+// Returns the site of a Host header; empty: it has none, or one that is no plain name.
+static std::string site_of(const Request& request, bool secure) {
+  const std::string_view host = view(request[http::field::host]);
+  const bool plain = std::ranges::all_of(host, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view(".-_:[]").find(c) != std::string_view::npos;
+  });
+  return host.empty() || !plain ? "" : (secure ? "https://" : "http://") + std::string(host);
 }
 
 // Returns whether a Content-Type is JSON, whatever its parameters.
@@ -72,7 +88,8 @@ net::awaitable<int> Session::read_request(Request& request) {
   if (!ec) {
     const http::verb method = parser.get().method();
     const bool posts = is_posted_path(view(parser.get().target()));
-    const bool reads = method == http::verb::get || method == http::verb::head;
+    const bool asks = method == http::verb::options && is_shared_path(view(parser.get().target()));
+    const bool reads = method == http::verb::get || method == http::verb::head || asks;
     if (posts ? method != http::verb::post : !reads) {
       request.target(parser.get().target());
       co_return 405;
@@ -143,6 +160,9 @@ net::awaitable<void> Session::serve_http() {
     question.range = std::string(request[http::field::range]);
     question.if_range = std::string(request[http::field::if_range]);
     question.authorization = std::string(request[http::field::authorization]);
+    const bool is_forwarded = any_holds(core_->proxies, address_) &&
+                              beast::iequals(request["X-Forwarded-Proto"], "https");
+    question.site = site_of(request, stream().secure() || is_forwarded);
     question.local = is_local(request);
     question.address = to_string(caller_.address);
 

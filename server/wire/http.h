@@ -22,6 +22,7 @@ struct HttpQuestion {
   std::string body;     // body of a POST
   bool local = false;   // comes from this machine itself, and through no proxy (stream/target.h)
   std::string address;  // client's address, without port
+  std::string site;     // this server as the client names it: "https://museum.example"; or empty
 };
 
 // Names bytes of a file on disk.
