@@ -437,6 +437,7 @@ void render(const Options& o) {
   settings.transport.max_depth = o.max_depth;
   if (!o.replay.empty()) return print_replay(o, world, lights, view, settings);
   double start = seconds_now();
+  fetch_pieces(world, lights, view);
   Progress progress("render");
   settings.progress = [&](double done) { progress.tell(done); };
   Frame frame = render_still(*find_technique(o.technique), world, lights, view, settings);

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "config/config_file.h"
 #include "light/technique/technique.h"
+#include "store/piece_store.h"
 
 namespace wellspring::program {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 // Holds values that are no settings yet when they are read.
 struct Words {
   int port = 8080, agent_port = 0;
-  double visitors_memory = 0;  // MiB
+  double visitors_memory = 0, pieces_memory = 256;  // MiB
   std::string token_file, kiosk_token_file, display = display_names[0];
 };
 
@@ -106,6 +107,9 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
          "MiB that pictures of all visitors may take: while newcomers need more, they wait; "
          "0: six tenths of what the process may use")
       ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--pieces-memory", words.pieces_memory,
+                 "MiB that pieces of very large pictures may take, of all exhibits together")
+      ->check(CLI::Range(16.0, 1e6));
   app.add_option("--max-waiting", options.museum.most_waiting,
                  "visitors who wait; more are told to come back")
       ->check(CLI::Range(0, 100000));
@@ -149,6 +153,7 @@ void parse_options(CLI::App& app, ServerOptions& options, Words& words, int argc
   options.stream.port = uint16_t(words.port);
   options.stream.agent_port = uint16_t(words.agent_port);
   options.museum.capacity.memory = words.visitors_memory * 1024 * 1024;
+  set_shared_budget(size_t(words.pieces_memory * 1024 * 1024));
   if (options.web.empty()) options.web = installed_share("web");
   if (options.web.empty()) options.web = "web";
   std::string& weights = options.museum.show.weights;

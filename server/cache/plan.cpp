@@ -33,6 +33,7 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
     vec3 along = infinite ? position : position - view.position;
     request.ray.origin = view.position;
     request.ray.from_eye = true;
+    request.ray.spread = 2 * view.tan_half_fov / float(view.height);
     request.ray.direction = normalize(along);
     request.resample = point;
   } else {

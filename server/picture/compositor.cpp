@@ -218,6 +218,11 @@ void Compositor::add_samples(const View& view, std::span<const Request> requests
 
 void Compositor::invalidate_samples() { samples_ = {}; }
 
+void Compositor::forget_means() {
+  samples_ = {};
+  std::fill(still_.count.begin(), still_.count.end(), uint8_t(0));
+}
+
 void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
                              const BackdropLight* relit, const VisibilityPass& visibility,
                              const Tonemap& tonemap, bool in_layer, MovingLight& work,

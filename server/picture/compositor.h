@@ -94,6 +94,7 @@ class Compositor {
   void add_samples(const View& view, std::span<const Request> requests,
                    std::span<const Sample> samples);
   void invalidate_samples();  // for a change of the light
+  void forget_means();        // at rest, since surfaces look otherwise now
   // Says that pictures at rest are the input of reconstruction (picture/still/reconstruct_still.h):
   // means of samples are not mixed into them, and while a pixel has few samples, aimed ones count,
   // too.

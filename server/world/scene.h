@@ -101,6 +101,7 @@ struct Material {
   // World::repaint() may change its colours and how its pictures lie: no conclusions may be drawn
   // from these.
   bool repaints = false;
+  bool large_picture = false;  // its base colour is of an Image with `large`
 };
 
 // Returns whether the material's surfaces enclose a medium in which light is bent and tinted: then

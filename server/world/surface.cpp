@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "world/large_texture.h"
+
 namespace wellspring::world {
 namespace {
 
@@ -110,11 +112,22 @@ void resolve_anisotropy(const Scene& scene, const PlacedMesh& placed, const Corn
   if (surface.tangent != vec3(0)) surface.anisotropy = strength;
 }
 
+// Returns the base colour's texel where a cone from the eye meets a very large picture.
+vec4 read_large_base(const Scene& scene, const PlacedMesh& placed, const Ray& ray, const Hit& hit,
+                     vec4 small) {
+  const TextureRef& reference = placed.material->base_color_texture;
+  const Texture& texture = scene.textures[size_t(reference.texture)];
+  const PicturedTriangle t = make_pictured_triangle(placed, hit.triangle, reference, ray.origin);
+  return {eval_large_picture(scene.images[size_t(texture.image)], texture, t, ray, hit), small.w};
+}
+
 void resolve_material(const Scene& scene, const PlacedMesh& placed, const Corners& at,
-                      Surface& surface) {
+                      const Ray& ray, const Hit& hit, Surface& surface) {
   const Mesh& mesh = *placed.mesh;
   const Material& m = *placed.material;
-  vec4 base = m.base_color * lookup(scene, mesh, at, m.base_color_texture);
+  vec4 base = lookup(scene, mesh, at, m.base_color_texture);
+  if (m.large_picture && ray.spread > 0) base = read_large_base(scene, placed, ray, hit, base);
+  base *= m.base_color;
   if (!mesh.colors.empty()) base *= at(mesh.colors);
   surface.base_color = glm::max(vec3(base), vec3(0));
   surface.alpha = glm::clamp(base.w, 0.0f, 1.0f);
@@ -249,8 +262,8 @@ Face make_face(const PlacedMesh& placed, uint32_t triangle) {
 bool is_lambertian(const Material& m) {
   bool gloss = m.ior != 1 && m.specular > 0;
   bool layered = m.clearcoat > 0 || max_component(m.sheen_color) > 0;
-  return !m.unlit && !m.repaints && !gloss && !layered && m.metallic == 0 && m.transmission == 0 &&
-         m.emission == vec3(0) && m.normal_texture.texture < 0;
+  return !m.unlit && !m.repaints && !m.large_picture && !gloss && !layered && m.metallic == 0 &&
+         m.transmission == 0 && m.emission == vec3(0) && m.normal_texture.texture < 0;
 }
 
 LambertSurface eval_lambert_surface(const World& world, const Ray& ray, const Hit& hit) {
@@ -299,7 +312,7 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
     mapped =
         mapped_normal(scene, placed, at, shading, material.normal_texture, material.normal_scale);
   surface.normal = turned_to_viewer(mapped, surface.geometric_normal, surface.front);
-  resolve_material(scene, placed, at, surface);
+  resolve_material(scene, placed, at, ray, hit, surface);
   if (material.anisotropy > 0) resolve_anisotropy(scene, placed, at, shading, surface);
   resolve_layers(scene, placed, at, shading, surface);
   return surface;

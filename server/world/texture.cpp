@@ -12,16 +12,6 @@
 namespace wellspring::world {
 namespace {
 
-// Makes the table from 8-bit codes to linear values of IEC 61966-2-1.
-std::array<float, 256> make_srgb_table() {
-  std::array<float, 256> table{};
-  for (int i = 0; i < 256; i++) {
-    double s = i / 255.0;
-    table[i] = float(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-  }
-  return table;
-}
-
 std::array<float, 256> make_linear_table() {
   std::array<float, 256> table{};
   for (int i = 0; i < 256; i++) table[i] = float(i) / 255.0f;
@@ -33,7 +23,6 @@ float decode_srgb16(uint16_t code) {
   return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
 }
 
-const std::array<float, 256> srgb_table = make_srgb_table();
 const std::array<float, 256> linear_table = make_linear_table();
 
 int nearest_tap(float coordinate, int size, Wrap wrap) {
@@ -76,8 +65,6 @@ vec4 eval_texture(const Image& image, const Texture& texture, vec2 uv) {
   return bytes ? bilinear(x, y, [&](int i, int j) { return fetch8(image, rgb, i, j); })
                : bilinear(x, y, [&](int i, int j) { return fetch_float(image, i, j); });
 }
-
-float decode_srgb(uint8_t code) { return srgb_table[code]; }
 
 std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image,
                          int64_t& texels_left) {

@@ -4,12 +4,18 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/simd.h"
 #include "base/vec.h"
+#include "image/srgb.h"
+
+namespace wellspring::store {
+struct LargePicture;  // store/picture/sample_picture.h
+}
 
 namespace wellspring::world {
 
@@ -57,6 +63,8 @@ struct Image {
   bool srgb = false;  // texels8's RGB are sRGB-encoded: decoded at look-up, before filtering
   std::vector<uint8_t> texels8;
   std::vector<vec4> texels;
+  // Not null: the texels are a small version of this picture, which who is near enough sees.
+  std::shared_ptr<const LargePicture> large;
 };
 
 // Texels of all pictures of a scene together.
@@ -84,8 +92,6 @@ struct TextureRef {
 // Returns linear RGBA at (u, v). Any finite uv; non-finite uv gives texel 0. Texels that are not
 // finite read as 0. An image without texels reads as 1 everywhere.
 vec4 eval_texture(const Image& image, const Texture& texture, vec2 uv);
-// Returns the linear value of an 8-bit sRGB code (IEC 61966-2-1).
-float decode_srgb(uint8_t code);
 
 // Makes pictures smaller beforehand (Williams, "Pyramidal Parametrics", 1983), for code that looks
 // once a pixel: far surfaces neither sparkle nor cost a cache miss a texel.

@@ -61,6 +61,7 @@ Ray view_ray(const View& view, float x, float y) {
   ray.origin = view.position;
   ray.direction = normalize(direction);
   ray.from_eye = true;
+  ray.spread = scale;
   if (view.near > 0) ray.t_min = view.near * glm::length(direction);
   return ray;
 }

@@ -39,6 +39,9 @@ struct Ray {
   // The ray comes from the eye, straight or through thin panes: it passes back faces
   // (PlacedMesh::one_sided). view_ray() sets it; light is stopped by both sides.
   bool from_eye = false;
+  // The ray stands for a cone: its width at the origin, in metres, and how much wider it becomes a
+  // metre. 0: none. Only very large pictures are read by it.
+  float width = 0, spread = 0;
 };
 
 // Holds rays side by side, as vector units want them; t_min is 0.

@@ -56,6 +56,7 @@ void make_pixel_requests(const View& view, uint64_t seed, std::span<const PixelS
       request.index = uint32_t(asked.index);
       request.ray.origin = view.position;
       request.ray.from_eye = true;
+      request.ray.spread = 2 * view.tan_half_fov / float(view.height);
       // The place comes from a sequence apart from the sample's own.
       jitter.set(i, Sampler(mix64(of_pixel ^ 0x6a09e667f3bcc909ull), request.index));
       x[i] = float(asked.x), y[i] = float(asked.y);

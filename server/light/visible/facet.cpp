@@ -94,12 +94,14 @@ vec3 read_picture(const Pictures& pictures, const FacetPicture& place, const Tex
                       pixel * place.texels);
 }
 
-// Returns the base colour, linear.
-vec3 see_base(const Pictures& pictures, const Facet& f, vec2 at, float pixel) {
+// Returns the base colour, linear; `large` as see_facet() has it.
+vec3 see_base(const Pictures& pictures, const Facet& f, vec2 at, float pixel,
+              const vec3* large = nullptr) {
   const Mesh& mesh = *f.placed->mesh;
   const Material& m = *f.material;
   vec3 base = vec3(m.base_color);
-  if (m.base_color_texture.texture >= 0)
+  if (large) base *= *large;
+  else if (m.base_color_texture.texture >= 0)
     base *= read_picture(pictures, f.base, m.base_color_texture, at, pixel);
   if (!mesh.colors.empty())
     base *= vec3(mix3(mesh.colors[f.corner.x], mesh.colors[f.corner.y], mesh.colors[f.corner.z],
@@ -124,7 +126,7 @@ Pictures make_pictures(const Scene& scene) {
 }
 
 PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
-                     MetalDemodulation metal, const Hit& hit, float pixel) {
+                     MetalDemodulation metal, const Hit& hit, float pixel, const vec3* large) {
   const Material& m = *f.material;
   vec2 at = hit.barycentric;
   vec3 weight(1 - at.x - at.y, at.x, at.y);
@@ -136,7 +138,7 @@ PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& 
   normal = length2 > 1e-25f ? normal / std::sqrt(length2) : f.face;
   seen.normal = f.front ? normal : -normal;
   seen.scatters = !m.unlit;
-  const vec3 base = see_base(pictures, f, at, pixel);
+  const vec3 base = see_base(pictures, f, at, pixel, large);
   float metallic = m.metallic;
   if (m.metallic_roughness_texture.texture >= 0 && m.metallic > 0)
     metallic *= read_picture(pictures, f.shine, m.metallic_roughness_texture, at, pixel).z;

@@ -211,8 +211,9 @@ inline bool emits(const Facet& f) {
 }
 
 // Returns what a pixel sees. `metal`: its material's; `pixel`: its width on the surface, metres.
+// `large`: the texel of its base colour, if that is a very large picture (world/large_texture.h).
 PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
-                     MetalDemodulation metal, const Hit& hit, float pixel);
+                     MetalDemodulation metal, const Hit& hit, float pixel, const vec3* large);
 
 Gloss see_gloss(const Pictures& pictures, const Facet& f, vec2 barycentric, float pixel);
 

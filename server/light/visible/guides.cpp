@@ -11,6 +11,7 @@
 #include "light/sample/medium.h"
 #include "light/walk/first_surface.h"
 #include "light/walk/walk.h"
+#include "world/large_texture.h"
 
 namespace wellspring::light {
 namespace {
@@ -219,6 +220,20 @@ void see(const World& world, const Lights& lights, std::span<const Ray> rays,
       see_packet(transport, rays.subspan(start, std::min(rays.size() - start, packet)),
                  &seen[start]);
   });
+}
+
+void fetch_pieces(const World& world, const Lights& lights, const View& view) {
+  const Scene& scene = world.scene();
+  if (std::ranges::none_of(scene.images, [](const Image& image) { return image.large != nullptr; }))
+    return;
+  PieceClient client(shared_store());
+  std::vector<PieceMotion> motions;
+  // The second time it looks for what lies beside the first pieces.
+  for (int round = 0; round < 2; round++) {
+    make_guides(world, lights, view, 1);
+    client.want(take_wishes(scene, motions));
+    client.fetch();
+  }
 }
 
 }  // namespace wellspring::light

@@ -34,6 +34,10 @@ struct GuidePlanes {
 // Returns means over `rays` rays a pixel, spread evenly over it. Runs on all cores.
 GuidePlanes make_guides(const World& world, const Lights& lights, const View& view, int rays = 16);
 
+// Fetches the pieces of very large pictures that a view shows, also in mirrors and behind glass,
+// and returns when they are there: for finished pictures.
+void fetch_pieces(const World& world, const Lights& lights, const View& view);
+
 // Finds what rays from the eye meet, without the light that falls there, for pictures whose light
 // comes from elsewhere. It costs a twentieth of a sample.
 

@@ -2,6 +2,8 @@
 // Holds the private state of light/visible/visibility.h, for its own units.
 #pragma once
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/simd.h"
@@ -9,6 +11,7 @@
 #include "light/sample/illumination_map.h"
 #include "light/visible/facet.h"
 #include "light/visible/visibility.h"
+#include "world/large_texture.h"
 
 namespace wellspring::light {
 
@@ -25,6 +28,7 @@ struct VisibilityPass::Impl {
   std::vector<uint8_t> plain;            // one for each material: is_plain()
   bool any_gloss = false;                // some mesh of the scene has highlights
   std::vector<uint8_t> moving_object;    // by object
+  std::shared_ptr<PieceStore> pieces;    // the scene's; null: it has no very large pictures
   MetalDemodulation metal_of(int material) const {
     return lights.tables->materials[size_t(material)].metal;
   }
@@ -79,6 +83,12 @@ struct VisibleRun::Impl {
   float pixel_angle, blurred_angle;
   FacetCache& facets;
   const RasterRun* run = nullptr;
+  // Made when the run first shows a very large picture:
+  mutable std::optional<PictureSampler> sampler{};
+  mutable PixelToTexture to_texture{};  // on this triangle
+  mutable uint32_t texture_instance = RasterRun::nothing, texture_triangle = 0;
+  // Returns the texel of a very large picture, linear, that pixel i of `f` shows.
+  vec3 read_large(const Facet& f, int i) const;
   // Returns the direction towards pixel i, at depth 1.
   vec3 direction(int i) const {
     vec2 axis = axis_place(view);

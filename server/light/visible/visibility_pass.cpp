@@ -33,6 +33,8 @@ VisibilityPass::VisibilityPass(const World& world, const Lights& lights)
     impl_->glossy.push_back(may_gloss(m, ranges));
     impl_->plain.push_back(is_plain(m, ranges));
   }
+  for (const Image& image : scene.images)
+    if (image.large) impl_->pieces = image.large->store;
   for (const Mesh& mesh : scene.meshes)
     if (mesh.material >= 0) impl_->any_gloss |= impl_->glossy[size_t(mesh.material)] != 0;
 }
@@ -47,6 +49,22 @@ bool VisibilityPass::moves(uint32_t object) const {
 bool VisibilityPass::rasterises(const View& view) const {
   Transport transport{impl_->world, *impl_->lights.tables};
   return !impl_->lights.tables->any_solid || find_media(transport, view.position).innermost() < 0;
+}
+
+vec3 VisibleRun::Impl::read_large(const Facet& f, int i) const {
+  const TextureRef& reference = f.material->base_color_texture;
+  const Scene& scene = *visibility.pictures.scene;
+  const Texture& texture = scene.textures[size_t(reference.texture)];
+  if (texture_instance != f.instance || texture_triangle != f.triangle) {
+    to_texture = PixelToTexture(
+        make_pictured_triangle(*f.placed, f.triangle, reference, view.position), view);
+    texture_instance = f.instance, texture_triangle = f.triangle;
+  }
+  if (!sampler) sampler.emplace(*visibility.pieces);
+  const PictureFootprint footprint =
+      to_texture.at(double(run->x + i) + double(offset.x), double(run->y) + double(offset.y),
+                    double(blurred_angle / pixel_angle), texture);
+  return sampler->look(*scene.images[size_t(texture.image)].large, footprint);
 }
 
 // Does demodulated_albedo() for eight base colours at a time.
@@ -131,7 +149,12 @@ void VisibleRun::Impl::describe(const Stretches& stretches, const Stretch& s,
   for (int i = s.begin; i < s.end; i += lane_count) {
     Lanes rgb[3] = {all_lanes(1), all_lanes(1), all_lanes(1)}, shine[3] = {rgb[0], rgb[0], rgb[0]};
     bool done = !s.alone;
-    if (done && reads)
+    if (done && reads && m.large_picture) {
+      for (int k = i; k < std::min(i + lane_count, s.end); k++) {
+        const vec3 texel = read_large(facet(k), k);
+        for (int c = 0; c < 3; c++) rgb[c][k - i] = texel[c];
+      }
+    } else if (done && reads)
       done = read_lanes(stretches.base, m.base_color_texture, s.base_texels, i, s.end, rgb);
     if (done && reads_too)
       done = read_lanes(stretches.shine, m.metallic_roughness_texture, s.emission_texels, i, s.end,
@@ -226,8 +249,12 @@ PrimaryHit VisibleRun::Impl::see(int i) const {
       return seen;
     }
     float pixel = pixel_width(f, distance(i), blurred_angle);
+    vec3 texel(0);
+    const bool large = f.material->large_picture;
+    if (large) texel = read_large(f, i);
     seen = see_facet(visibility.pictures, visibility.world, f,
-                     visibility.metal_of(f.placed->mesh->material), hit, pixel);
+                     visibility.metal_of(f.placed->mesh->material), hit, pixel,
+                     large ? &texel : nullptr);
   }
   if (run->veil) {
     const Veil& veil = run->veil[i];
@@ -323,7 +350,13 @@ bool VisibilityPass::draw(const View& view, RasterSettings settings, float blur,
       uint32_t shown = instance == RasterRun::nothing ? 0 : s.world.object_of(instance);
       std::fill(object + begin, object + raster_run.end[p], shown);
     }
-    VisibleRun::Impl run_impl{s, view, settings.offset, slope, blur * slope, facets, &raster_run};
+    VisibleRun::Impl run_impl{.visibility = s,
+                              .view = view,
+                              .offset = settings.offset,
+                              .pixel_angle = slope,
+                              .blurred_angle = blur * slope,
+                              .facets = facets,
+                              .run = &raster_run};
     VisibleRun run;
     run.picture = picture;
     run.x = raster_run.x, run.y = raster_run.y, run.count = raster_run.count;

@@ -87,6 +87,11 @@ void part_colors(const Transport& transport, const Walk& walk, const Surface& su
 bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered) {
   if (!(max_component(scattered.weight) > 0)) return false;
   walk.throughput *= scattered.weight;
+  if (walk.ray.spread > 0) {
+    // A picture in a mirror is seen as sharp as one behind a pane.
+    if (scattered.pdf > 0) walk.ray.spread = walk.ray.width = 0;
+    else walk.ray.width += walk.ray.spread * distance(place.position, walk.ray.origin);
+  }
   walk.ray.direction = scattered.direction;
   walk.ray.origin = offset_origin(place, scattered.direction);
   if (scattered.bounce == Bounce::pass) return ++walk.panes <= most_panes;

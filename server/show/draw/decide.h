@@ -83,7 +83,7 @@ struct VisitorDrawState {
   bool stands = false;     // nothing moved the visitor's view for a moment
   bool new_place = false;  // nothing was drawn yet of the visitor's present place
   bool same_view = false;  // the last picture was drawn for the visitor's present view
-  bool other_light = false;  // lamps or the hour have changed since that picture
+  bool other_light = false;  // lamps, hour or very large pictures have changed since that picture
   bool sees_moving = false;  // something that can move may be in view
   bool drew_moving = false;  // something that can move may have been in that picture
   bool unshown = false;      // the last picture has not been sent yet

@@ -12,6 +12,7 @@
 #include "picture/still/reconstruct_still.h"
 #include "show/draw/decide.h"
 #include "show/draw/pace.h"
+#include "show/draw/pieces.h"
 #include "show/state/renderer.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
@@ -153,6 +154,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   VisitorPicture& picture = *visitor.picture;
   RenderCache& cache = picture.cache;
   follow_lamps(show.stage, visitor);
+  follow_pieces(picture);
   cache.set_attention(job.attention);
   cache.set_weights(job.weights ? std::span(*job.weights) : std::span<const float>());
   cache.set_reference(job.settled);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <oneapi/tbb/info.h>
 
+#include "show/draw/pieces.h"
 #include "show/state/delivery.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
@@ -75,9 +76,9 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
   // The renderer brings the picture that it draws to the present light.
-  state.other_light =
-      show.drawing->renderer.drawn != visitor.link->id &&
-      (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour);
+  state.other_light = show.drawing->renderer.drawn != visitor.link->id &&
+                      (picture.lamps != visitor.lamps.lit ||
+                       picture.hour != visitor.lamps.lit_hour || has_new_pieces(picture));
   state.sees_moving =
       state.welcomed && sees_moving(show.cast, show.visits, visitor, place.last_view);
   state.drew_moving = picture.job.sees_moving;

@@ -11,6 +11,7 @@
 #include "picture/still/reconstruct_still.h"
 #include "show/draw/decide.h"
 #include "show/draw/late_samples.h"
+#include "show/draw/pieces.h"
 #include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
 #include "show/state/renderer.h"
@@ -116,6 +117,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   else
     compositor.draw_still(cache, job.view, *show.stage.visibility, work.frame,
                           costs.backdrop ? StillShows::backdrop : StillShows::all);
+  want_pieces(show.stage, *visitor.picture);
   if (job.kind == PictureKind::reconstruction) {
     std::swap(work.frame, show.drawing->pass.frame);
     work.guided = 0;

@@ -3,6 +3,7 @@
 // storyteller's figure. Immutable once loaded; borrowed by the Show for as long as it runs.
 #pragma once
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -132,6 +133,20 @@ struct PointOfInterest {
   } door;                            // to another exhibit; empty exhibit: it leads nowhere
 };
 
+// A piece of the exhibit that is no part of its glTF files.
+struct ExhibitPiece {
+  std::string id, source;  // source: of the package, as exhibit.json names it
+  std::string material;    // material of the scene that shows it; empty: it hangs at a place
+  dvec3 position{0};       // middle of its back
+  float yaw = 0, pitch = 0, roll = 0;  // radians; as a storyteller's yaw; positive pitch looks up
+  float width = 1;                     // metres
+  float frame_width = 0, frame_depth = 0;  // metres; 0: it has no frame
+  vec3 frame_color{0};                     // linear
+  bool gilt = false;
+  std::shared_ptr<const LargePicture> picture;
+};
+inline constexpr size_t most_exhibit_pieces = 500;
+
 // A thing that a storyteller can hold.
 struct ExhibitProp {
   std::string id, file;
@@ -236,6 +251,7 @@ struct Exhibit {
   std::vector<TourPlan> tours;
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
+  std::vector<ExhibitPiece> pieces;
   std::vector<ExhibitLamp> lamps;  // one for each of the scene's, but for the day's sun
   std::vector<ChangingLight> lights;
   std::optional<Day> day;

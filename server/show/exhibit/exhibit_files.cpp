@@ -138,7 +138,7 @@ bool add_served_file(Exhibit& exhibit, FieldReader& fields, const char* field,
 namespace fs = std::filesystem;
 
 std::string package_file(FieldReader& fields, const char* field, const std::string& folder,
-                         const std::string& name) {
+                         const std::string& name, PackagePart part) {
   if (name.empty()) return "";
   fs::path relative(name);
   bool escapes = relative.is_absolute() || std::any_of(relative.begin(), relative.end(),
@@ -154,7 +154,8 @@ std::string package_file(FieldReader& fields, const char* field, const std::stri
     fields.fail(field, "'" + name + "' leaves the package's folder");
     return "";
   }
-  if (!fs::is_regular_file(path, ec)) {
+  const bool folder_fits = part == PackagePart::file_or_folder && fs::is_directory(path, ec);
+  if (!fs::is_regular_file(path, ec) && !folder_fits) {
     fields.fail(field, "there is no file '" + name + "' in the package" +
                            did_you_mean(name, list_files(root)));
     return "";

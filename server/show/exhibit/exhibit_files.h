@@ -27,10 +27,11 @@ bool add_served_file(Exhibit& exhibit, FieldReader& fields, const char* field,
 
 // Files of an exhibit package, named in its JSON.
 
-// The path of a file inside the package's folder that is there. Empty when not, with the problem
-// noted at `field`; also for an empty name.
+// The path of a file inside the package's folder that is there, or of a folder if these are asked
+// for. Empty when not, with the problem noted at `field`; also for an empty name.
+enum class PackagePart : uint8_t { file, file_or_folder };
 std::string package_file(FieldReader& fields, const char* field, const std::string& folder,
-                         const std::string& name);
+                         const std::string& name, PackagePart part = PackagePart::file);
 
 // Reads "scene" or "scenes", "scale", "light_scale" and "environment". If a file cannot be read
 // exhibit.scene.objects is empty.

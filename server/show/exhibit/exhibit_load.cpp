@@ -13,6 +13,7 @@
 #include "show/exhibit/exhibit_files.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "show/exhibit/exhibit_objects.h"
+#include "show/exhibit/exhibit_pieces.h"
 #include "show/exhibit/exhibit_story.h"
 #include "show/exhibit/json_fields.h"
 
@@ -242,6 +243,7 @@ void read_manifest(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& pr
   read_props(exhibit, root, problems);
   read_kiosks(exhibit, root);
   read_tours_and_stories(exhibit, root, problems);
+  read_pieces(exhibit, root, problems);
   read_objects(exhibit, root);
   read_animations(exhibit, root);
   check_marks(exhibit, problems);

@@ -45,8 +45,18 @@ std::vector<uint32_t> find_objects(const Scene& scene, const std::string& name) 
   return found;
 }
 
-// Returns the bounds of the objects, relative to the scene's origin; empty: low above high.
-Bounds bounds_of(const Scene& scene, const std::vector<uint32_t>& objects) {
+std::string no_node(const Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  for (const SceneNode& node : scene.nodes) names.push_back(node.name);
+  names.insert(names.end(), scene.objects.begin(), scene.objects.end());
+  if (!name.empty() && std::find(names.begin(), names.end(), name) != names.end())
+    return "nothing that can be seen belongs to the node '" + name + "'";
+  return "the scene has no node '" + name + "'" + did_you_mean(name, names);
+}
+
+}  // namespace
+
+Bounds object_bounds(const Scene& scene, const std::vector<uint32_t>& objects) {
   Bounds bounds;
   for (const Instance& instance : scene.instances) {
     if (std::find(objects.begin(), objects.end(), instance.object) == objects.end()) continue;
@@ -59,18 +69,9 @@ Bounds bounds_of(const Scene& scene, const std::vector<uint32_t>& objects) {
   return bounds;
 }
 
-std::string no_node(const Scene& scene, const std::string& name) {
-  std::vector<std::string> names;
-  for (const SceneNode& node : scene.nodes) names.push_back(node.name);
-  names.insert(names.end(), scene.objects.begin(), scene.objects.end());
-  if (!name.empty() && std::find(names.begin(), names.end(), name) != names.end())
-    return "nothing that can be seen belongs to the node '" + name + "'";
-  return "the scene has no node '" + name + "'" + did_you_mean(name, names);
-}
-
-// Reads what pages say of it.
-void read_label(const Exhibit& exhibit, PointOfInterest& point, FieldReader& fields) {
-  point.title = read_local_text(fields, "title", "");
+void read_label(const Exhibit& exhibit, FieldReader& fields, const char* title,
+                PointOfInterest& point) {
+  point.title = read_local_text(fields, title, "");
   point.text = read_local_text(fields, "text", "");
   fields.text("story", point.story, "id of the story about it");
   const bool known = std::ranges::any_of(
@@ -92,8 +93,6 @@ void read_label(const Exhibit& exhibit, PointOfInterest& point, FieldReader& fie
   });
 }
 
-}  // namespace
-
 void read_objects(Exhibit& exhibit, FieldReader& root) {
   const Scene& scene = exhibit.scene;
   root.members(
@@ -101,11 +100,11 @@ void read_objects(Exhibit& exhibit, FieldReader& root) {
         PointOfInterest point;
         point.id = id;
         fields.text("node", point.node, "name in the glTF file", Need::required);
-        read_label(exhibit, point, fields);
+        read_label(exhibit, fields, "title", point);
         point.objects = find_objects(scene, point.node);
         if (point.objects.empty() && !scene.objects.empty())
           fields.fail("node", no_node(scene, point.node));
-        const Bounds bounds = bounds_of(scene, point.objects);
+        const Bounds bounds = object_bounds(scene, point.objects);
         const bool empty = !(bounds.low.x <= bounds.high.x);
         const vec3 size = empty ? vec3(0) : bounds.high - bounds.low;
         if (point.around && 0.5 * double(glm::length(size)) > largest_around)

@@ -12,6 +12,12 @@ namespace wellspring::show {
 // missed.
 void read_objects(Exhibit& exhibit, FieldReader& root);
 
+// Returns the bounds of objects, relative to the scene's origin; empty: low above high.
+Bounds object_bounds(const Scene& scene, const std::vector<uint32_t>& objects);
+// Reads what pages say of an object: `title` names the field of its title.
+void read_label(const Exhibit& exhibit, FieldReader& fields, const char* title,
+                PointOfInterest& point);
+
 // The fifteen elements of the Dublin Core (ISO 15836-1), in the order in which they are shown.
 inline constexpr const char* provenance_elements[] = {
     "title",    "creator",     "contributor", "date",     "type",

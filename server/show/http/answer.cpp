@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "show/answer/objects.h"
+#include "show/http/iiif.h"
 #include "show/http/pages.h"
 #include "show/http/still.h"
 
@@ -198,6 +199,7 @@ HttpReply answer_metrics(const AnswerSources& sources) {
     texts.push_back({one.exhibit->id, write_metrics(one.board->read())});
   reply.body = texts.size() == 1 ? texts.front().second : join_metrics(texts);
   reply.body += failure_metrics(sources.failed);
+  reply.body += store_metrics(shared_store()->stats());
   if (sources.stills) reply.body += still_metrics(sources.stills->status());
   if (sources.stream_metrics) reply.body += sources.stream_metrics();
   return reply;
@@ -296,6 +298,13 @@ HttpReply answer(const AnswerSources& sources, const HttpQuestion& question) {
   if (path == exhibits || path == exhibits + "/") return answer_exhibits(sources, access);
   if (path.starts_with(exhibits + "/"))
     return answer_exhibit(sources, question, path.substr(exhibits.size() + 1));
+  if (path.starts_with("/iiif/")) {
+    const auto find = [&](const std::string& id) {
+      const ServedExhibit* one = find_exhibit(sources, id);
+      return one ? IiifExhibit{one->exhibit, one->address} : IiifExhibit{};
+    };
+    return answer_iiif({find, sources.changes}, question);
+  }
   if (const PageFile* page = find_page(sources, question)) return answer_page(*page, question);
   if (auto page = sources.pages->find("/missing.html");
       page != sources.pages->end() && prefers_html(question.accept)) {

@@ -13,6 +13,7 @@
 #include "show/http/report.h"
 #include "show/http/still_desk.h"
 #include "show/visit/walk_map.h"
+#include "store/piece_store.h"
 #include "wire/http.h"
 
 namespace wellspring::show {
@@ -71,5 +72,6 @@ std::string write_metrics(const ShowReport& report);
 std::string join_metrics(const std::vector<std::pair<std::string, std::string>>& texts);
 std::string failure_metrics(const std::vector<FailedExhibit>& failed);
 std::string still_metrics(const StillStatus& stills);
+std::string store_metrics(const StoreStats& store);
 
 }  // namespace wellspring::show

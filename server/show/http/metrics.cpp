@@ -287,6 +287,27 @@ std::string still_metrics(const StillStatus& stills) {
   return out;
 }
 
+std::string store_metrics(const StoreStats& store) {
+  std::string out;
+  if (store.sources == 0) return out;
+  add_metric(out, "store_bytes", "Memory of pieces of very large pictures", double(store.bytes));
+  add_metric(out, "store_budget_bytes", "What they may take", double(store.budget));
+  add_metric(out, "store_pieces", "Pieces in memory", store.pieces);
+  add_metric(out, "store_sources", "Pictures whose pieces are kept there", store.sources);
+  add_metric(out, "store_waiting", "Pieces that visitors wait for", store.waiting);
+  add_metric(out, "store_under_way", "Pieces that are being read", store.under_way);
+  add_metric(out, "store_coarser_levels", "Levels left out because all that is seen does not fit",
+             double(store.coarser));
+  add_metric(out, "store_fetch_seconds_total", "Time of reading, of all threads",
+             store.fetch_seconds);
+  begin_metric(out, "store_fetched_total", "Pieces read, by what came of it");
+  add_sample(out, "store_fetched_total", {{"result", "piece"}}, double(store.fetched));
+  add_sample(out, "store_fetched_total", {{"result", "absent"}}, double(store.absent));
+  add_sample(out, "store_fetched_total", {{"result", "failed"}}, double(store.failed));
+  add_metric(out, "store_dropped_total", "Pieces dropped to make room", double(store.dropped));
+  return out;
+}
+
 std::string failure_metrics(const std::vector<FailedExhibit>& failed) {
   if (failed.empty()) return {};
   std::string out;

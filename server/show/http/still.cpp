@@ -100,6 +100,7 @@ std::optional<Frame> StillRoom::Scenery::trace(const View& view, const StillJob&
   settings.progress = [&](double) {
     if (given_up && given_up()) throw GivenUp{};
   };
+  fetch_pieces(*world, lights, view);
   const double began = clock();
   Frame frame;
   try {

@@ -42,13 +42,13 @@ void switch_world(ExhibitStage& stage, const LampLevels& lamps) {
   stage.switches.lit = lamps;
 }
 
+}  // namespace
+
 void look_anew(VisitorPicture& picture) {
   picture.rest = {};
   picture.stats.converged = 0;  // a visitor at rest needs samples again,
   picture.job.settled = false;  // first by the quicker technique
 }
-
-}  // namespace
 
 std::vector<char> shining_objects(const Scene& scene) {
   std::vector<char> shining(scene.objects.size(), 0);

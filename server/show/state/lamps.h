@@ -52,6 +52,8 @@ void light_world(ExhibitStage& stage, const LampLevels& lamps);
 // Makes the visitor's cache follow the world's present light. Whoever draws calls it before
 // anything is drawn for a visitor.
 void follow_lamps(ExhibitStage& stage, Visitor& visitor);
+// Forgets how far a picture at rest has come, since it shows something else from now on.
+void look_anew(VisitorPicture& picture);
 // Drops the light of states that nobody sees any more, and changes that nobody has yet to follow.
 // Only while the renderer is idle.
 void forget_lights(ExhibitStage& stage, const ShowVisits& visits);

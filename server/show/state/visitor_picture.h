@@ -5,6 +5,7 @@
 // was sent.
 #pragma once
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "cache/broker.h"
@@ -14,6 +15,7 @@
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "show/state/renderer.h"
+#include "store/seen_pieces.h"
 
 namespace wellspring::show {
 
@@ -72,6 +74,10 @@ struct VisitorPicture {
   double posed_at = -1e9;     // show time of the job of `moving`
   BackdropSurfaces surfaces;  // surfaces of the keyframe, while lights that move shine on it
   SettledBounce settled;      // light of those lights that stay as they are
+  // Pieces of very large pictures that it shows; null: none so far.
+  std::unique_ptr<PieceClient> pieces;
+  std::vector<PieceMotion> piece_motions;
+  uint64_t pieces_shown = 0;  // number of pieces that had come by the last picture
   bool unshown = false;       // nothing of the newest picture has been sent yet
   // bytes of its cache; bytes of all that is kept for its pictures
   size_t cache_bytes = 0, memory_bytes = 0;

@@ -186,7 +186,7 @@ TEST_F(Lamps, AnswersOfTheOldLightAreNotTaken) {
   std::vector<Request> requests(64);
   for (size_t i = 0; i < requests.size(); i++) requests[i] = pixel_request(view, 5, int(i), 20, 0);
   visitor.picture->broker.ask(view, {show->stage.technique, show->settings.transport}, requests);
-  std::optional<Piece> piece = visitor.picture->broker.take();
+  std::optional<cache::Piece> piece = visitor.picture->broker.take();
   ASSERT_TRUE(piece);
   Answer old{*piece, show->cast.pose_number, std::vector<Sample>(piece->requests.size())};
   lamp(0, "ceiling", false);

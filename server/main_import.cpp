@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs `wellspring import picture FILE...`: makes tiled TIFFs with smaller versions inside of
+// pictures of any format that vips reads, for `pieces` of exhibit.json. Exit status: 0 done, 1 the
+// input is wrong, 2 the command line is wrong.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <regex>
+#include <unistd.h>
+
+#include "about/version.h"
+#include "base/child.h"
+#include "base/clock.h"
+#include "base/load_error.h"
+#include "base/log.h"
+#include "store/open/open_picture.h"
+
+using namespace wellspring;
+using namespace wellspring::program;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> files;
+  std::string out = ".";
+  double width = 0;  // metres; 0: unknown
+  int quality = 90;
+  bool overwrite = false;
+};
+
+// Shows how far vips has come, by what it writes: "vips temp-3: 34% complete".
+void show_progress(int from, Progress& progress) {
+  static const std::regex percent("([0-9]{1,3})% complete");
+  std::string text;
+  char bytes[4096];
+  for (ssize_t got; (got = read(from, bytes, sizeof bytes)) > 0;) {
+    text.append(bytes, size_t(got));
+    std::string last;
+    for (std::sregex_iterator match(text.begin(), text.end(), percent), end; match != end; ++match)
+      last = (*match)[1];
+    if (last.empty()) continue;
+    progress.tell(std::stoi(last) / 100.0);
+    text.erase(0, text.rfind(last + "%"));
+  }
+}
+
+// Writes the pyramid of `file` to `made`. Codes become 8-bit sRGB; a colour profile stays inside.
+void run_vips(const std::string& file, const std::string& made, int quality) {
+  const std::string how =
+      "[tile,pyramid,bigtiff,tile-width=256,tile-height=256,compression=jpeg,Q=" +
+      std::to_string(quality) + "]";
+  ChildSettings settings;
+  settings.words = {"vips", "--vips-progress", "colourspace", file, made + how, "srgb"};
+  settings.writes = 1;
+  Child vips(settings);
+  Progress progress("import");
+  show_progress(vips.from(), progress);
+  if (const int status = vips.wait().value_or(-1); status != 0)
+    throw LoadError(file, "",
+                    status == 127 ? "the program vips is missing (Debian: libvips-tools)"
+                                  : "vips cannot turn it into a TIFF; its reason stands above");
+}
+
+void import_picture(const Options& options, const std::string& file) {
+  if (!fs::is_regular_file(file)) throw LoadError(file, "", "is no file");
+  const fs::path made = fs::path(options.out) / fs::path(file).stem().concat(".tif");
+  std::error_code error;
+  if (fs::exists(made) && (!options.overwrite || fs::equivalent(made, file, error)))
+    throw LoadError(made.string(), "", "is there already; --overwrite replaces it");
+  // Nobody finds half a file.
+  const std::string half = made.string() + ".part.tif";
+  const double began = seconds_now();
+  try {
+    run_vips(file, half, options.quality);
+    const auto picture = open_picture(half);
+    fs::rename(half, made);
+    const PyramidLevel& whole = picture->levels().front();
+    std::cerr << made.string() << ": " << whole.width << " x " << whole.height << " texels, "
+              << picture->levels().size() << " levels, " << fs::file_size(made) / 1'000'000
+              << " MB, " << int(seconds_now() - began + 0.5) << " s\n";
+  } catch (...) {
+    fs::remove(half, error);
+    throw;
+  }
+  std::cout << "{\"id\": \"" << made.stem().string() << "\", \"kind\": \"picture\", \"source\": \""
+            << made.filename().string()
+            << "\", \"width_m\": " << (options.width > 0 ? options.width : 1)
+            << ", \"place\": {\"position\": [0, 1.5, 0], \"yaw_deg\": 0}}\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (answer_version(argc, argv)) return 0;
+  log::start("import");
+  CLI::App app{"Makes of a large file what an exhibit can show a part of."};
+  app.require_subcommand(1);
+  Options options;
+  CLI::App& picture = *app.add_subcommand(
+      "picture", "a tiled TIFF with smaller versions inside; prints a piece for exhibit.json");
+  picture.add_option("files", options.files, "pictures of any format that vips reads")->required();
+  picture.add_option("--out", options.out, "folder for what is made")->capture_default_str();
+  picture.add_option("--width", options.width, "of the picture, in metres")
+      ->check(CLI::Range(0.001, 1000.0));
+  picture.add_option("--quality", options.quality, "of JPEG tiles")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  picture.add_flag("--overwrite", options.overwrite, "replace what is there");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    fs::create_directories(options.out);
+    for (const std::string& file : options.files) import_picture(options, file);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+}

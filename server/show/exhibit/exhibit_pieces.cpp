@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/exhibit/exhibit_pieces.h"
+
+#include <algorithm>
+
+#include "base/load_error.h"
+#include "base/unicode.h"
+#include "show/exhibit/exhibit_files.h"
+#include "show/exhibit/exhibit_objects.h"
+#include "store/open/open_picture.h"
+#include "store/picture/sample_picture.h"
+
+namespace wellspring::show {
+namespace {
+
+constexpr float lip = 0.004f;         // metres of the picture that its frame covers on each side
+constexpr float board_depth = 0.02f;  // metres by which a picture without a frame stands off
+
+// Collects flat triangles of a piece: x to the right of who looks at it, y up, z towards them.
+struct PieceMesh {
+  Mesh mesh;
+  // Adds a quad, corners anticlockwise as seen from its front.
+  void add(vec3 a, vec3 b, vec3 c, vec3 d) {
+    const uint32_t first = uint32_t(mesh.positions.size());
+    const vec3 normal = glm::normalize(cross(b - a, d - a));
+    for (vec3 p : {a, b, c, d}) mesh.positions.push_back(p), mesh.normals.push_back(normal);
+    for (vec2 uv : {vec2(0, 1), vec2(1, 1), vec2(1, 0), vec2(0, 0)}) mesh.uv[0].push_back(uv);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+};
+
+// Makes a frame of four mitred bars around a picture of these half sides, at `depth` before the
+// wall: their outer sides, a raised edge, and a slope down to the picture.
+PieceMesh make_frame(vec2 half, float width, float depth, float canvas) {
+  struct Edge {
+    float in, z;  // from the outer edge inwards; before the wall
+  };
+  const Edge profile[] = {{0, 0},
+                          {0, 0.6f * depth},
+                          {0.12f * width, 0.92f * depth},
+                          {0.3f * width, depth},
+                          {0.42f * width, 0.9f * depth},
+                          {0.8f * width, canvas + 0.25f * (depth - canvas)},
+                          {width, canvas + 0.3f * (depth - canvas)},
+                          {width, canvas}};
+  const vec2 outer = half - vec2(lip) + vec2(width);
+  PieceMesh frame;
+  for (size_t i = 0; i + 1 < std::size(profile); i++) {
+    const Edge &a = profile[i], &b = profile[i + 1];
+    auto corner = [&](const Edge& edge, int k) {
+      const vec2 side = outer - vec2(edge.in);
+      return vec3(k == 1 || k == 2 ? side.x : -side.x, k >= 2 ? side.y : -side.y, edge.z);
+    };
+    for (int k = 0; k < 4; k++)
+      frame.add(corner(a, k), corner(a, (k + 1) % 4), corner(b, (k + 1) % 4), corner(b, k));
+  }
+  return frame;
+}
+
+void put(Scene& scene, Mesh mesh, int material, const mat4& to_world, uint32_t object) {
+  mesh.material = material;
+  mesh.name = scene.objects[object];
+  scene.instances.push_back({int(scene.meshes.size()), to_world, object});
+  scene.meshes.push_back(std::move(mesh));
+}
+
+int add_material(Scene& scene, const std::string& name, vec3 color, float roughness, float metal) {
+  Material material;
+  material.name = name;
+  material.base_color = vec4(color, 1);
+  material.roughness = roughness, material.metallic = metal;
+  scene.materials.push_back(std::move(material));
+  return int(scene.materials.size()) - 1;
+}
+
+// Adds the picture's small version, and how it is read.
+int add_texture(Scene& scene, const ExhibitPiece& piece) {
+  Image image;
+  image.name = piece.id;
+  const Piece& coarsest = piece.picture->coarsest;
+  image.width = coarsest.width, image.height = coarsest.height;
+  image.srgb = true;
+  image.texels8 = coarsest.bytes;
+  image.large = piece.picture;
+  scene.images.push_back(std::move(image));
+  scene.textures.push_back({int(scene.images.size()) - 1, Wrap::clamp, Wrap::clamp});
+  return int(scene.textures.size()) - 1;
+}
+
+uint32_t add_object(Scene& scene, const std::string& name) {
+  scene.objects.push_back(name);
+  if (!scene.object_nodes.empty()) scene.object_nodes.resize(scene.objects.size(), -1);
+  return uint32_t(scene.objects.size()) - 1;
+}
+
+// Hangs a picture with its back board and its frame. Returns its object.
+uint32_t hang(Scene& scene, const ExhibitPiece& piece) {
+  const PyramidLevel& finest = piece.picture->pyramid->levels().front();
+  const float height = float(piece.width * double(finest.height) / double(finest.width));
+  const vec2 half(0.5f * piece.width, 0.5f * height);
+  const bool framed = piece.frame_width > 0;
+  const float canvas = framed ? 0.45f * piece.frame_depth : board_depth;
+  // A yaw of 0 faces -Z.
+  mat4 to_world = glm::translate(mat4(1), vec3(piece.position - scene.origin));
+  to_world = glm::rotate(to_world, piece.yaw + pi, vec3(0, 1, 0));
+  to_world = glm::rotate(to_world, -piece.pitch, vec3(1, 0, 0));
+  to_world = glm::rotate(to_world, piece.roll, vec3(0, 0, 1));
+
+  const uint32_t object = add_object(scene, piece.id);
+  const int paint = add_material(scene, piece.id, vec3(1), 0.65f, 0);
+  scene.materials.back().base_color_texture.texture = add_texture(scene, piece);
+  scene.materials[size_t(paint)].large_picture = true;
+  PieceMesh front;
+  front.add({-half.x, -half.y, canvas}, {half.x, -half.y, canvas}, {half.x, half.y, canvas},
+            {-half.x, half.y, canvas});
+  put(scene, std::move(front.mesh), paint, to_world, object);
+
+  PieceMesh board;
+  const vec3 a(-half.x, -half.y, 0), b(half.x, -half.y, 0), c(half.x, half.y, 0),
+      d(-half.x, half.y, 0), up(0, 0, canvas);
+  board.add(b, a, d, c);
+  for (auto [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, d), std::pair(d, a)})
+    board.add(from, to, to + up, from + up);
+  put(scene, std::move(board.mesh),
+      add_material(scene, piece.id + " board", vec3(0.16f, 0.11f, 0.07f), 0.9f, 0), to_world,
+      object);
+  if (framed) {
+    const int material = add_material(scene, piece.id + " frame", piece.frame_color,
+                                      piece.gilt ? 0.4f : 0.6f, piece.gilt ? 1.0f : 0.0f);
+    put(scene, make_frame(half, piece.frame_width, piece.frame_depth, canvas).mesh, material,
+        to_world, object);
+  }
+  return object;
+}
+
+// Returns how much wider than high the coordinates of a material's picture lie on its surfaces; 1
+// if they lie nowhere.
+double aspect_of(const Scene& scene, int material) {
+  double along_u = 0, along_v = 0;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+    const int set = scene.materials[size_t(material)].base_color_texture.uv_set;
+    if (mesh.material != material || mesh.uv[set].empty()) continue;
+    for (const uvec3& t : mesh.triangles) {
+      const mat3 turn(instance.to_world);
+      const vec3 p = turn * (mesh.positions[t.y] - mesh.positions[t.x]);
+      const vec3 q = turn * (mesh.positions[t.z] - mesh.positions[t.x]);
+      const vec2 a = mesh.uv[set][t.y] - mesh.uv[set][t.x],
+                 b = mesh.uv[set][t.z] - mesh.uv[set][t.x];
+      // These are the derivatives of place by coordinate times the triangle's area in coordinates.
+      along_u += double(glm::length(p * b.y - q * a.y));
+      along_v += double(glm::length(q * a.x - p * b.x));
+    }
+  }
+  return along_u > 0 && along_v > 0 ? along_u / along_v : 1;
+}
+
+// Lets a material of the scene show the picture in its own proportions; what does not fit is cut.
+// Makes an object of all surfaces that have it, and returns it; 0: none has.
+uint32_t cover(Scene& scene, const ExhibitPiece& piece, int material) {
+  Material& m = scene.materials[size_t(material)];
+  const PyramidLevel& finest = piece.picture->pyramid->levels().front();
+  const double fit = aspect_of(scene, material) * double(finest.height) / double(finest.width);
+  const vec2 part = fit < 1 ? vec2(fit, 1) : vec2(1, 1 / fit);
+  mat3 middle(1);
+  middle[0][0] = part.x, middle[1][1] = part.y;
+  middle[2] = vec3(0.5f * (1.0f - part.x), 0.5f * (1.0f - part.y), 1);
+  m.base_color_texture.uv_transform = middle * m.base_color_texture.uv_transform;
+  m.base_color_texture.texture = add_texture(scene, piece);
+  m.large_picture = true;
+  uint32_t object = 0;
+  for (Instance& instance : scene.instances) {
+    if (scene.meshes[size_t(instance.mesh)].material != material) continue;
+    if (object == 0) object = add_object(scene, piece.id);
+    instance.object = object;
+  }
+  return object;
+}
+
+void read_frame(FieldReader& fields, ExhibitPiece& piece) {
+  piece.frame_width = 0.08f, piece.frame_depth = 0.05f;
+  fields.number("width_m", 0.005, 1, piece.frame_width, "0.08");
+  fields.number("depth_m", 0.005, 0.5, piece.frame_depth, "0.05");
+  fields.boolean("gilt", piece.gilt, "it shines like gold leaf");
+  piece.frame_color = piece.gilt ? vec3(0.83f, 0.6f, 0.24f) : vec3(0.09f, 0.05f, 0.028f);
+  fields.vector("color", 1, piece.frame_color, "linear red, green, blue; 0 to 1");
+  piece.frame_color = glm::max(piece.frame_color, vec3(0));
+}
+
+void read_source(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
+                 std::vector<Problem>& problems) {
+  fields.text("source", piece.source,
+              "a tiled TIFF, a Deep Zoom file, a folder of Zoomify or IIIF, a JPEG or PNG",
+              Need::required);
+  std::string layer;
+  fields.text("layer", layer, "of a painting that is described in words; its first");
+  const std::string path =
+      package_file(fields, "source", exhibit.folder, piece.source, PackagePart::file_or_folder);
+  if (path.empty()) return;
+  try {
+    piece.picture = std::make_shared<LargePicture>(
+        shared_store(), open_picture(path, layer, exhibit.languages.front()));
+  } catch (const LoadError& error) {
+    problems.push_back({error.file, error.where, error.what_});
+  } catch (const std::length_error& error) {
+    fields.fail("source", std::string("is too much: ") + error.what());
+  }
+}
+
+void read_piece(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& problems) {
+  ExhibitPiece piece;
+  Scene& scene = exhibit.scene;
+  std::string kind;
+  fields.text("id", piece.id, "", Need::required);
+  if (std::ranges::find(exhibit.pieces, piece.id, &ExhibitPiece::id) != exhibit.pieces.end() ||
+      std::ranges::find(scene.objects, piece.id) != scene.objects.end())
+    fields.fail("id", "'" + piece.id + "' is taken by another piece or object");
+  fields.word("kind", {"picture"}, kind, "", Need::required);
+  read_source(exhibit, fields, piece, problems);
+  fields.text("material", piece.material, "of the scene that shows it, instead of a place");
+  fields.number("width_m", 0.001, 1000, piece.width, "metres, without its frame");
+  fields.part("place", "where it hangs or lies", [&](FieldReader& place) {
+    place.vector("position", most_metres, piece.position, "middle of its back", Need::required);
+    place.degrees("yaw_deg", -720, 720, piece.yaw, "0 faces -z, positive turns left");
+    place.degrees("pitch_deg", -90, 90, piece.pitch, "positive faces upwards: 90 lies on a table");
+    place.degrees("roll_deg", -180, 180, piece.roll, "positive leans to the viewer's left");
+  });
+  fields.part("frame", "around it; none without",
+              [&](FieldReader& frame) { read_frame(frame, piece); });
+  PointOfInterest point;
+  point.id = point.node = piece.id;
+  read_label(exhibit, fields, "label", point);
+  fields.describe_choice({{"material"}, {"place"}});
+  if (piece.picture && piece.material.empty()) {
+    if (!fields.has("place")) fields.fail("names neither a \"place\" nor a \"material\"");
+    point.objects = {hang(scene, piece)};
+  } else if (piece.picture) {
+    const auto material = std::ranges::find(scene.materials, piece.material, &Material::name);
+    if (material == scene.materials.end()) {
+      std::vector<std::string> names;
+      for (const Material& one : scene.materials) names.push_back(one.name);
+      fields.fail("material", "the scene has no material '" + piece.material + "'" +
+                                  did_you_mean(piece.material, names));
+    } else {
+      const uint32_t object = cover(scene, piece, int(material - scene.materials.begin()));
+      if (object > 0) point.objects = {object};
+      else fields.fail("material", "nothing in the scene is made of '" + piece.material + "'");
+    }
+  }
+  if (!point.objects.empty()) {
+    const Bounds bounds = object_bounds(scene, point.objects);
+    point.place = scene.origin + dvec3(0.5f * (bounds.low + bounds.high));
+    exhibit.points.push_back(std::move(point));
+  }
+  exhibit.pieces.push_back(std::move(piece));
+}
+
+}  // namespace
+
+void read_pieces(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& problems) {
+  root.parts("pieces", most_exhibit_pieces, "what hangs in the scene and is no part of its files",
+             [&](FieldReader& fields) { read_piece(exhibit, fields, problems); });
+}
+
+}  // namespace wellspring::show
