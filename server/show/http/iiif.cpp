@@ -2,15 +2,14 @@
 #include "show/http/iiif.h"
 
 #include <algorithm>
-#include <cstring>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 #include <semaphore>
 
 #include "base/load_error.h"
 #include "base/log.h"
-#include "base/rng.h"
 #include "show/http/iiif_image.h"
+#include "show/http/pages.h"
 #include "store/picture/sample_picture.h"
 
 namespace wellspring::show {
@@ -41,34 +40,12 @@ HttpReply refuse_iiif(int status, const char* code, const std::string& message) 
   return reply;
 }
 
-// Reads eight bytes at a time: tiles go out as they are stored, and are many.
-std::string etag_of(const std::string& body) {
-  uint64_t hash = body.size();
-  for (size_t at = 0; at < body.size(); at += 8) {
-    uint64_t word = 0;
-    std::memcpy(&word, body.data() + at, std::min<size_t>(8, body.size() - at));
-    hash = mix64(hash ^ word);
-  }
-  return fmt::format("\"{:016x}\"", hash);
-}
-
 // Lets a reply be kept, unless exhibits change.
 HttpReply kept_a_day(HttpReply reply, const IiifSources& sources) {
   if (reply.status != 200) return reply;
-  reply.headers["ETag"] = etag_of(reply.body);
+  reply.headers["ETag"] = make_etag(reply.body);
   reply.headers["Cache-Control"] = sources.changes ? "no-store" : "public, max-age=86400";
   return reply;
-}
-
-// Writes a part of a path (RFC 3986, section 3.3).
-std::string in_path(const std::string& text) {
-  std::string out;
-  for (const unsigned char c : text) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_' || c == '.' || c == '~';
-    out += plain ? std::string(1, char(c)) : fmt::format("%{:02X}", c);
-  }
-  return out;
 }
 
 // Returns the address of all that is served here: the house's own if that is the one asked for,
@@ -88,8 +65,8 @@ struct ServedPiece {
   int64_t width() const { return pyramid().levels()[0].width; }
   int64_t height() const { return pyramid().levels()[0].height; }
   std::string address(const HttpQuestion& question) const {
-    return base_address(served.address, question.site) + in_path(served.exhibit->id) + "~" +
-           in_path(piece->id);
+    return base_address(served.address, question.site) + escaped(served.exhibit->id) + "~" +
+           escaped(piece->id);
   }
 };
 
@@ -256,7 +233,7 @@ HttpReply answer_manifest(const IiifExhibit& served, const HttpQuestion& questio
     return refuse_iiif(404, "no_pieces", "there are no large pictures in '" + exhibit.id + "'");
   json manifest = {
       {"@context", presentation_context},
-      {"id", base_address(served.address, question.site) + in_path(exhibit.id) + "/manifest.json"},
+      {"id", base_address(served.address, question.site) + escaped(exhibit.id) + "/manifest.json"},
       {"type", "Manifest"},
       {"label", in_languages(exhibit.title)}};
   if (!exhibit.description.empty()) manifest["summary"] = in_languages(exhibit.description);

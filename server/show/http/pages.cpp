@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/http/pages.h"
 
+#include <cstring>
 #include <algorithm>
 #include <filesystem>
 #include <fmt/core.h>
@@ -43,8 +44,23 @@ PageFile make_page(const std::string& content_type, std::string body) {
 
 std::string make_etag(const std::string& body) {
   uint64_t hash = body.size();
-  for (unsigned char c : body) hash = mix64(hash ^ c);
+  // Eight bytes at a time: stored tiles are many, and their tags a tenth of the work.
+  for (size_t at = 0; at < body.size(); at += 8) {
+    uint64_t word = 0;
+    std::memcpy(&word, body.data() + at, std::min<size_t>(8, body.size() - at));
+    hash = mix64(hash ^ word);
+  }
   return fmt::format("\"{:016x}\"", hash);
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (unsigned char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_' || c == '.' || c == '~';
+    out += plain ? std::string(1, char(c)) : fmt::format("%{:02X}", c);
+  }
+  return out;
 }
 
 std::map<std::string, PageFile> load_pages(const std::string& folder) {
@@ -76,17 +92,6 @@ std::map<std::string, PageFile> load_pages(const std::string& folder) {
 namespace {
 
 constexpr int quiet_zone = 4;  // modules
-
-// As a part of an address's query (RFC 3986, section 2.3).
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (unsigned char c : text) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_' || c == '.' || c == '~';
-    out += plain ? std::string(1, char(c)) : fmt::format("%{:02X}", c);
-  }
-  return out;
-}
 
 HttpReply not_found(const char* code, const std::string& message) {
   HttpReply reply;

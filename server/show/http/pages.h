@@ -23,6 +23,8 @@ inline constexpr const char* exhibit_page = "/e/ID";
 std::map<std::string, PageFile> load_pages(const std::string& folder);
 
 std::string make_etag(const std::string& body);
+// Writes a text as a part of an address's path or query (RFC 3986, section 2.3).
+std::string escaped(const std::string& text);
 
 // GET /api/v1/exhibits/ID/qr.svg: a code for a guest's phone, which opens the museum's public
 // address there, with the story that the kiosk tells.
