@@ -143,6 +143,9 @@ struct ExhibitPiece {
   float frame_width = 0, frame_depth = 0;  // metres; 0: it has no frame
   vec3 frame_color{0};                     // linear
   bool gilt = false;
+  bool stands = false;  // on four legs
+  double floor = 0;     // metres; height that they reach down to
+  vec3 stand_color{0};  // linear
   std::shared_ptr<const LargePicture> picture;
 };
 inline constexpr size_t most_exhibit_pieces = 500;

@@ -58,6 +58,39 @@ PieceMesh make_frame(vec2 half, float width, float depth, float canvas) {
   return frame;
 }
 
+// Adds an upright box.
+void add_box(PieceMesh& to, vec3 low, vec3 high) {
+  const vec3 a(low.x, low.y, high.z), b(high.x, low.y, high.z), c(high.x, high.y, high.z),
+      d(low.x, high.y, high.z);
+  const vec3 back(0, 0, low.z - high.z);
+  to.add(a, b, c, d);
+  to.add(b + back, a + back, d + back, c + back);
+  to.add(b, b + back, c + back, c);
+  to.add(a + back, a, d, d + back);
+  to.add(d, c, c + back, d + back);
+  to.add(a + back, b + back, b, a);
+}
+
+// Makes four legs from the floor to the back of a picture of these half sides, and a bar between
+// those of each end. Coordinates are of the scene, turned by -yaw.
+PieceMesh make_stand(vec2 half, const mat4& to_upright, float floor) {
+  constexpr float leg = 0.03f, inset = 0.04f, bar = 0.018f, bar_height = 0.14f;  // metres
+  PieceMesh stand;
+  vec3 tops[2][2];
+  for (int x : {0, 1})
+    for (int y : {0, 1}) {
+      const vec2 corner = (half - vec2(inset)) * vec2(x ? 1 : -1, y ? 1 : -1);
+      const vec3 top = tops[x][y] = vec3(to_upright * vec4(corner, 0, 1));
+      add_box(stand, {top.x - leg, floor, top.z - leg}, {top.x + leg, top.y, top.z + leg});
+    }
+  for (const auto& end : tops) {
+    const vec3 low = glm::min(end[0], end[1]), high = glm::max(end[0], end[1]);
+    add_box(stand, {low.x - bar, floor + bar_height - bar, low.z},
+            {high.x + bar, floor + bar_height + bar, high.z});
+  }
+  return stand;
+}
+
 void put(Scene& scene, Mesh mesh, int material, const mat4& to_world, uint32_t object) {
   mesh.material = material;
   mesh.name = scene.objects[object];
@@ -102,10 +135,11 @@ uint32_t hang(Scene& scene, const ExhibitPiece& piece) {
   const bool framed = piece.frame_width > 0;
   const float canvas = framed ? 0.45f * piece.frame_depth : board_depth;
   // A yaw of 0 faces -Z.
-  mat4 to_world = glm::translate(mat4(1), vec3(piece.position - scene.origin));
-  to_world = glm::rotate(to_world, piece.yaw + pi, vec3(0, 1, 0));
-  to_world = glm::rotate(to_world, -piece.pitch, vec3(1, 0, 0));
-  to_world = glm::rotate(to_world, piece.roll, vec3(0, 0, 1));
+  const mat4 upright = glm::rotate(glm::translate(mat4(1), vec3(piece.position - scene.origin)),
+                                   piece.yaw + pi, vec3(0, 1, 0));
+  const mat4 tilt =
+      glm::rotate(glm::rotate(mat4(1), -piece.pitch, vec3(1, 0, 0)), piece.roll, vec3(0, 0, 1));
+  const mat4 to_world = upright * tilt;
 
   const uint32_t object = add_object(scene, piece.id);
   const int paint = add_material(scene, piece.id, vec3(1), 0.65f, 0);
@@ -130,6 +164,11 @@ uint32_t hang(Scene& scene, const ExhibitPiece& piece) {
                                       piece.gilt ? 0.4f : 0.6f, piece.gilt ? 1.0f : 0.0f);
     put(scene, make_frame(half, piece.frame_width, piece.frame_depth, canvas).mesh, material,
         to_world, object);
+  }
+  if (piece.stands) {
+    const float floor = float(piece.floor - piece.position.y);
+    put(scene, make_stand(half, tilt, floor).mesh,
+        add_material(scene, piece.id + " stand", piece.stand_color, 0.6f, 0), upright, object);
   }
   return object;
 }
@@ -188,6 +227,14 @@ void read_frame(FieldReader& fields, ExhibitPiece& piece) {
   piece.frame_color = glm::max(piece.frame_color, vec3(0));
 }
 
+void read_stand(FieldReader& fields, ExhibitPiece& piece) {
+  piece.stands = true;
+  piece.stand_color = vec3(0.09f, 0.05f, 0.028f);
+  fields.number("floor_m", -most_metres, most_metres, piece.floor, "height of the floor, 0");
+  fields.vector("color", 1, piece.stand_color, "linear red, green, blue; 0 to 1");
+  piece.stand_color = glm::max(piece.stand_color, vec3(0));
+}
+
 void read_source(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
                  std::vector<Problem>& problems) {
   fields.text("source", piece.source,
@@ -228,6 +275,8 @@ void read_piece(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& pro
   });
   fields.part("frame", "around it; none without",
               [&](FieldReader& frame) { read_frame(frame, piece); });
+  fields.part("stand", "four legs, as a table has; they make no sense without a place",
+              [&](FieldReader& stand) { read_stand(stand, piece); });
   PointOfInterest point;
   point.id = point.node = piece.id;
   read_label(exhibit, fields, "label", point);
