@@ -4,7 +4,7 @@ import { read_address } from './address.js';
 import { by_id } from './element.js';
 import { text_in, word } from './words.js';
 
-// orders: {story(id), play(id, on), around(id, on)}
+// orders: {story(id), play(id, on), around(id, on), shown(object): null: it was closed}
 export function make_card(orders) {
   const card = by_id('card');
   let objects = [], animations = [], lang = 'en', exhibit = '', shown = null, opener = null,
@@ -16,6 +16,7 @@ export function make_card(orders) {
     if (turned) orders.around(shown.id, false);
     card.hidden = true;
     shown = null;
+    orders.shown(null);
     document.body.classList.remove('reads');
     if (focused) (opener?.isConnected ? opener : by_id('picture')).focus();
   }
@@ -98,6 +99,7 @@ export function make_card(orders) {
       opener = document.activeElement;
       shown = object;
       fill(object);
+      orders.shown(object);
       card.hidden = false;
       document.body.classList.add('reads');
       card.scrollTop = 0;

@@ -38,8 +38,8 @@ function read_keyframe(buffer, view, header) {
 }
 
 // {frame, seq, time_us, width, height, quality, still, parts, keyframe, around, layer, payload:
-// Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of one without
-// depth; around: it is a wide one; layer: it is what moves, over what stands still.
+// lens, zoom, Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of one without
+// depth; around: it is a wide one; layer: it is what moves, over what stands still; lens: it is what a glass shows, `zoom` times as large as beside it.
 export function read_picture(buffer) {
   if (buffer.byteLength < 28) return null;
   const view = new DataView(buffer);
@@ -50,6 +50,8 @@ export function read_picture(buffer) {
   const flags = view.getUint8(25), complete = (flags & 2) !== 0;
   const parts = complete ? null : read_parts(buffer, view, header, width, height);
   if (!complete && !parts) return null;
+  const lens = complete && (flags & 32) !== 0;
+  if (lens && header < 32) return null;
   const deep = complete && (flags & 4) !== 0;
   const keyframe = deep ? read_keyframe(buffer, view, header) : null;
   if (deep && !keyframe) return null;
@@ -65,6 +67,8 @@ export function read_picture(buffer) {
     keyframe,
     around: deep && (flags & 8) !== 0,
     layer: deep && (flags & 16) !== 0,
+    lens,
+    zoom: lens ? view.getFloat32(28, true) : 1,
     payload: new Uint8Array(buffer, header),
   };
 }

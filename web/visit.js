@@ -13,11 +13,13 @@ import { make_description } from './describe.js';
 import { make_screen } from './display/screen.js';
 import { by_id } from './element.js';
 import { make_gamepad } from './gamepad.js';
+import { make_glass } from './glass.js';
 import { make_group } from './group.js';
 import { kept, of_tab } from './kept.js';
 import { make_leap } from './leap.js';
 import { make_map } from './map.js';
 import { make_menu } from './menu.js';
+import { make_pieces } from './pieces.js';
 import { make_places } from './places.js';
 import { make_player } from './player.js';
 import { make_presence } from './presence.js';
@@ -93,7 +95,12 @@ function say_what_is_unknown(message) {
 
 const send_settings = (fields) => connection?.send({ type: 'settings', ...fields });
 const comfort = make_comfort(send_settings, () => places.load());
+const glass = make_glass(canvas, (message) => connection?.send(message), (name) => word(lang, name));
+const pieces = make_pieces({
+  piece: (fields) => connection.send({ type: 'piece', ...fields }),
+}, glass);
 const card = make_card({
+  shown: (object) => pieces.show(object, state),
   story: (story) => connection.send({ type: 'storyteller', story }),
   play: (name, on) => connection.send({ type: 'play', name, on }),
   around: (object, around) => order({ type: 'go', object, around }),
@@ -150,6 +157,7 @@ connection = make_connection({
     seq = 0;
     screen.joined();
     sound.joined();
+    glass.joined();
     send_settings(comfort.wishes());
     if (menu.attention() !== null)
       connection.send({ type: 'settings', attention: menu.attention() });
@@ -171,6 +179,7 @@ connection = make_connection({
         menu.welcome(message);
         places.welcome(message);
         card.welcome(message);
+        pieces.welcome(message);
         ask.welcome(message);
         map.welcome(message);
         group.welcome(message);
@@ -189,6 +198,7 @@ connection = make_connection({
         menu.state(message);
         places.state(message);
         card.state(message);
+        pieces.state(message);
         map.state(message);
         player.state(message);
         sound.moved(message);
@@ -236,7 +246,7 @@ connection = make_connection({
   },
   rests: () => presence.rests(),
   binary(buffer) {
-    if (!sound.receive(buffer)) screen.receive(buffer);
+    if (!sound.receive(buffer) && !glass.receive(buffer)) screen.receive(buffer);
   },
 });
 

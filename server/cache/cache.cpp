@@ -265,6 +265,34 @@ void RenderCache::end_frame() {
   c.work->priority = std::exchange(c.image.priority, {});
 }
 
+struct RenderCache::Projection {
+  PointImage image;
+  View view;
+  bool projected = false, image_stale = true;
+  uint64_t projection = 0;
+  int still_frames = 0, fresh = 0;
+  CacheStats stats;
+};
+
+void RenderCache::DropProjection::operator()(Projection* projection) const { delete projection; }
+
+std::unique_ptr<RenderCache::Projection, RenderCache::DropProjection> RenderCache::put_aside() {
+  Impl& c = *impl_;
+  std::unique_ptr<Projection, DropProjection> aside(
+      new Projection{std::exchange(c.image, {}), c.view, c.projected, c.image_stale, c.projection,
+                     c.still_frames, c.fresh, c.stats});
+  c.projected = false;
+  return aside;
+}
+
+void RenderCache::put_back(std::unique_ptr<Projection, DropProjection> aside) {
+  Impl& c = *impl_;
+  c.image = std::move(aside->image);
+  c.view = aside->view, c.projected = aside->projected, c.image_stale = aside->image_stale;
+  c.projection = aside->projection, c.still_frames = aside->still_frames;
+  c.fresh = aside->fresh, c.stats = aside->stats;
+}
+
 void RenderCache::relight(const Changes& changes) {
   Impl& c = *impl_;
   auto forgotten = [&](uint32_t i, vec3& kept, vec3& added) {

@@ -109,6 +109,15 @@ class RenderCache {
   void end_frame(const ShownPoints& shown);
   void end_frame();  // ends a frame for which no picture was made
 
+  // Draws in between a picture of another view: put_aside() takes the projection away, between two
+  // frames, and put_back() restores it as it was. Points stay as they are meanwhile.
+  struct Projection;
+  struct DropProjection {
+    void operator()(Projection* projection) const;
+  };
+  std::unique_ptr<Projection, DropProjection> put_aside();
+  void put_back(std::unique_ptr<Projection, DropProjection> projection);
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -354,8 +354,10 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   if (free) forget_lights(show.stage, show.visits);
   for (Visitor& visitor : show.visits.visitors)
     if (visitor.welcomed && !visitor.picture->at_work &&
-        show.drawing->renderer.drawn != visitor.link->id && lamps_wait(show, visitor))
-      light_lamps(show, visitor);
+        show.drawing->renderer.drawn != visitor.link->id) {
+      if (lamps_wait(show, visitor)) light_lamps(show, visitor);
+      follow_wish(show.visits, visitor);
+    }
   if (free && !show.drawing->renderer.drawn) watch_baker(show);
   narrate(show, dt);
   Demand demand;

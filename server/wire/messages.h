@@ -246,6 +246,50 @@ struct HourOrder {
   }
   bool operator==(const HourOrder&) const = default;
 };
+// Says how a second layer of a piece is shown.
+enum class PieceBlend : uint8_t { none, curtain, fade, difference };
+// Chooses what is seen at the place of a piece: one of its layers, or two of them.
+struct PieceOrder {
+  static constexpr const char* type = "piece";
+  std::string name, layer, over;
+  PieceBlend by = PieceBlend::none;
+  float share = 0.5f;
+  static void list(auto& message, auto& fields) {
+    fields.text("name", message.name, "a piece's id", Need::required);
+    fields.text("layer", message.layer, "id of the layer to be shown; the first without it");
+    fields.text("over", message.over, "id of a second layer; optional");
+    fields.choice("by", {"none", "curtain", "fade", "difference"}, message.by,
+                  "how the second layer is shown: none, curtain (to the right of share), fade (as "
+                  "much as share) or difference");
+    fields.number("share", 0, 1, message.share, "0..1, of the picture's width or of the mixture");
+  }
+  bool operator==(const PieceOrder&) const = default;
+};
+// Holds a round glass over the picture, or puts it down. Its content comes as pictures of their
+// own.
+struct LensOrder {
+  static constexpr const char* type = "lens";
+  uint32_t seq = 0;
+  std::optional<vec2> at;
+  float radius = 0.15f, zoom = 1;
+  std::string name, layer;
+  bool difference = false;
+  static void list(auto& message, auto& fields) {
+    fields.u32("seq", message.seq, "u32, grows by one; the glass's pictures say it",
+               Need::required);
+    fields.place("at", message.at,
+                 "[x, y] of its middle in the picture, 0..1 from its upper left; left out: it is "
+                 "put down");
+    fields.number("radius", 0.02, 0.5, message.radius, "share of the picture's height");
+    fields.number("zoom", 0, 64, message.zoom,
+                  "1: as large as beside it; 0: so that a very large picture's texels are pixels");
+    fields.text("name", message.name, "id of a piece whose other layer is seen; optional");
+    fields.text("layer", message.layer, "id of that layer");
+    fields.boolean("difference", message.difference,
+                   "boolean: by how much the layer differs from what is shown");
+  }
+  bool operator==(const LensOrder&) const = default;
+};
 // Starts an animation that is started by touch, or sends it back.
 struct PlayOrder {
   static constexpr const char* type = "play";
@@ -379,8 +423,9 @@ struct WaitingPlace {
   bool operator==(const WaitingPlace&) const = default;
 };
 
-using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, Tour,
-                                    StorytellerOrder, LampOrder, HourOrder, PlayOrder, KioskTouch,
-                                    GroupOrder, Ask, Settings, Ack, PresenceNews, Bye>;
+using BrowserMessage =
+    std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, Tour, StorytellerOrder, LampOrder,
+                 HourOrder, PieceOrder, LensOrder, PlayOrder, KioskTouch, GroupOrder, Ask, Settings,
+                 Ack, PresenceNews, Bye>;
 
 }  // namespace wellspring::wire

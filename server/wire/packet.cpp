@@ -71,6 +71,19 @@ void write_packet_header(const PacketHeader& header, const KeyframeHeader& keyfr
   });
 }
 
+void write_packet_header(const PacketHeader& header, float zoom, std::span<uint8_t> packet) {
+  assert(packet.size() >= lens_header_bytes);
+  write_packet_header(header, packet);
+  put(packet, header_length_at, uint16_t(lens_header_bytes));
+  put(packet, packet_header_bytes, std::bit_cast<uint32_t>(zoom));
+}
+
+static bool read_zoom(std::span<const uint8_t> bytes, PacketView& view) {
+  if (bytes.size() - view.payload.size() < lens_header_bytes) return false;
+  view.zoom = std::bit_cast<float>(get<uint32_t>(bytes, packet_header_bytes));
+  return std::isfinite(*view.zoom) && *view.zoom > 0;
+}
+
 static bool read_keyframe(std::span<const uint8_t> bytes, PacketView& view) {
   if (bytes.size() - view.payload.size() < keyframe_header_bytes) return false;
   KeyframeHeader& keyframe = view.keyframe.emplace();
@@ -127,6 +140,7 @@ std::optional<PacketView> read_packet(std::span<const uint8_t> bytes) {
   if (!complete && !read_parts(bytes, view)) return std::nullopt;
   if (complete && (view.header.flags & packet_depth) && !read_keyframe(bytes, view))
     return std::nullopt;
+  if (complete && (view.header.flags & packet_lens) && !read_zoom(bytes, view)) return std::nullopt;
   return view;
 }
 

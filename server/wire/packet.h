@@ -17,6 +17,10 @@
 // frame/disparity_code.h has them. With the flag `around`, too, it is a wide view in few pixels,
 // for places that keyframes do not show. With the flag `layer` it is a dynamic layer, to be laid
 // over keyframes with the flag `still` until the next one: pixels with a disparity of 0 are empty.
+//
+// With the flag `lens` a complete picture is what a visitor's glass shows: a square of three times
+// its radius, around its middle at the time of the message `lens` that seq names. Its header goes
+// on: 28 f32 how many times larger things are in it than beside it.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -71,6 +75,7 @@ inline constexpr uint8_t packet_complete = 2;  // complete picture, not a part
 inline constexpr uint8_t packet_depth = 4;     // complete, and with the depth of its pixels
 inline constexpr uint8_t packet_around = 8;    // with depth: the surroundings, in fewer pixels
 inline constexpr uint8_t packet_layer = 16;  // with depth: what moves, laid over what stands still
+inline constexpr uint8_t packet_lens = 32;   // complete: what the visitor's glass shows
 
 struct PacketHeader {
   uint32_t frame = 0, seq = 0;
@@ -115,13 +120,18 @@ void write_packet_header(const PacketHeader& header, std::span<const PicturePart
 // Writes both headers over the first keyframe_header_bytes of `packet`.
 void write_packet_header(const PacketHeader& header, const KeyframeHeader& keyframe,
                          std::span<uint8_t> packet);
+// Writes the header of what a glass shows over the first lens_header_bytes of `packet`.
+inline constexpr size_t lens_header_bytes = packet_header_bytes + 4;
+void write_packet_header(const PacketHeader& header, float zoom, std::span<uint8_t> packet);
 // Holds a packet as read; read_packet() returns none if the bytes are no picture message (short,
 // other magic, header length < 28 or past the end; parts that are past the end, or not within the
-// picture; a keyframe of no size, or whose view or unit is no finite number).
+// picture; a keyframe of no size, or whose view or unit is no finite number; a zoom that is no
+// positive number).
 struct PacketView {
   PacketHeader header;
   std::vector<PicturePart> parts;          // parts of a picture that is not complete
   std::optional<KeyframeHeader> keyframe;  // for a picture with depth
+  std::optional<float> zoom;               // for what a glass shows
   std::span<const uint8_t> payload;
 };
 std::optional<PacketView> read_packet(std::span<const uint8_t> bytes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/large_texture.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace wellspring::world {
@@ -65,23 +66,25 @@ PictureFootprint PixelToTexture::at(double x, double y, double blur, const Textu
   return f;
 }
 
-std::vector<Wish> take_wishes(const Scene& scene, std::vector<PieceMotion>& motions) {
+std::vector<Wish> take_wishes(const World& world, std::vector<PieceMotion>& motions) {
+  std::vector<const LargePicture*> pictures;
+  for (const ShownPicture& shown : world.pictures())
+    for (const PictureLayer* layer : {&shown.base, &shown.over})
+      if (layer->picture) pictures.push_back(layer->picture.get());
   std::vector<SeenPiece> seen;
-  for (const Image& image : scene.images) {
-    if (!image.large) continue;
-    const std::vector<SeenPiece> of = image.large->seen.take();
+  for (const LargePicture* picture : pictures) {
+    const std::vector<SeenPiece> of = picture->seen.take();
     seen.insert(seen.end(), of.begin(), of.end());
   }
   auto sizes_of = [&](int source) -> const LevelSizes* {
-    for (const Image& image : scene.images)
-      if (image.large && image.large->source == source) return &image.large->sizes;
-    return nullptr;
+    const auto found = std::ranges::find(pictures, source, &LargePicture::source);
+    return found == pictures.end() ? nullptr : &(*found)->sizes;
   };
   return make_wishes(seen, sizes_of, motions);
 }
 
-vec3 eval_large_picture(const Image& image, const Texture& texture, const PicturedTriangle& t,
-                        const Ray& ray, const Hit& hit) {
+vec3 eval_large_picture(const ShownPicture& shown, const Texture& texture,
+                        const PicturedTriangle& t, const Ray& ray, const Hit& hit) {
   const dvec3 normal = cross(t.edge1, t.edge2), way(ray.direction);
   const double square = dot(normal, normal), slope = dot(normal, way);
   auto to_uv = [&](dvec3 step) {
@@ -99,8 +102,8 @@ vec3 eval_large_picture(const Image& image, const Texture& texture, const Pictur
     const dvec3 across = (step == &f.across ? turned : cross(turned, way)) * width;
     *step = to_uv(across - way * (dot(normal, across) / slope));
   }
-  PictureSampler sampler(*image.large->store);
-  return sampler.look(*image.large, f);
+  PictureSampler sampler(*shown.base.picture->store);
+  return sampler.look(shown, f);
 }
 
 }  // namespace wellspring::world

@@ -33,11 +33,11 @@ class PixelToTexture {
 
 // Returns what the pieces of the scene's very large pictures are needed for that were looked for
 // since it was last asked: see make_wishes(). While nothing looks for any.
-std::vector<Wish> take_wishes(const Scene& scene, std::vector<PieceMotion>& motions);
+std::vector<Wish> take_wishes(const World& world, std::vector<PieceMotion>& motions);
 
-// Returns linear RGB of the image's large picture at a hit, as wide as the ray's cone is there. `t`
-// is relative to the ray's origin.
-vec3 eval_large_picture(const Image& image, const Texture& texture, const PicturedTriangle& t,
-                        const Ray& ray, const Hit& hit);
+// Returns linear RGB of a large picture at a hit, as wide as the ray's cone is there. `t` is
+// relative to the ray's origin.
+vec3 eval_large_picture(const ShownPicture& shown, const Texture& texture,
+                        const PicturedTriangle& t, const Ray& ray, const Hit& hit);
 
 }  // namespace wellspring::world

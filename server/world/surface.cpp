@@ -118,7 +118,7 @@ vec4 read_large_base(const Scene& scene, const PlacedMesh& placed, const Ray& ra
   const TextureRef& reference = placed.material->base_color_texture;
   const Texture& texture = scene.textures[size_t(reference.texture)];
   const PicturedTriangle t = make_pictured_triangle(placed, hit.triangle, reference, ray.origin);
-  return {eval_large_picture(scene.images[size_t(texture.image)], texture, t, ray, hit), small.w};
+  return {eval_large_picture(*placed.picture, texture, t, ray, hit), small.w};
 }
 
 void resolve_material(const Scene& scene, const PlacedMesh& placed, const Corners& at,

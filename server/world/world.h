@@ -11,6 +11,10 @@
 
 #include "world/scene.h"
 
+namespace wellspring::store {
+struct ShownPicture;  // store/picture/sample_picture.h
+}
+
 namespace wellspring::world {
 
 // Says how bright a lamp of the scene is: 0 off, lamp_full as the scene has it.
@@ -102,6 +106,8 @@ struct PlacedMesh {
   // Its triangles are so small for its place that world coordinates are too coarse for them: the
   // tree and faces have them relative to to_world[3] (world/world_build.h).
   bool apart = false;
+  // World::pictures() of its base colour; null: it has no very large picture.
+  const ShownPicture* picture = nullptr;
   float steps = 0;  // not 0: SurfacePlace::extent counts this many steps of a coordinate
 };
 
@@ -149,6 +155,12 @@ class World {
   // Lights have to be updated, too: light/kept/lamps.h.
   void set_lamp(int lamp, LampLevel level);
   const LampLevels& lamp_levels() const;
+
+  // Shows something else than the scene's where an image has a very large picture. While nothing
+  // is drawn and no ray is being traced.
+  void show_picture(int image, const ShownPicture& shown);
+  // Returns what is shown of each of the scene's images; empty if it has no very large pictures.
+  std::span<const ShownPicture> pictures() const;
 
   // Returns the nearest hit. Rays pass surfaces with alpha where their alpha says so (mask:
   // cut-off; blend: stochastically, decided by a hash of the ray and the hit, so that a replay

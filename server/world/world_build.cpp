@@ -452,8 +452,14 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
     w.placed.push_back({&w.moving[i], worn(w.moving[i].material),
                         i < moving_object.size() ? moving_object[i] : 0, true, true, false, mat4(1),
                         mat3(1)});
+  if (std::ranges::any_of(scene.images, [](const Image& image) { return image.large != nullptr; }))
+    for (const Image& image : scene.images) w.pictures.push_back({.base = {image.large}});
   for (PlacedMesh& placed : w.placed) {
     const Material& material = *placed.material;
+    if (material.large_picture) {
+      const int texture = material.base_color_texture.texture;
+      placed.picture = &w.pictures.at(size_t(scene.textures.at(size_t(texture)).image));
+    }
     placed.one_sided =
         scene.cull_back_faces && !material.double_sided && !encloses_medium(material);
     w.any_one_sided |= placed.one_sided;

@@ -6,6 +6,7 @@
 // the way to walls, and commit() costs nothing that grows with the museum.
 #pragma once
 #include "world/embree.h"
+#include "store/picture/sample_picture.h"
 #include "world/world.h"
 
 namespace wellspring::world {
@@ -47,6 +48,7 @@ struct World::Impl {
   std::vector<std::pair<int, std::unique_ptr<Material>>>
       of_lamps;  // copies of the materials of lamps
   LampLevels lamp_levels;
+  std::vector<ShownPicture> pictures;    // for each of the images; empty: none is very large
   std::vector<std::vector<Face>> faces;  // for each instance of the scene, if placed points to them
   std::vector<Tag> tags;                 // reserved up front: geometries point into it
   RTCScene still_scene = nullptr, moving_scene = nullptr;

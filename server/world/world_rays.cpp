@@ -150,6 +150,12 @@ void World::set_lamp(int lamp, LampLevel level) {
 
 const LampLevels& World::lamp_levels() const { return impl_->lamp_levels; }
 
+void World::show_picture(int image, const ShownPicture& shown) {
+  impl_->pictures.at(size_t(image)) = shown;
+}
+
+std::span<const ShownPicture> World::pictures() const { return impl_->pictures; }
+
 void World::commit() {
   if (!impl_->moved) return;
   impl_->moved = false;

@@ -223,15 +223,13 @@ void see(const World& world, const Lights& lights, std::span<const Ray> rays,
 }
 
 void fetch_pieces(const World& world, const Lights& lights, const View& view) {
-  const Scene& scene = world.scene();
-  if (std::ranges::none_of(scene.images, [](const Image& image) { return image.large != nullptr; }))
-    return;
+  if (world.pictures().empty()) return;
   PieceClient client(shared_store());
   std::vector<PieceMotion> motions;
   // The second time it looks for what lies beside the first pieces.
   for (int round = 0; round < 2; round++) {
     make_guides(world, lights, view, 1);
-    client.want(take_wishes(scene, motions));
+    client.want(take_wishes(world, motions));
     client.fetch();
   }
 }

@@ -64,7 +64,7 @@ vec3 VisibleRun::Impl::read_large(const Facet& f, int i) const {
   const PictureFootprint footprint =
       to_texture.at(double(run->x + i) + double(offset.x), double(run->y) + double(offset.y),
                     double(blurred_angle / pixel_angle), texture);
-  return sampler->look(*scene.images[size_t(texture.image)].large, footprint);
+  return sampler->look(*f.placed->picture, footprint);
 }
 
 // Does demodulated_albedo() for eight base colours at a time.

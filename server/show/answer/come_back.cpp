@@ -150,6 +150,7 @@ bool take_kept(ShowVisits& visits, Visitor& visitor, const std::string& id) {
   visitor.place.move = visitor.place.velocity = vec3(0);
   visitor.own_teller = std::move(before.own_teller);
   visitor.lamps = std::move(before.lamps);
+  visitor.pieces = std::move(before.pieces);
   visitor.group = std::move(before.group);
   visitor.hearing.narration = std::move(before.hearing.narration);
   visitor.picture = std::move(before.picture);

@@ -202,6 +202,21 @@ Answer handle_one(Show& show, Visitor& visitor, const HourOrder& order) {
   return WireError{"no_day", "the hour of the day cannot be chosen here"};
 }
 
+Answer handle_one(Show& show, Visitor& visitor, const PieceOrder& order) {
+  if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
+  const std::string wrong = choose_piece(show, visitor, order);
+  if (!wrong.empty()) return WireError{"unknown_piece", wrong};
+  return {};
+}
+
+Answer handle_one(Show& show, Visitor& visitor, const LensOrder& order) {
+  PieceChoices choices;
+  const std::string wrong = look_through(show.stage.exhibit, order, choices);
+  if (!wrong.empty()) return WireError{"unknown_piece", wrong};
+  visitor.lens = order;
+  return {};
+}
+
 Answer handle_one(Show& show, Visitor& visitor, const PlayOrder& order) {
   if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
   if (play_animation(show, visitor, order.name, order.on)) return {};

@@ -76,6 +76,17 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
                                 {"title", text(exhibit.lamps[i].title)},
                                 {"on", bool(lamps[i])},
                                 {"shared", exhibit.lamps[i].shared}});
+  message["pieces"] = json::array();
+  for (const ExhibitPiece& piece : exhibit.pieces) {
+    if (piece.layers.size() < 2) continue;
+    json layers = json::array();
+    for (const PieceLayer& layer : piece.layers) {
+      json& one = layers.emplace_back(
+          json{{"id", layer.id}, {"label", text(layer.label)}, {"text", text(layer.text)}});
+      if (layer.year) one["year"] = *layer.year;
+    }
+    message["pieces"].push_back({{"id", piece.id}, {"layers", std::move(layers)}});
+  }
   message["day"] = nullptr;
   if (const std::optional<Day>& day = exhibit.day)
     message["day"] = {{"from", day->settings.from},
@@ -140,6 +151,17 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   const std::vector<char> lamps = switches_of(show.stage, show.visits, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"][exhibit.lamps[i].id] = bool(lamps[i]);
+  const PieceChoices& choices = pieces_of(show.visits, visitor);
+  for (size_t i = 0; i < choices.size(); i++) {
+    const std::vector<PieceLayer>& layers = exhibit.pieces[i].layers;
+    if (layers.size() < 2) continue;
+    const PieceChoice& choice = choices[i];
+    static constexpr const char* blends[] = {"none", "curtain", "fade", "difference"};
+    message["pieces"][exhibit.pieces[i].id] = {{"layer", layers[size_t(choice.layer)].id},
+                                               {"over", layers[size_t(choice.over)].id},
+                                               {"by", blends[size_t(choice.by)]},
+                                               {"share", choice.share}};
+  }
   if (exhibit.day) message["hour"] = hour_of(show, visitor).value_or(exhibit.day->settings.at);
   for (size_t i = 0; i < exhibit.animations.size(); i++)
     if (exhibit.animations[i].start == ExhibitAnimation::Start::touch)

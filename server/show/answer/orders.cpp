@@ -26,6 +26,8 @@ constexpr OrderBound bounds[] = {
     {StorytellerOrder::type, 5, 8},  // another figure, and words that are spoken for them
     {LampOrder::type, 10, 10},       // other light
     {HourOrder::type, 10, 10},       // other light
+    {PieceOrder::type, 20, 20},      // another picture
+    {LensOrder::type, 60, 60},       // another glass
     {PlayOrder::type, 10, 10},       // moves things
     {GroupOrder::type, 2, 5},        // codes are not to be guessed
     {Ask::type, 2, 4},               // an answer is looked for and spoken
@@ -74,6 +76,7 @@ bool overrule(const GroupOrder& newer, const GroupOrder& older) {
 }
 
 bool overrule(const LampOrder& newer, const LampOrder& older) { return newer.name == older.name; }
+bool overrule(const PieceOrder& newer, const PieceOrder& older) { return newer.name == older.name; }
 bool overrule(const PlayOrder& newer, const PlayOrder& older) { return newer.name == older.name; }
 
 // Others: the newest is all that matters, or each is carried out.
@@ -81,7 +84,8 @@ template <class Order>
 bool overrule(const Order&, const Order&) {
   return std::is_same_v<Order, Hello> || std::is_same_v<Order, CameraTo> ||
          std::is_same_v<Order, ViewpointTo> || std::is_same_v<Order, GoTo> ||
-         std::is_same_v<Order, Ask> || std::is_same_v<Order, HourOrder>;
+         std::is_same_v<Order, Ask> || std::is_same_v<Order, HourOrder> ||
+         std::is_same_v<Order, LensOrder>;
 }
 
 // How many were left out for it.
@@ -215,6 +219,8 @@ void see_off(Show& show, const Kiosk& kiosk) {
     page.lamps.own.clear();
     page.lamps.wish.clear();
     page.lamps.hour.reset();
+    page.pieces.wish.clear();
+    page.lens = {};
     if (is_told(show.cast, page)) fall_silent(show, show.cast.teller);
     if (page.place.tour.state != TourRide::State::none)
       handle(show, page, Tour{TourAction::stop, ""});

@@ -13,6 +13,7 @@
 #include "show/draw/picture.h"
 #include "show/draw/present.h"
 #include "show/draw/still_pass.h"
+#include "show/lens/lens.h"
 #include "show/state/renderer.h"
 #include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
@@ -34,6 +35,7 @@ void charge(ShowVisits& visits, ShowDrawing& drawing, double time, double second
   Renderer& renderer = drawing.renderer;
   const uint64_t id = drawing.pass.at_work ? drawing.pass.visitor
                       : renderer.posed     ? renderer.posed
+                      : renderer.lensed    ? renderer.lensed
                                            : renderer.drawn;
   if (id == 0) return;
   Visitor& visitor = visitor_of(visits, id);
@@ -84,6 +86,14 @@ void begin_picture(Show& show, Visitor& visitor, int waiting, const Decision& de
   go_on_drawing(show);
 }
 
+void draw_glass(Show& show, Visitor& visitor) {
+  begin_lens(show, visitor);
+  show.drawing->renderer.lensed = visitor.link->id;
+  show.drawing->renderer.posed_lights = visitor.dynamic;
+  visitor.picture->at_work = true;
+  use_cores(*show.drawing, [&show, &visitor] { draw_lens(show, visitor); });
+}
+
 void use_cores_for_pass(Show& show) {
   StillPass& pass = show.drawing->pass;
   show.drawing->renderer.until_moving = seconds_to_moving(show);
@@ -110,6 +120,12 @@ bool take_finished(Show& show) {
     if (posed != renderer.drawn) visitor.picture->at_work = false;
     return true;
   }
+  if (const uint64_t lensed = std::exchange(renderer.lensed, 0); lensed != 0) {
+    Visitor& visitor = visitor_of(show.visits, lensed);
+    finish_lens(show, visitor);
+    visitor.picture->at_work = false;
+    return true;
+  }
   if (renderer.drawn == 0 || renderer.step != DrawingStep::done) return true;
   Visitor& drawn = visitor_of(show.visits, std::exchange(renderer.drawn, 0));
   if (std::exchange(renderer.surrounds, false))
@@ -133,6 +149,7 @@ void carry_out(Show& show, const Decision& decision, int waiting) {
     case Drawing::go_on:
       if (decision.hurry) show.drawing->renderer.step = DrawingStep::draw;
       return go_on_drawing(show);
+    case Drawing::lens: return draw_glass(show, visitor());
     case Drawing::samples:
       return use_cores(*show.drawing, [&show, brokers = request_samples(show)] {
         trace_samples(show.stage, show.cast, brokers, show.drawing->renderer);

@@ -146,6 +146,17 @@ PictureKind kind_of(double now, const VisitorDrawState& state, const RendererSta
   return state.stands ? PictureKind::still : PictureKind::moving;
 }
 
+// Returns who is due to have a glass drawn, whoever has waited longest; -1: nobody.
+int next_lens(std::span<const VisitorDrawState> states) {
+  int next = -1;
+  for (size_t i = 0; i < states.size(); i++) {
+    const VisitorDrawState& one = states[i];
+    if (!one.welcomed || one.at_work || !one.lens_due) continue;
+    if (next < 0 || one.lens_at < states[size_t(next)].lens_at) next = int(i);
+  }
+  return next;
+}
+
 }  // namespace
 
 bool has_backdrop(const VisitorDrawState& state) {
@@ -216,6 +227,7 @@ Decision decide(double now, std::span<const VisitorDrawState> states,
   if (int next = next_to_light(now, states, renderer); next >= 0) return {Drawing::skin, next};
   if (renderer.drawn >= 0)
     return {Drawing::go_on, renderer.drawn, renderer.traces && renderer.waiting > 0};
+  if (int next = next_lens(states); next >= 0) return {Drawing::lens, next};
   auto asks = [](const VisitorDrawState& one) { return one.asked_seconds > 0; };
   if (std::any_of(states.begin(), states.end(), asks)) return {Drawing::samples};
   if (renderer.in_pass && renderer.waiting == 0) return {Drawing::pass};

@@ -3,13 +3,13 @@
 // (show/draw/pace.h) and carries the decision out (show/draw/carry_out.h). Nothing here depends on
 // a Show, so that every rule is a row of a table in the test.
 //
-// Moving things come first, and their light, then what is begun, then samples that were asked for,
-// then the reconstruction that is under way, else a picture: of those who want one, whoever has had
-// least of the renderer's time, so that nobody has more of it than others by asking for more. But
-// equal time is not equal pictures: if a visitor's view costs more, or turns to what no keyframe
-// shows, so that it cannot be warped, pictures would stay away for long. Walkers who were shown
-// none for half a second therefore come first, whoever has waited longest; when that is so for all
-// of them, each gets as many pictures.
+// Moving things come first, and their light, then what is begun, then glasses, then samples that
+// were asked for, then the reconstruction that is under way, else a picture: of those who want one,
+// whoever has had least of the renderer's time, so that nobody has more of it than others by asking
+// for more. But equal time is not equal pictures: if a visitor's view costs more, or turns to what
+// no keyframe shows, so that it cannot be warped, pictures would stay away for long. Walkers who
+// were shown none for half a second therefore come first, whoever has waited longest; when that is
+// so for all of them, each gets as many pictures.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -89,6 +89,8 @@ struct VisitorDrawState {
   bool unshown = false;      // the last picture has not been sent yet
   bool backdrop = false;     // the last picture is without moving things
   bool in_pass = false;      // a reconstruction of the visitor's picture is under way
+  bool lens_due = false;     // the visitor's glass is to show something new
+  double lens_at = -1e9;     // when it was last drawn
   double came_at = -1e9;     // when the visit began
   // when the last picture, and the last moving things, were ordered
   double drawn_at = -1e9, posed_at = -1e9;
@@ -120,6 +122,7 @@ enum class Drawing : uint8_t {
   moving,   // moving things in the visitor's picture
   skin,     // light on moving things
   go_on,    // the next step of the picture that is begun
+  lens,     // what the visitor's glass shows
   samples,  // samples that visitors have asked for
   pass,     // a slice of the reconstruction
   picture,  // the visitor's next picture

@@ -154,7 +154,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   VisitorPicture& picture = *visitor.picture;
   RenderCache& cache = picture.cache;
   follow_lamps(show.stage, visitor);
-  follow_pieces(picture);
+  follow_pieces(visitor.pieces.shown, picture);
   cache.set_attention(job.attention);
   cache.set_weights(job.weights ? std::span(*job.weights) : std::span<const float>());
   cache.set_reference(job.settled);

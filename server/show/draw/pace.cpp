@@ -7,6 +7,7 @@
 
 #include "show/draw/pieces.h"
 #include "show/state/delivery.h"
+#include "show/lens/lens.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -76,9 +77,12 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
   // The renderer brings the picture that it draws to the present light.
-  state.other_light = show.drawing->renderer.drawn != visitor.link->id &&
-                      (picture.lamps != visitor.lamps.lit ||
-                       picture.hour != visitor.lamps.lit_hour || has_new_pieces(picture));
+  state.other_light =
+      show.drawing->renderer.drawn != visitor.link->id &&
+      (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour ||
+       picture.shown_pieces != visitor.pieces.shown || has_new_pieces(picture.pieces));
+  state.lens_due = lens_is_due(show, visitor);
+  state.lens_at = picture.lens.drawn_at;
   state.sees_moving =
       state.welcomed && sees_moving(show.cast, show.visits, visitor, place.last_view);
   state.drew_moving = picture.job.sees_moving;

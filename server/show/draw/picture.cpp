@@ -117,7 +117,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
   else
     compositor.draw_still(cache, job.view, *show.stage.visibility, work.frame,
                           costs.backdrop ? StillShows::backdrop : StillShows::all);
-  want_pieces(show.stage, *visitor.picture);
+  want_pieces(show.stage, visitor.pieces.shown, visitor.picture->pieces);
   if (job.kind == PictureKind::reconstruction) {
     std::swap(work.frame, show.drawing->pass.frame);
     work.guided = 0;

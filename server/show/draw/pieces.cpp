@@ -2,25 +2,61 @@
 #include "show/draw/pieces.h"
 
 #include "show/state/lamps.h"
-#include "show/state/visitor_picture.h"
 #include "world/large_texture.h"
 
 namespace wellspring::show {
 
-void want_pieces(const ExhibitStage& stage, VisitorPicture& picture) {
-  std::vector<Wish> wishes = take_wishes(stage.exhibit.scene, picture.piece_motions);
-  if (wishes.empty() && !picture.pieces) return;
-  if (!picture.pieces) picture.pieces = std::make_unique<PieceClient>(shared_store());
-  picture.pieces->want(std::move(wishes));
+namespace {
+
+// Adds the same pieces of the years before and after the one shown, as far as they lie alike.
+void add_neighbours(const ExhibitPiece& piece, const PieceChoice& choice,
+                    std::vector<Wish>& wishes) {
+  const PieceLayer& shown = piece.layers[size_t(choice.layer)];
+  if (!shown.year) return;
+  const PieceLayer *before = nullptr, *after = nullptr;
+  for (const PieceLayer& layer : piece.layers) {
+    if (layer.shown.placing != shown.shown.placing) continue;
+    const auto size = [](const PieceLayer& one) {
+      const PyramidLevel& finest = one.shown.picture->pyramid->levels().front();
+      return std::pair(finest.width, finest.height);
+    };
+    if (size(layer) != size(shown)) continue;
+    if (layer.year < shown.year && (!before || before->year < layer.year)) before = &layer;
+    if (layer.year > shown.year && (!after || after->year > layer.year)) after = &layer;
+  }
+  const size_t count = wishes.size();
+  for (size_t i = 0; i < count; i++) {
+    const PieceKey key = wishes[i].key;
+    if (key.source() != shown.shown.picture->source || wishes[i].urgency != Urgency::shown)
+      continue;
+    for (const PieceLayer* layer : {before, after})
+      if (layer)
+        wishes.push_back({{layer->shown.picture->source, key.level(), key.column(), key.row()},
+                          Urgency::wished});
+  }
 }
 
-bool has_new_pieces(const VisitorPicture& picture) {
-  return picture.pieces && picture.pieces->arrivals() != picture.pieces_shown;
+}  // namespace
+
+void want_pieces(const ExhibitStage& stage, const PieceChoices& shown, PieceWatch& watch) {
+  std::vector<Wish> wishes = take_wishes(*stage.world, watch.motions);
+  if (wishes.empty() && !watch.client) return;
+  const std::vector<ExhibitPiece>& pieces = stage.exhibit.pieces;
+  for (size_t i = 0; i < pieces.size(); i++)
+    if (!pieces[i].layers.empty())
+      add_neighbours(pieces[i], i < shown.size() ? shown[i] : PieceChoice{}, wishes);
+  if (!watch.client) watch.client = std::make_unique<PieceClient>(shared_store());
+  watch.client->want(std::move(wishes));
 }
 
-void follow_pieces(VisitorPicture& picture) {
-  if (!has_new_pieces(picture)) return;
-  picture.pieces_shown = picture.pieces->arrivals();
+bool has_new_pieces(const PieceWatch& watch) {
+  return watch.client && watch.client->arrivals() != watch.arrivals;
+}
+
+void follow_pieces(const PieceChoices& shown, VisitorPicture& picture) {
+  if (!has_new_pieces(picture.pieces) && picture.shown_pieces == shown) return;
+  picture.shown_pieces = shown;
+  if (picture.pieces.client) picture.pieces.arrivals = picture.pieces.client->arrivals();
   picture.compositor.forget_means();
   picture.broker.forget();
   look_anew(picture);

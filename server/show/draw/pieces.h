@@ -3,14 +3,17 @@
 // them when they have come.
 #pragma once
 #include "show/state/show.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 
-// Asks for the pieces that the visitor's picture, which was just drawn, would have liked to show.
-void want_pieces(const ExhibitStage& stage, VisitorPicture& picture);
-// Returns whether pieces have come that the visitor's last picture did not show.
-bool has_new_pieces(const VisitorPicture& picture);
-// Begins anew what is kept of a view at rest, if pieces have come; before it is drawn again.
-void follow_pieces(VisitorPicture& picture);
+// Asks for the pieces that a picture, which was just drawn, would have liked to show. Of a map's
+// neighbouring years the same pieces are asked for, last of all.
+void want_pieces(const ExhibitStage& stage, const PieceChoices& shown, PieceWatch& watch);
+// Returns whether pieces have come that the last picture did not show.
+bool has_new_pieces(const PieceWatch& watch);
+// Begins anew what is kept of a view at rest, if pieces have come or others are shown; before it is
+// drawn again.
+void follow_pieces(const PieceChoices& shown, VisitorPicture& picture);
 
 }  // namespace wellspring::show

@@ -106,6 +106,16 @@ void encode_beside(Visitor& visitor, const PacketHeader& header, const KeyframeH
   encode(visitor, header.quality, 0, std::move(make));
 }
 
+void encode_lens(Visitor& visitor, const PacketHeader& header, const LensPicture& lens) {
+  auto make = [header, zoom = lens.zoom, image = lens.picture](Encoder&) {
+    auto packet = std::make_shared<Packet>(lens_header_bytes);
+    write_packet_header(header, zoom, *packet);
+    encode_jpeg(image, header.quality, false, *packet, lens_header_bytes);
+    return packet;
+  };
+  encode(visitor, header.quality, 0, std::move(make));
+}
+
 void encode_parts(Visitor& visitor, const PacketHeader& header, const PartsOrder& order) {
   encode(visitor, header.quality, 0, [header, order](Encoder& encoder) {
     auto packet = std::make_shared<Packet>();
@@ -348,6 +358,19 @@ static void send_layer(Show& show, Visitor& visitor) {
                 std::move(layer.rgb), std::move(layer.disparity));
 }
 
+// Sends what the glass shows; it takes turns with pictures.
+static void send_lens(Show& show, Visitor& visitor) {
+  LensPicture& lens = visitor.picture->lens;
+  lens.unsent = false;
+  PacketHeader header = next_header(show.time, visitor, lens.order.seq, false);
+  header.width = uint16_t(lens.picture.width), header.height = uint16_t(lens.picture.height);
+  header.quality = uint8_t(quality_at_rest(show, visitor, picture_plan(show.settings, visitor),
+                                           double(header.width) * header.height, false));
+  header.flags |= packet_lens;
+  visitor.shown.sent_lens = true;
+  encode_lens(visitor, header, lens);
+}
+
 // Sends the newest keyframe as it is, or its news if the page has it: the page shows it from where
 // its visitor is by then.
 static void present_keyframe(Show& show, Visitor& visitor) {
@@ -378,6 +401,13 @@ void present(Show& show, Visitor& visitor) {
   if (!may_take(show.time, visitor) || shown.encoder->task.busy()) return;
   const View view = visitor.place.last_view;
   bool stood = is_still(job) && job.view == view;
+  const bool lens = picture.lens.unsent && visitor.lens.at && !picture.at_work &&
+                    !(picture.unshown && shown.sent_lens);
+  if (lens) {
+    note_encoded(show.totals, *show.visits.capacity, visitor);
+    return send_lens(show, visitor);
+  }
+  shown.sent_lens = false;
   if (shown.lost && (stood || visitor.wants.local)) picture.unshown = true;
   if (visitor.wants.local) {
     note_encoded(show.totals, *show.visits.capacity, visitor);
@@ -436,7 +466,8 @@ void present_all(Show& show) {
 bool has_to_show(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = *visitor.picture;
   return is_shown(visitor) &&
-         (picture.unshown || picture.layer_unsent || !picture.fade.from.rgb.empty() ||
+         (picture.unshown || picture.layer_unsent || picture.lens.unsent ||
+          !picture.fade.from.rgb.empty() ||
           (visitor.place.last_view != visitor.shown.view && !visitor.wants.local));
 }
 

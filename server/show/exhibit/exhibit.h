@@ -13,6 +13,7 @@
 #include "avatar/figure/character.h"
 #include "avatar/story/story_script.h"
 #include "show/lighting/day.h"
+#include "store/picture/sample_picture.h"
 #include "world/load/scene_join.h"
 #include "world/scene.h"
 
@@ -123,6 +124,7 @@ struct PointOfInterest {
   std::string id, node;
   std::vector<uint32_t> objects;  // its parts: indices into Scene::objects
   dvec3 place{0};                 // its middle, where one looks or points; absolute
+  float half = 0;  // not 0: it is a part of them, around that place, by so many metres
   LocalText title, text;
   std::string story;                            // id of the one about it; may be empty
   std::map<std::string, LocalText> provenance;  // element of Dublin Core -> value
@@ -133,9 +135,18 @@ struct PointOfInterest {
   } door;                            // to another exhibit; empty exhibit: it leads nowhere
 };
 
+// One of the pictures that may be seen at the place of a piece: paint, X-ray, a map of a year.
+struct PieceLayer {
+  std::string id, source;  // source: of the package, as exhibit.json names it
+  LocalText label, text;
+  std::optional<int> year;  // of a map
+  PictureLayer shown;
+};
+inline constexpr size_t most_piece_layers = 32;
+
 // A piece of the exhibit that is no part of its glTF files.
 struct ExhibitPiece {
-  std::string id, source;  // source: of the package, as exhibit.json names it
+  std::string id, source;  // source: that of the first layer
   std::string material;    // material of the scene that shows it; empty: it hangs at a place
   dvec3 position{0};       // middle of its back
   float yaw = 0, pitch = 0, roll = 0;  // radians; as a storyteller's yaw; positive pitch looks up
@@ -143,10 +154,12 @@ struct ExhibitPiece {
   float frame_width = 0, frame_depth = 0;  // metres; 0: it has no frame
   vec3 frame_color{0};                     // linear
   bool gilt = false;
-  bool stands = false;  // on four legs
-  double floor = 0;     // metres; height that they reach down to
-  vec3 stand_color{0};  // linear
-  std::shared_ptr<const LargePicture> picture;
+  bool stands = false;                          // on four legs
+  double floor = 0;                             // metres; height that they reach down to
+  vec3 stand_color{0};                          // linear
+  std::shared_ptr<const LargePicture> picture;  // the first layer, which says how it lies
+  std::vector<PieceLayer> layers;               // of the same place; the first is shown at first
+  int image = -1;                               // of the scene
 };
 inline constexpr size_t most_exhibit_pieces = 500;
 

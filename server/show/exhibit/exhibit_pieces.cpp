@@ -2,9 +2,12 @@
 #include "show/exhibit/exhibit_pieces.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "base/load_error.h"
 #include "base/unicode.h"
+#include "show/exhibit/exhibit_annotations.h"
 #include "show/exhibit/exhibit_files.h"
 #include "show/exhibit/exhibit_objects.h"
 #include "store/open/open_picture.h"
@@ -108,7 +111,7 @@ int add_material(Scene& scene, const std::string& name, vec3 color, float roughn
 }
 
 // Adds the picture's small version, and how it is read.
-int add_texture(Scene& scene, const ExhibitPiece& piece) {
+int add_texture(Scene& scene, ExhibitPiece& piece) {
   Image image;
   image.name = piece.id;
   const Piece& coarsest = piece.picture->coarsest;
@@ -116,8 +119,9 @@ int add_texture(Scene& scene, const ExhibitPiece& piece) {
   image.srgb = true;
   image.texels8 = coarsest.bytes;
   image.large = piece.picture;
+  piece.image = int(scene.images.size());
   scene.images.push_back(std::move(image));
-  scene.textures.push_back({int(scene.images.size()) - 1, Wrap::clamp, Wrap::clamp});
+  scene.textures.push_back({piece.image, Wrap::clamp, Wrap::clamp});
   return int(scene.textures.size()) - 1;
 }
 
@@ -128,7 +132,7 @@ uint32_t add_object(Scene& scene, const std::string& name) {
 }
 
 // Hangs a picture with its back board and its frame. Returns its object.
-uint32_t hang(Scene& scene, const ExhibitPiece& piece) {
+uint32_t hang(Scene& scene, ExhibitPiece& piece) {
   const PyramidLevel& finest = piece.picture->pyramid->levels().front();
   const float height = float(piece.width * double(finest.height) / double(finest.width));
   const vec2 half(0.5f * piece.width, 0.5f * height);
@@ -197,7 +201,7 @@ double aspect_of(const Scene& scene, int material) {
 
 // Lets a material of the scene show the picture in its own proportions; what does not fit is cut.
 // Makes an object of all surfaces that have it, and returns it; 0: none has.
-uint32_t cover(Scene& scene, const ExhibitPiece& piece, int material) {
+uint32_t cover(Scene& scene, ExhibitPiece& piece, int material) {
   Material& m = scene.materials[size_t(material)];
   const PyramidLevel& finest = piece.picture->pyramid->levels().front();
   const double fit = aspect_of(scene, material) * double(finest.height) / double(finest.width);
@@ -235,19 +239,37 @@ void read_stand(FieldReader& fields, ExhibitPiece& piece) {
   piece.stand_color = glm::max(piece.stand_color, vec3(0));
 }
 
-void read_source(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
-                 std::vector<Problem>& problems) {
-  fields.text("source", piece.source,
+// Reads where the first layer's corners lie in a layer's own picture.
+void read_corners(FieldReader& fields, PieceLayer& layer) {
+  std::array<dvec2, 4> corners;
+  size_t known = 0;
+  const std::vector<JsonValue> list =
+      fields.list("corners", 4, 4, "[x, y] of the first layer's corners, in texels of this one");
+  for (const JsonValue& one : list)
+    if (double at[2]; known < 4 && one.numbers(2, -1e8, 1e8, at)) corners[known++] = {at[0], at[1]};
+  if (known < 4 || !layer.shown.picture) return;
+  const PyramidLevel& finest = layer.shown.picture->pyramid->levels().front();
+  for (dvec2& corner : corners) corner /= dvec2(double(finest.width), double(finest.height));
+  if (const std::optional<glm::dmat3> placing = square_to_corners(corners))
+    layer.shown.placing = *placing;
+  else fields.fail("corners", "are no quadrangle: three of them lie on a line");
+}
+
+// Opens the picture of a layer; without a source of its own it is in that of the piece.
+void read_source(const Exhibit& exhibit, FieldReader& fields, const std::string& otherwise,
+                 PieceLayer& layer, std::vector<Problem>& problems) {
+  layer.source = otherwise;
+  fields.text("source", layer.source,
               "a tiled TIFF, a Deep Zoom file, a folder of Zoomify or IIIF, a JPEG or PNG",
-              Need::required);
-  std::string layer;
-  fields.text("layer", layer, "of a painting that is described in words; its first");
+              otherwise.empty() ? Need::required : Need::optional);
+  std::string name;
+  fields.text("layer", name, "of a painting that is described in words; its first");
   const std::string path =
-      package_file(fields, "source", exhibit.folder, piece.source, PackagePart::file_or_folder);
+      package_file(fields, "source", exhibit.folder, layer.source, PackagePart::file_or_folder);
   if (path.empty()) return;
   try {
-    piece.picture = std::make_shared<LargePicture>(
-        shared_store(), open_picture(path, layer, exhibit.languages.front()));
+    layer.shown.picture = std::make_shared<LargePicture>(
+        shared_store(), open_picture(path, name, exhibit.languages.front()));
   } catch (const LoadError& error) {
     problems.push_back({error.file, error.where, error.what_});
   } catch (const std::length_error& error) {
@@ -255,16 +277,76 @@ void read_source(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piec
   }
 }
 
+void add_layer(FieldReader& fields, PieceLayer layer, ExhibitPiece& piece) {
+  if (std::ranges::find(piece.layers, layer.id, &PieceLayer::id) != piece.layers.end())
+    fields.fail("there is another layer '" + layer.id + "'");
+  else piece.layers.push_back(std::move(layer));
+}
+
+void read_layers(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
+                 std::vector<Problem>& problems) {
+  fields.parts("layers", most_piece_layers, "pictures of the same place, as X-rays are",
+               [&](FieldReader& one) {
+                 PieceLayer layer;
+                 one.name("id", layer.id, "what messages call it", Need::required);
+                 layer.label = read_local_text(one, "label", "", Need::required);
+                 layer.text = read_local_text(one, "text", "what there is to see in it");
+                 read_source(exhibit, one, piece.source, layer, problems);
+                 read_corners(one, layer);
+                 add_layer(one, std::move(layer), piece);
+               });
+}
+
+void read_times(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
+                std::vector<Problem>& problems) {
+  fields.parts("times", most_piece_layers, "maps of the same place, the one shown at first first",
+               [&](FieldReader& one) {
+                 PieceLayer layer;
+                 int year = 0;
+                 one.integer("year", -10000, 10000, year, "of the map", Need::required);
+                 layer.year = year, layer.id = std::to_string(year);
+                 layer.label = read_local_text(one, "label", "without it the year");
+                 if (layer.label.empty()) layer.label[exhibit.languages.front()] = layer.id;
+                 layer.text = read_local_text(one, "text", "what there is to see in it");
+                 read_source(exhibit, one, "", layer, problems);
+                 read_corners(one, layer);
+                 add_layer(one, std::move(layer), piece);
+               });
+}
+
+// Reads all that may be seen of the piece, and keeps what can be shown.
+void read_pictures(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
+                   std::vector<Problem>& problems) {
+  std::string kind;
+  fields.word("kind", {"picture", "map"}, kind, "map: the same place at several times",
+              Need::required);
+  const bool described = fields.describes();
+  if (described || kind != "map") {
+    PieceLayer first;
+    read_source(exhibit, fields, "", first, problems);
+    first.id = "first";
+    first.label = read_local_text(fields, "label", "");
+    piece.source = first.source;
+    if (first.shown.picture || described) piece.layers.push_back(std::move(first));
+    read_layers(exhibit, fields, piece, problems);
+  }
+  if (described || kind == "map") {
+    read_times(exhibit, fields, piece, problems);
+    if (!described && piece.layers.empty()) fields.fail("times", "names no map that can be shown");
+    if (!piece.layers.empty()) piece.source = piece.layers.front().source;
+  }
+  std::erase_if(piece.layers, [](const PieceLayer& layer) { return !layer.shown.picture; });
+  if (!piece.layers.empty()) piece.picture = piece.layers.front().shown.picture;
+}
+
 void read_piece(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& problems) {
   ExhibitPiece piece;
   Scene& scene = exhibit.scene;
-  std::string kind;
   fields.text("id", piece.id, "", Need::required);
   if (std::ranges::find(exhibit.pieces, piece.id, &ExhibitPiece::id) != exhibit.pieces.end() ||
       std::ranges::find(scene.objects, piece.id) != scene.objects.end())
     fields.fail("id", "'" + piece.id + "' is taken by another piece or object");
-  fields.word("kind", {"picture"}, kind, "", Need::required);
-  read_source(exhibit, fields, piece, problems);
+  read_pictures(exhibit, fields, piece, problems);
   fields.text("material", piece.material, "of the scene that shows it, instead of a place");
   fields.number("width_m", 0.001, 1000, piece.width, "metres, without its frame");
   fields.part("place", "where it hangs or lies", [&](FieldReader& place) {
@@ -297,10 +379,16 @@ void read_piece(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& pro
       else fields.fail("material", "nothing in the scene is made of '" + piece.material + "'");
     }
   }
+  std::string annotations;
+  fields.text("annotations", annotations,
+              "file with an AnnotationPage of the W3C, whose notes are "
+              "shown as objects");
+  const std::string notes = package_file(fields, "annotations", exhibit.folder, annotations);
   if (!point.objects.empty()) {
     const Bounds bounds = object_bounds(scene, point.objects);
     point.place = scene.origin + dvec3(0.5f * (bounds.low + bounds.high));
-    exhibit.points.push_back(std::move(point));
+    exhibit.points.push_back(point);
+    if (!notes.empty()) read_annotations(exhibit, piece, notes, point, problems);
   }
   exhibit.pieces.push_back(std::move(piece));
 }

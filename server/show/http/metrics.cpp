@@ -117,6 +117,8 @@ std::string write_metrics(const ShowReport& report) {
              double(totals.attention_analyses));
   add_metric(out, "attention_milliseconds", "What the last of them took, one core",
              double(totals.attention_ms));
+  add_metric(out, "lenses_drawn_total", "Pictures drawn of what visitors' glasses show",
+             double(totals.lenses));
   add_metric(out, "surroundings_drawn_total",
              "Small wide pictures drawn of what a quick turn may show",
              double(totals.surroundings));

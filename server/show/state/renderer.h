@@ -183,6 +183,7 @@ struct Renderer {
   DynamicLights posed_lights;  // dynamic lights of that visitor then
   bool posed_layer = false;    // for a page that lays moving things over by itself
   double posed_seconds = 0;    // seconds that drawing them took
+  uint64_t lensed = 0;         // Link::id of the visitor whose glass is drawn; 0: nobody's
   bool surrounds = false;      // only `job.around` is drawn
   PictureJob job;              // job of the picture of `drawn`
   // The tick sets it when nobody needs that picture any more (is_outdated); what is not drawn of

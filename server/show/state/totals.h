@@ -13,6 +13,7 @@ struct ShowTotals {
   uint64_t reconstructed = 0;   // pictures at rest that the network made
   float reconstruction_ms = 0;  // milliseconds of the last of these
   uint64_t surroundings = 0;    // surroundings drawn for quick turns
+  uint64_t lenses = 0;          // pictures of what glasses show
   uint64_t given_up = 0;        // pictures that nobody needed any more before they were drawn
   uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
   // orders left out, since newer ones of the same visitor came before their turn

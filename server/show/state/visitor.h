@@ -16,6 +16,7 @@
 #include "show/kiosk/kiosk.h"
 #include "show/state/capacity.h"
 #include "show/state/cast.h"
+#include "show/state/shown_pieces.h"
 #include "show/state/switches.h"
 #include "show/state/visitor_attention.h"
 #include "show/visit/flow.h"
@@ -93,6 +94,7 @@ struct VisitorDelivery {
   bool has_still = false;
   bool has_layer = false;   // moving things were laid over the keyframe (packet_layer)
   bool sent_layer = false;  // a layer was the last to be sent
+  bool sent_lens = false;   // what the glass shows was the last to be sent
   double refine_at = -1e9;  // show time when more of a picture at rest may be sent
   Flow flow;
   GiveWay way;
@@ -154,6 +156,8 @@ struct Visitor {
   VisitorSound hearing;         // show/answer/sound.h
   std::unique_ptr<Teller> own_teller;  // since the visitor called it; null: the house's
   VisitorLamps lamps;
+  VisitorPieces pieces;
+  LensOrder lens;           // its last order; without `at` the visitor holds no glass (show/lens)
   DynamicLights dynamic;    // lights that move or change, as they are now
   std::vector<Play> plays;  // the visitor's own, for each animation; empty: none was touched
   VisitorGroup group;

@@ -41,7 +41,8 @@ size_t memory_bytes(const VisitorPicture& picture) {
          picture.broker.memory_bytes() + memory_bytes(picture.keyframe) +
          memory_bytes(picture.around.keyframe) + memory_bytes(picture.moving) +
          memory_bytes(picture.surfaces) + memory_bytes(picture.settled) +
-         bytes_of(picture.fade.from.rgb);
+         bytes_of(picture.fade.from.rgb, picture.lens.picture.rgb) +
+         (picture.lens.compositor ? picture.lens.compositor->memory_bytes() : 0);
 }
 
 }  // namespace wellspring::show

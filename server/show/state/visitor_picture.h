@@ -15,7 +15,9 @@
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "show/state/renderer.h"
+#include "show/state/shown_pieces.h"
 #include "store/seen_pieces.h"
+#include "wire/messages.h"
 
 namespace wellspring::show {
 
@@ -41,6 +43,28 @@ struct Surroundings {
   bool unsent = false;       // the page that shows keyframes has not got it yet
   uint32_t camera_cuts = 0;  // the visitor's camera cuts by then
   bool drawn = false;        // drawn since the last picture was: the two take turns
+};
+
+// Holds the pieces of very large pictures that pictures of one kind show.
+struct PieceWatch {
+  std::unique_ptr<PieceClient> client;  // null: none so far
+  std::vector<PieceMotion> motions;
+  uint64_t arrivals = 0;  // number of pieces that had come by the last picture
+};
+
+// Holds what the visitor's glass shows (show/lens).
+struct LensPicture {
+  std::unique_ptr<Compositor> compositor;  // null: there was none yet
+  PieceWatch pieces;
+  LensOrder order;  // of the last picture
+  float zoom = 1;   // of the last picture
+  View seen;        // view through which the visitor looked then
+  PieceChoices shown;
+  LampLevels lamps;
+  double drawn_at = -1e9;  // show time
+  float seconds = 0;       // that a picture takes, smoothed
+  Image8 picture;
+  bool unsent = false;
 };
 
 struct VisitorPicture {
@@ -74,11 +98,10 @@ struct VisitorPicture {
   double posed_at = -1e9;     // show time of the job of `moving`
   BackdropSurfaces surfaces;  // surfaces of the keyframe, while lights that move shine on it
   SettledBounce settled;      // light of those lights that stay as they are
-  // Pieces of very large pictures that it shows; null: none so far.
-  std::unique_ptr<PieceClient> pieces;
-  std::vector<PieceMotion> piece_motions;
-  uint64_t pieces_shown = 0;  // number of pieces that had come by the last picture
-  bool unshown = false;       // nothing of the newest picture has been sent yet
+  PieceWatch pieces;
+  PieceChoices shown_pieces;  // choice of which it shows pieces
+  LensPicture lens;
+  bool unshown = false;  // nothing of the newest picture has been sent yet
   // bytes of its cache; bytes of all that is kept for its pictures
   size_t cache_bytes = 0, memory_bytes = 0;
 };

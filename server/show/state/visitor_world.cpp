@@ -34,6 +34,7 @@ void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& 
 
 void begin_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
+  show_pieces(show.stage, visitor.pieces.shown);
   pose_world(show.stage, show.cast, show.time, teller_of(show.cast, show.visits, visitor),
              animation_times(show, visitor));
   show.cast.posed_for = number_who_touched(show.visits, visitor);
@@ -41,6 +42,7 @@ void begin_world_of(Show& show, Visitor& visitor) {
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
+  show_pieces(show.stage, visitor.pieces.shown);
   if (show.cast.posed_as == teller_of(show.cast, show.visits, visitor).number &&
       show.cast.posed_for == number_who_touched(show.visits, visitor))
     return;
@@ -50,7 +52,8 @@ void go_on_in_world_of(Show& show, Visitor& visitor) {
 bool see_the_same(const ShowCast& cast, const ShowVisits& visits, const Visitor& a,
                   const Visitor& b) {
   return &teller_of(cast, visits, a) == &teller_of(cast, visits, b) && a.lamps.lit == b.lamps.lit &&
-         a.lamps.lit_hour == b.lamps.lit_hour && who_touched(visits, a) == who_touched(visits, b);
+         a.lamps.lit_hour == b.lamps.lit_hour && a.pieces.shown == b.pieces.shown &&
+         who_touched(visits, a) == who_touched(visits, b);
 }
 
 }  // namespace wellspring::show

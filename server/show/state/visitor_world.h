@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Puts the one world into the state that a visitor sees: whose storyteller is there and how it
-// stands, which lamps are on, where animations are. The world is changed between two things that
-// are drawn, only while the renderer is idle. For visitors who see the same it stays as it is.
+// stands, which lamps are on, what pieces show, where animations are. The world is changed between
+// two things that are drawn, only while the renderer is idle. For visitors who see the same it
+// stays as it is.
 #pragma once
 #include "show/state/show.h"
 
@@ -16,7 +17,7 @@ void begin_world_of(Show& show, Visitor& visitor);
 // Prepares the world for more of what was begun: it stays as last posed, unless that was for
 // somebody who sees others.
 void go_on_in_world_of(Show& show, Visitor& visitor);
-// Returns whether two visitors see the same lamps, hour, animations and storyteller.
+// Returns whether two visitors see the same lamps, hour, pieces, animations and storyteller.
 bool see_the_same(const ShowCast& cast, const ShowVisits& visits, const Visitor& a,
                   const Visitor& b);
 

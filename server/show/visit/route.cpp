@@ -207,6 +207,8 @@ constexpr float largest = 3, part = 1.2f;
 constexpr float farthest_look = 14;  // metres from which an object is looked at
 constexpr float share = 0.75f;       // share of the picture that the object takes at most
 constexpr float narrowest = 0.42f;   // radians, as if the visitor leant over the object
+// How a part of a very large picture is looked at: its surroundings over itself, and radians.
+constexpr float part_margin = 1.6f, narrowest_part = 0.03f;
 constexpr size_t most_looks = 240;   // places tried with rays
 constexpr size_t sample_count = 16;  // number of samples of an object's surface
 
@@ -442,6 +444,13 @@ std::optional<Viewpoint> good_view(const Exhibit& exhibit, const World& world, c
   view.yaw = best->yaw;
   view.pitch = std::clamp(best->pitch, -1.45f, 1.45f);
   view.fov = std::clamp(best->fov, std::min(narrowest, fov), fov);
+  if (thing.half > 0) {
+    const dvec3 way = thing.place - view.position;
+    view.yaw = float(std::atan2(-way.x, -way.z));
+    view.pitch = std::clamp(float(std::atan2(way.y, length(dvec2(way.x, way.z)))), -1.45f, 1.45f);
+    view.fov = std::clamp(2 * std::atan(part_margin * thing.half / float(length(way))),
+                          narrowest_part, fov);
+  }
   return view;
 }
 

@@ -158,4 +158,46 @@ vec3 PictureSampler::look(const LargePicture& picture, const PictureFootprint& f
   return sum / float(taps);
 }
 
+std::optional<glm::dmat3> square_to_corners(const std::array<dvec2, 4>& c) {
+  auto turn = [](dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; };
+  for (int i = 0; i < 4; i++) {
+    const dvec2 a = c[(i + 1) % 4] - c[i], b = c[(i + 2) % 4] - c[i];
+    if (!(std::abs(turn(a, b)) > 1e-12 * length(a) * length(b))) return std::nullopt;
+  }
+  const dvec2 sum = c[0] - c[1] + c[2] - c[3], right = c[1] - c[2], down = c[3] - c[2];
+  const double area = turn(right, down);
+  const double g = turn(sum, down) / area, h = turn(right, sum) / area;
+  return glm::dmat3(dvec3(c[1] - c[0] + g * c[1], g), dvec3(c[3] - c[0] + h * c[3], h),
+                    dvec3(c[0], 1));
+}
+
+PictureFootprint placed_footprint(const PictureFootprint& f, const glm::dmat3& placing) {
+  const dvec3 p = placing * dvec3(f.at, 1);
+  const dvec2 at = dvec2(p) / p.z;
+  auto step = [&](dvec2 way) {
+    const dvec3 moved = placing * dvec3(way, 0);
+    return (dvec2(moved) - at * moved.z) / p.z;
+  };
+  return {at, step(f.across), step(f.down)};
+}
+
+vec3 PictureSampler::look(const PictureLayer& layer, const PictureFootprint& footprint) {
+  const bool registered = layer.placing == glm::dmat3(1);
+  return look(*layer.picture, registered ? footprint : placed_footprint(footprint, layer.placing));
+}
+
+vec3 PictureSampler::look(const ShownPicture& shown, const PictureFootprint& footprint) {
+  const float share = shown.share;
+  switch (shown.over.picture ? shown.blend : Blend::none) {
+    case Blend::none: break;
+    case Blend::curtain:
+      return look(footprint.at.x < double(share) ? shown.base : shown.over, footprint);
+    case Blend::fade:
+      return (1 - share) * look(shown.base, footprint) + share * look(shown.over, footprint);
+    case Blend::difference:
+      return glm::abs(look(shown.base, footprint) - look(shown.over, footprint));
+  }
+  return look(shown.base, footprint);
+}
+
 }  // namespace wellspring::store

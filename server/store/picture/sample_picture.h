@@ -5,6 +5,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/vec.h"
@@ -38,6 +39,31 @@ struct PictureFootprint {
   dvec2 across{0}, down{0};
 };
 
+// Says how two pictures are shown at one place: the second one from `share` of the width on, mixed
+// in by `share`, or by how much it differs from the first.
+enum class Blend : uint8_t { none, curtain, fade, difference };
+
+// Holds a picture and how it lies: its homogeneous coordinates are `placing` times (u, v, 1).
+struct PictureLayer {
+  std::shared_ptr<const LargePicture> picture;  // null: there is none
+  glm::dmat3 placing{1};
+  bool operator==(const PictureLayer&) const = default;
+};
+
+// Holds what is shown at the place of a picture: one layer, or two.
+struct ShownPicture {
+  PictureLayer base, over;
+  Blend blend = Blend::none;
+  float share = 0.5f;
+  bool operator==(const ShownPicture&) const = default;
+};
+
+// Returns the projective map of the unit square, whose corners go around from its upper left, to
+// these corners; none: three of them lie on a line (Heckbert 1989, section 2.2.3).
+std::optional<glm::dmat3> square_to_corners(const std::array<dvec2, 4>& corners);
+// Returns the same footprint in the coordinates that `placing` leads to.
+PictureFootprint placed_footprint(const PictureFootprint& footprint, const glm::dmat3& placing);
+
 // Looks up on one thread, for as short as a PieceReader lives.
 class PictureSampler {
  public:
@@ -49,6 +75,7 @@ class PictureSampler {
   // Returns linear RGB, and notes what it looked for with the picture. Coordinates beyond the
   // picture read its edge.
   vec3 look(const LargePicture& picture, const PictureFootprint& footprint);
+  vec3 look(const ShownPicture& shown, const PictureFootprint& footprint);
 
  private:
   struct Found {
@@ -56,6 +83,7 @@ class PictureSampler {
     const Piece* piece = nullptr;
   };
   const Piece* find(PieceKey key);
+  vec3 look(const PictureLayer& layer, const PictureFootprint& footprint);
   void see(const LargePicture& picture, PieceKey key);
   bool read(const LargePicture& picture, int level, dvec2 at, vec3& color);
   vec3 read_finest(const LargePicture& picture, int level, dvec2 at, int& got);

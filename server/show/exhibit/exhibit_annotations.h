@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads what others have noted on a picture: an AnnotationPage of the W3C Web Annotation Data Model
+// (as IIIF Presentation 3 has them), whose items say where on the picture they are.
+#pragma once
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/json_fields.h"
+
+namespace wellspring::show {
+
+inline constexpr size_t most_annotations = 200;
+
+// Adds a point of interest for each annotation of the file, behind that of the piece, whose objects
+// it shares. A target is the whole picture with a fragment `xywh=`, in texels of the first layer or
+// in percent, or one with a FragmentSelector or PointSelector. What cannot be used is a problem
+// that names file and place.
+void read_annotations(Exhibit& exhibit, const ExhibitPiece& piece, const std::string& file,
+                      const PointOfInterest& whole, std::vector<Problem>& problems);
+
+}  // namespace wellspring::show

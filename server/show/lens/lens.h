@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws what a visitor's glass shows. The tick decides when (show/draw/decide.h), and calls
+// begin_lens(), the renderer draw_lens(), the tick finish_lens().
+#pragma once
+#include "show/state/renderer.h"
+#include "show/state/show.h"
+
+namespace wellspring::show {
+
+// Returns the view that the glass's picture has: a square around its middle, whose content is
+// `zoom` times as large as in `view`.
+View lens_view(const View& view, const LensOrder& order, float zoom);
+// Returns the zoom of an order: where it is 0, texels of the very large picture under the glass's
+// middle become pixels.
+float zoom_of(const World& world, const View& view, const LensOrder& order);
+// Returns whether the visitor's glass is to be drawn.
+bool lens_is_due(const Show& show, const Visitor& visitor);
+
+// Puts the world into the state that the glass shows. Only while the renderer is idle.
+void begin_lens(Show& show, Visitor& visitor);
+void draw_lens(Show& show, Visitor& visitor);
+void finish_lens(Show& show, Visitor& visitor);
+
+}  // namespace wellspring::show

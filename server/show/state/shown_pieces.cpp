@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/state/shown_pieces.h"
+
+#include <algorithm>
+
+#include "show/state/lamps.h"
+#include "show/state/show.h"
+#include "show/state/visitor_picture.h"
+
+namespace wellspring::show {
+namespace {
+
+int find_piece(const Exhibit& exhibit, const std::string& id) {
+  const auto found = std::ranges::find(exhibit.pieces, id, &ExhibitPiece::id);
+  return found == exhibit.pieces.end() ? -1 : int(found - exhibit.pieces.begin());
+}
+
+// Returns the number of a layer, the first of an empty id; -1: there is no such layer.
+int find_layer(const ExhibitPiece& piece, const std::string& id) {
+  if (id.empty()) return 0;
+  const auto found = std::ranges::find(piece.layers, id, &PieceLayer::id);
+  return found == piece.layers.end() ? -1 : int(found - piece.layers.begin());
+}
+
+std::string no_layer(const std::string& piece, const std::string& id) {
+  return "the piece '" + piece + "' has no layer '" + id + "'";
+}
+
+ShownPicture shown_picture(const ExhibitPiece& piece, const PieceChoice& choice) {
+  ShownPicture shown;
+  shown.base = piece.layers[size_t(choice.layer)].shown;
+  if (choice.by == Blend::none) return shown;
+  shown.over = piece.layers[size_t(choice.over)].shown;
+  shown.blend = choice.by, shown.share = choice.share;
+  return shown;
+}
+
+}  // namespace
+
+const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
+  return (leader ? *leader : visitor).pieces.wish;
+}
+
+std::string choose_piece(Show& show, Visitor& visitor, const PieceOrder& order) {
+  const Exhibit& exhibit = show.stage.exhibit;
+  const int number = find_piece(exhibit, order.name);
+  if (number < 0) return "there is no piece '" + order.name + "'";
+  const ExhibitPiece& piece = exhibit.pieces[size_t(number)];
+  static_assert(int(PieceBlend::difference) == int(Blend::difference));
+  PieceChoice choice{find_layer(piece, order.layer), find_layer(piece, order.over), Blend(order.by),
+                     order.share};
+  if (choice.layer < 0) return no_layer(order.name, order.layer);
+  if (choice.over < 0) return no_layer(order.name, order.over);
+  if (choice.by == Blend::none) choice = {choice.layer};
+  visitor.pieces.wish.resize(exhibit.pieces.size());
+  visitor.pieces.wish[size_t(number)] = choice;
+  visitor.state_sent_at = -1e9;
+  return {};
+}
+
+std::string look_through(const Exhibit& exhibit, const LensOrder& order, PieceChoices& choices) {
+  if (order.name.empty()) return {};
+  const int number = find_piece(exhibit, order.name);
+  if (number < 0) return "there is no piece '" + order.name + "'";
+  const int layer = find_layer(exhibit.pieces[size_t(number)], order.layer);
+  if (layer < 0) return no_layer(order.name, order.layer);
+  choices.resize(exhibit.pieces.size());
+  PieceChoice& choice = choices[size_t(number)];
+  if (order.difference) choice = {choice.layer, layer, Blend::difference};
+  else choice = {layer};
+  return {};
+}
+
+void follow_wish(const ShowVisits& visits, Visitor& visitor) {
+  const PieceChoices& wish = pieces_of(visits, visitor);
+  if (visitor.pieces.shown == wish) return;
+  visitor.pieces.shown = wish;
+  visitor.picture->around = {}, visitor.picture->fade = {};  // both show something else
+  look_anew(*visitor.picture);
+}
+
+void show_pieces(ExhibitStage& stage, const PieceChoices& choices) {
+  const std::vector<ExhibitPiece>& pieces = stage.exhibit.pieces;
+  const std::span<const ShownPicture> shown = stage.world->pictures();
+  for (size_t i = 0; i < pieces.size(); i++) {
+    const int image = pieces[i].image;
+    if (image < 0 || pieces[i].layers.empty()) continue;
+    ShownPicture now = shown_picture(pieces[i], i < choices.size() ? choices[i] : PieceChoice{});
+    if (shown[size_t(image)] != now) stage.world->show_picture(image, now);
+  }
+}
+
+}  // namespace wellspring::show
