@@ -293,9 +293,9 @@ void PieceStore::collect() {
 void PieceStore::insert(PieceKey key, Fetched fetched) {
   const double now = clock_();
   // A piece that was fetched again and is the same changes nothing for anybody.
-  if (auto old = entries_.find(key.bits); old != entries_.end() && old->second->piece &&
-                                          fetched.piece && now < old->second->hard &&
-                                          old->second->piece->bytes == fetched.piece->bytes) {
+  if (auto old = entries_.find(key.bits);
+      old != entries_.end() && old->second->piece && fetched.piece && now < old->second->hard &&
+      (old->second->piece == fetched.piece || old->second->piece->bytes == fetched.piece->bytes)) {
     old->second->soft = now + fetched.soft, old->second->hard = now + fetched.hard;
     stats_.fetched++;
     return;

@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
-                 "one part: stream, load, cache, corrective, bake, show, denoise, avatar, "
+                 "one part: stream, load, pieces, cache, corrective, bake, show, denoise, avatar, "
                  "attention, kiosk, light "
                  "(or one of its own: light.error ...)");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");

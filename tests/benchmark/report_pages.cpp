@@ -365,6 +365,7 @@ std::vector<ReportPage> declared_pages() {
           show_load_page(),
           load_visitors_page(),
           load_seats_page(),
+          pieces_picture_page(),
           light_frame_page(),
           light_scaling_page(),
           splat_page(),

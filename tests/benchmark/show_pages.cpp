@@ -98,4 +98,32 @@ ReportPage show_load_page() {
                         {"show.load.picture_bytes", "a picture, median", 1e-3, "kB"}}}}};
 }
 
+ReportPage pieces_picture_page() {
+  return {
+      "pieces.picture",
+      "How soon is a very large picture sharp, how many of its tiles are served, and what memory "
+      "does it take? 19968x14592 texels, 4 m wide, a tiled TIFF of JPEGs.",
+      {"Jump: from a camera message to the first picture, at 1280x720, that has six tenths of the "
+       "details of the last after five seconds: of the Laplacian of squares of 2x2 pixels. One "
+       "visitor, random places 0.25 to 0.6 m before it.",
+       "Tiles: eight connections ask for random ones of the five finest levels (IIIF); the "
+       "questions share the cores with the server. iipimage: behind lighttpd, a process a core.",
+       "Memory: 32 visitors jump to such places every two seconds, for ten seconds. The store may "
+       "take 256 MiB."},
+      {{.caption = "Jumps",
+        .rows = {{"jumps", "jumps"}},
+        .columns = {{"pieces.picture.jump_ms_p50", "median"},
+                    {"pieces.picture.jump_ms_p95", "95th percentile"}}},
+       {.caption = "Tiles",
+        .rows = {{"server", "server"}},
+        .columns = {{"pieces.tiles_a_second", "tiles a second", 1, "1/s"},
+                    {"pieces.tile_ms_p99", "a tile, 99th percentile"},
+                    {"pieces.tiles_refused", "refused"}}},
+       {.caption = "Memory",
+        .rows = {{"visitors", "visitors"}, {"size", "size"}},
+        .columns = {{"pieces.picture.store_bytes", "the store", 1.0 / (1 << 20), "MiB"},
+                    {"pieces.picture.coarser_levels", "levels coarser, to fit"},
+                    {"pieces.picture.server_memory", "memory of the server"}}}}};
+}
+
 }  // namespace wellspring::test

@@ -69,8 +69,9 @@ test('a picture is described, and its address leads there', async () => {
   assert.equal(info.profile, 'level2');
   assert.deepEqual([info.width, info.height], [width, height]);
   assert.equal(info.maxWidth, 4096);
-  assert.deepEqual(info.tiles, [{ width: 256, height: 256, scaleFactors: [1, 2] }]);
-  assert.deepEqual(info.sizes, [{ width: width / 2, height: height / 2 }, { width, height }]);
+  assert.deepEqual(info.tiles, [{ width: 256, height: 256, scaleFactors: [1, 2, 4, 8] }]);
+  assert.deepEqual(info.sizes,
+      [8, 4, 2, 1].map((scale) => ({ width: width / scale, height: height / scale })));
   const linked = await get('room~poster/info.json', { headers: { accept: 'application/ld+json' } });
   assert.equal(linked.headers.get('content-type'),
       'application/ld+json;profile="http://iiif.io/api/image/3/context.json"');

@@ -174,9 +174,9 @@ void add_material(const Scene& scene, const Material& m, std::vector<char>& know
     if (texture.image < 0 || known[size_t(texture.image)]) return;
     known[size_t(texture.image)] = 1;
     const Image& image = scene.images[size_t(texture.image)];
-    hash.add(image.width, image.height, image.srgb);
     // A large picture changes with its layers and years, whose light differs by little.
     if (image.large) return;
+    hash.add(image.width, image.height, image.srgb);
     hash.list(image.texels8);
     hash.list(image.texels);
   });

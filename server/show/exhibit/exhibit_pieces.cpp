@@ -12,6 +12,7 @@
 #include "show/exhibit/exhibit_objects.h"
 #include "store/open/open_picture.h"
 #include "store/picture/sample_picture.h"
+#include "store/picture/texels.h"
 
 namespace wellspring::show {
 namespace {
@@ -114,10 +115,11 @@ int add_material(Scene& scene, const std::string& name, vec3 color, float roughn
 int add_texture(Scene& scene, ExhibitPiece& piece) {
   Image image;
   image.name = piece.id;
-  const Piece& coarsest = piece.picture->coarsest;
-  image.width = coarsest.width, image.height = coarsest.height;
+  // The light that a picture throws back needs no more.
+  Piece small = halve(piece.picture->coarsest);
+  image.width = small.width, image.height = small.height;
   image.srgb = true;
-  image.texels8 = coarsest.bytes;
+  image.texels8 = std::move(small.bytes);
   image.large = piece.picture;
   piece.image = int(scene.images.size());
   scene.images.push_back(std::move(image));

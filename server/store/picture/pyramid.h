@@ -29,8 +29,9 @@ struct PyramidLevel {
 inline constexpr int64_t longest_picture = int64_t(1) << 30;  // texels a side
 inline constexpr int largest_tile = 4096;                     // texels a side
 inline constexpr int most_levels = 40;
-// The coarsest level of a pyramid has at most so many texels a side: it is read at once, and kept.
-inline constexpr int64_t coarsest_side = 1024;
+// The coarsest level of a pyramid has at most so many texels a side: it is read at once, and kept,
+// of each of the hundreds of pictures that a hall may have.
+inline constexpr int64_t coarsest_side = 256;
 
 class PicturePyramid : public PieceSource {
  public:

@@ -167,11 +167,11 @@ TEST_F(PictureCorpus, TurnedAndMirroredPhotographsLookTheSame) {
 
 TEST_F(PictureCorpus, SlidesAreReadWithoutTheirLabels) {
   const auto slide = open_picture(at("tiff_edges/CMU-1-Small-Region.svs"));
-  ASSERT_EQ(slide->levels().size(), 3u);
+  ASSERT_EQ(slide->levels().size(), 5u);
   EXPECT_EQ(slide->levels()[0].width, 2220);
   EXPECT_EQ(slide->levels()[0].tile_width, 240);
   const std::vector<double> fine = means(whole_level(*slide, 0)),
-                            coarse = means(read_level(*slide, 2));
+                            coarse = means(whole_level(*slide, 2));
   for (size_t k = 0; k < fine.size(); k++) EXPECT_NEAR(fine[k], coarse[k], 9);
 }
 

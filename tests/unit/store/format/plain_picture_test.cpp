@@ -52,15 +52,15 @@ std::string exif(int orientation, bool is_big) {
 TEST(PlainPicture, LevelsAreHalvedUntilTheyAreSmall) {
   const Folder folder;
   const auto pyramid = open_picture(folder.write("a.png", png_of(2100, 301, pattern)));
-  ASSERT_EQ(pyramid->levels().size(), 3u);
+  ASSERT_EQ(pyramid->levels().size(), 5u);
   EXPECT_EQ(pyramid->levels()[1].width, 1050);
   EXPECT_EQ(pyramid->levels()[1].height, 151);
-  EXPECT_EQ(pyramid->levels()[2].width, 525);
+  EXPECT_EQ(pyramid->levels()[4].width, 132);
   const Piece finest = whole_level(*pyramid, 0);
   expect_same(finest, piece_of(2100, 301, pattern));
   expect_same(whole_level(*pyramid, 1), halve(finest));
-  expect_same(read_level(*pyramid, 2), halve(halve(finest)));
-  EXPECT_THROW(read_level(*pyramid, 1), std::invalid_argument);
+  expect_same(read_level(*pyramid, 4), halve(halve(halve(halve(finest)))));
+  EXPECT_THROW(read_level(*pyramid, 3), std::invalid_argument);
 }
 
 TEST(PlainPicture, OneTexelIsAPicture) {

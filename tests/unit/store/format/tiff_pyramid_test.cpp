@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <lcms2.h>
+#include <sys/stat.h>
 #include <thread>
 
 #include "store/format/tiff_pyramid.h"
@@ -200,7 +202,7 @@ TEST(Tiff, LongAndTinyPicturesAreRead) {
   const Folder folder;
   const auto pyramid = open_picture(write_tiff(folder, {page}));
   expect_same(whole_level(*pyramid, 0), shown(page));
-  EXPECT_EQ(pyramid->levels().back().width, 938);
+  EXPECT_EQ(pyramid->levels().back().width, 235);
   EXPECT_EQ(pyramid->levels().back().height, 1);
   page.width = 1, page.height = 1;
   expect_shown(page, shown(page));
@@ -302,6 +304,96 @@ TEST(Tiff, TilesThatWereNeverWrittenAreAbsent) {
   EXPECT_EQ(pyramid->fetch({1, 0, 1, 1}).piece, nullptr);
   EXPECT_EQ(pyramid->fetch({1, 0, 1, 1}).hard, 60);
   EXPECT_NE(pyramid->fetch({1, 0, 2, 1}).piece, nullptr);
+}
+
+// A picture with a smaller version that is shown while its file is replaced, by a clock that is set
+// by hand.
+struct Replaced {
+  Folder folder;
+  double now = 0;
+  std::vector<TiffSpec> pages = std::vector<TiffSpec>(2);
+  std::string file;
+  std::shared_ptr<const PicturePyramid> pyramid;
+
+  Replaced() {
+    pages[0].width = 80, pages[0].height = 48;
+    file = write_tiff(folder, pages);
+    pyramid = load_tiff(file, most_whole_texels, [this] { return now; });
+  }
+  // Lets another file of these pages take its name, or its place (`in_place`).
+  void replace(bool in_place = false) {
+    const Folder other;
+    write_tiff(other, pages);
+    const std::string bytes = other.read("test.tif");
+    const std::string made = folder.write(in_place ? "test.tif" : "new.tif", bytes);
+    if (!in_place) std::filesystem::rename(made, file);
+    // The clock of a file system may stand still for a moment.
+    const timespec times[2] = {{1'000'000 + written, 0}, {1'000'000 + written, 0}};
+    written++;
+    utimensat(AT_FDCWD, file.c_str(), times, 0);
+  }
+  void fetch() const { pyramid->fetch({1, 0, 0, 0}); }
+  void pass_time() {
+    for (int i = 0; i < 3; i++) now += 5.5, fetch();
+  }
+  long written = 0;
+};
+
+TEST(Tiff, AFileThatIsReplacedIsReadFromThenOn) {
+  for (const bool in_place : {false, true}) {
+    Replaced shown_file;
+    const Piece before = shown(shown_file.pages[0]);
+    for (TiffSpec& page : shown_file.pages)
+      page.codes = [](int x, int y, int c) { return 255 - pattern(x, y, c); };
+    shown_file.replace(in_place);
+    if (!in_place) expect_same(whole_level(*shown_file.pyramid, 0), before);
+    shown_file.pass_time();
+    for (const int level : {0, 1})
+      expect_same(whole_level(*shown_file.pyramid, level), shown(shown_file.pages[size_t(level)]));
+  }
+}
+
+TEST(Tiff, AFileThatIsReplacedByAnotherPictureStaysOpenAndIsToldOnce) {
+  Replaced shown_file;
+  const Piece before = shown(shown_file.pages[0]);
+  shown_file.pages[0].width = 96;
+  testing::internal::CaptureStdout();  // the log goes there before log::start
+  shown_file.replace();
+  shown_file.pass_time();
+  shown_file.pass_time();
+  const std::string told = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(told.find("was replaced by a picture of other sizes"),
+            told.rfind("was replaced by a picture of other sizes"));
+  EXPECT_NE(told.find("test.tif"), std::string::npos) << told;
+  expect_same(whole_level(*shown_file.pyramid, 0), before);
+}
+
+TEST(Tiff, AFileThatIsGoneOrHalfWrittenStaysOpen) {
+  Replaced shown_file;
+  const Piece before = shown(shown_file.pages[0]);
+  const std::string whole = shown_file.folder.read("test.tif");
+  std::filesystem::remove(shown_file.file);
+  shown_file.pass_time();
+  expect_same(whole_level(*shown_file.pyramid, 0), before);
+  // Somebody copies another one there, slowly: nobody opens it before it is whole.
+  testing::internal::CaptureStdout();
+  for (size_t size = 100; size < whole.size(); size += whole.size() / 8) {
+    shown_file.folder.write("test.tif", whole.substr(0, size));
+    shown_file.now += 5.5;
+    shown_file.fetch();
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  expect_same(whole_level(*shown_file.pyramid, 0), before);
+}
+
+TEST(Tiff, APieceThatSomebodyHasIsNotReadAgain) {
+  Replaced shown_file;
+  const Fetched first = shown_file.pyramid->fetch({1, 0, 1, 0});
+  EXPECT_EQ(first.soft, 60) << "and then it is asked for again";
+  EXPECT_EQ(shown_file.pyramid->fetch({1, 0, 1, 0}).piece, first.piece);
+  shown_file.replace();
+  shown_file.pass_time();
+  EXPECT_NE(shown_file.pyramid->fetch({1, 0, 1, 0}).piece, first.piece);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ std::string painting_of(const std::string& items, const std::string& more = "") 
 
 TEST_F(PaintedPictureTest, HasLevelsAndTiles) {
   const auto picture = open(whole_painting);
-  ASSERT_EQ(picture->levels().size(), 5u);
+  ASSERT_EQ(picture->levels().size(), 7u);
   EXPECT_EQ(picture->levels()[0].columns(), 64);
   EXPECT_LE(picture->levels().back().width, store::coarsest_side);
   const auto fetched = picture->fetch(PieceKey(1, 4, 3, 1));

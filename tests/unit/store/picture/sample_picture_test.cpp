@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <malloc.h>
+#include <optional>
 #include <random>
 
 #include "image/srgb.h"
+#include "store/picture/kept_levels.h"
 #include "unit/store/address_picture.h"
 
 namespace wellspring::test {
@@ -118,6 +121,99 @@ TEST(SamplePicture, ASlantedPixelReadsAlongItsLongerAxis) {
     const double ideal = std::max(std::log2(longer / 16), 0.0);
     EXPECT_NEAR(shown.look(at, longer, 1).x, srgb_table[size_t(ideal)], 1e-5f) << longer;
   }
+}
+
+// Fine stripes, and what a pixel of them looks like that is seen nearly along the wall.
+struct Stripes {
+  static constexpr int side = 1024;
+  std::vector<float> bright = std::vector<float>(size_t(side) * side);  // linear
+  std::shared_ptr<PieceStore> store = std::make_shared<PieceStore>(size_t(64) << 20, 0);
+  std::optional<LargePicture> large;
+
+  // `normal`: across the stripes, whose width is `period` texels for a dark and a bright one.
+  Stripes(dvec2 normal, double period) {
+    store::Piece whole{side, side, {}};
+    for (int y = 0; y < side; y++)
+      for (int x = 0; x < side; x++) {
+        const double wave = std::sin(2 * pi / period * dot(normal, dvec2(x, y)));
+        const auto code = uint8_t(127.5 + 127.5 * wave);
+        bright[size_t(y * side + x)] = srgb_table[code];
+        whole.bytes.insert(whole.bytes.end(), {code, code, code, 255});
+      }
+    large.emplace(store, make_pyramid(std::move(whole)));
+  }
+  // `across` and `down` are in texels.
+  float look(dvec2 at, dvec2 across, dvec2 down) {
+    const double texels = side;
+    return PictureSampler(*store).look(*large, {at / texels, across / texels, down / texels}).x;
+  }
+  float supersample(dvec2 at, dvec2 across, dvec2 down) const {
+    constexpr int samples = 32;
+    double sum = 0;
+    for (int i = 0; i < samples * samples; i++) {
+      const double u = (i % samples + 0.5) / samples - 0.5, v = (i / samples + 0.5) / samples - 0.5;
+      const dvec2 place = at + across * u + down * v;
+      sum += double(bright[size_t(int(place.y) * side + int(place.x))]);
+    }
+    return float(sum / (samples * samples));
+  }
+};
+
+struct Variance {
+  double sum = 0, squares = 0, count = 0;
+  void add(double value) { sum += value, squares += value * value, count++; }
+  double get() const { return squares / count - sum * sum / (count * count); }
+};
+
+// At two degrees a pixel is 29 times as high as wide on the wall, which is more than the taps.
+TEST(SamplePicture, StripesSeenAtAGrazingAngleAreAsSupersampledAndDoNotShimmer) {
+  const double stretch = 1 / std::sin(2 * pi / 180);
+  std::mt19937 random(11);
+  auto uniform = [&] { return double(random()) / 4294967296.0; };
+  double error = 0, looks = 0;
+  for (double turn : {0.0, 0.2, 0.8, 1.5708})
+    for (double period : {3.0, 6.0, 17.0, 40.0}) {
+      Stripes stripes({std::cos(turn), std::sin(turn)}, period);
+      PieceClient client(stripes.store);
+      std::vector<PieceMotion> motions;
+      for (double pixel : {0.5, 1.0, 2.0}) {
+        const dvec2 across(pixel, 0), down(0, pixel * stretch);
+        Variance seen, wanted;
+        for (bool there : {false, true}) {
+          for (int i = 0; i < 64; i++) {
+            // The eye moves by parts of a pixel.
+            const dvec2 at = dvec2(500) + across * (4 * uniform()) + down * uniform();
+            const float color = stripes.look(at, across, down);
+            if (!there) continue;
+            const float right = stripes.supersample(at, across, down);
+            seen.add(color), wanted.add(right);
+            error += std::abs(color - right), looks++;
+          }
+          client.want(make_wishes(
+              stripes.large->seen.take(), [&](int) { return &stripes.large->sizes; }, motions));
+          while (stripes.store->fetch_next()) {}
+        }
+        EXPECT_LT(seen.get(), 1.5 * wanted.get()) << turn << " " << period << " " << pixel;
+      }
+    }
+  EXPECT_LT(error / looks, 0.035);
+}
+
+// As they are in memory while nobody looks at them, with the most that is kept of each.
+TEST(SamplePicture, FiveHundredPicturesTakeLittleMemory) {
+  auto picture = std::make_shared<AddressPicture>(whole, whole);
+  auto store = std::make_shared<PieceStore>(size_t(256) << 20, 0);
+  const auto used = [] {
+    const struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+  };
+  const size_t before = used();
+  if (before == 0) GTEST_SKIP() << "a sanitizer's allocator does not tell";
+  std::vector<std::unique_ptr<LargePicture>> hall;
+  for (int i = 0; i < 500; i++) hall.push_back(std::make_unique<LargePicture>(store, picture));
+  EXPECT_EQ(hall[0]->coarsest.width, coarsest_side);
+  EXPECT_LT(used() - before, size_t(150'000'000));
+  EXPECT_GT(used() - before, size_t(100'000'000)) << "and it is measured";
 }
 
 TEST(SamplePicture, HardNumbersAreAnswered) {
