@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs `wellspring new ID MODEL`: makes an exhibit of a glTF file, with viewpoints and light, that
-// can be shown at once. Exit status: 0 done, 1 the input is wrong, 2 the command line is wrong.
+// Runs `wellspring new ID MODEL`: makes an exhibit of a glTF file, or of an IIIF manifest, with
+// viewpoints and light, that can be shown at once. Exit status: 0 done, 1 the input is wrong, 2 the
+// command line is wrong.
 #include <CLI/CLI.hpp>
 #include <iostream>
 
@@ -9,16 +10,20 @@
 #include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/proposal/new_exhibit.h"
+#include "show/proposal/new_gallery.h"
 
 int main(int argc, char** argv) {
   using namespace wellspring;
   using namespace wellspring::program;
   if (answer_version(argc, argv)) return 0;
   log::start("new");
-  CLI::App app{"Makes an exhibit of a glTF file."};
+  CLI::App app{"Makes an exhibit of a glTF file, or of an IIIF manifest."};
   std::string id, model, content = "content";
   app.add_option("id", id, "its name: a new folder below content")->required();
-  app.add_option("model", model, "glTF 2.0 file (.glb, .gltf), which is copied")->required();
+  app.add_option("model", model,
+                 "glTF 2.0 file (.glb, .gltf), which is copied, or manifest of IIIF Presentation 2 "
+                 "or 3 (.json)")
+      ->required();
   app.add_option("--content", content, "folder of exhibit packages")->capture_default_str();
   try {
     app.parse(argc, argv);
@@ -26,7 +31,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    NewExhibit made = make_new_exhibit(content, id, model);
+    NewExhibit made = is_manifest(model) ? make_new_gallery(content, id, model)
+                                         : make_new_exhibit(content, id, model);
     for (const std::string& line : made.told) std::cout << line << "\n";
     std::vector<Problem> problems;
     Exhibit exhibit = read_exhibit(made.folder, problems);

@@ -24,9 +24,10 @@ const may_enter = {
   store: {
     '': [],
     picture: [''],
-    format: ['picture', ''],
+    remote: [],
+    format: ['remote', 'picture', ''],
     painting: ['picture', ''],
-    open: ['format', 'painting', 'picture', ''],
+    open: ['format', 'painting', 'remote', 'picture', ''],
   },
   world: {
     '': [],
@@ -93,7 +94,7 @@ const most_files_a_folder = 30;
 
 // Heavy headers appear in .cpp files of these layers only.
 const heavy = [
-  [/^(boost\/(beast|asio)|boost\/)/, ['stream', 'kiosk']],
+  [/^(boost\/(beast|asio)|boost\/)/, ['store', 'stream', 'kiosk']],
   [/^opencv2?\//, ['kiosk']],
   [/^embree[34]?\//, ['world']],
   [/^pugixml/, ['avatar', 'store']],

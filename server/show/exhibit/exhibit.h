@@ -267,6 +267,7 @@ struct Exhibit {
   std::vector<TourPlan> tours;
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
+  std::vector<std::string> allowed_hosts;  // servers whose pictures may hang here: HOST, HOST:PORT
   std::vector<ExhibitPiece> pieces;
   std::vector<ExhibitLamp> lamps;  // one for each of the scene's, but for the day's sun
   std::vector<ChangingLight> lights;

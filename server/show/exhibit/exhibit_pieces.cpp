@@ -10,6 +10,7 @@
 #include "show/exhibit/exhibit_annotations.h"
 #include "show/exhibit/exhibit_files.h"
 #include "show/exhibit/exhibit_objects.h"
+#include "show/exhibit/exhibit_sources.h"
 #include "store/open/open_picture.h"
 #include "store/picture/sample_picture.h"
 #include "store/picture/texels.h"
@@ -262,16 +263,16 @@ void read_source(const Exhibit& exhibit, FieldReader& fields, const std::string&
                  PieceLayer& layer, std::vector<Problem>& problems) {
   layer.source = otherwise;
   fields.text("source", layer.source,
-              "a tiled TIFF, a Deep Zoom file, a folder of Zoomify or IIIF, a JPEG or PNG",
-              otherwise.empty() ? Need::required : Need::optional);
+              "a tiled TIFF, a Deep Zoom file, a folder of Zoomify or IIIF, a JPEG or PNG, or the "
+              "address of an IIIF image service",
+              otherwise.empty() ? Need::required : Need::optional, most_address_bytes);
   std::string name;
   fields.text("layer", name, "of a painting that is described in words; its first");
-  const std::string path =
-      package_file(fields, "source", exhibit.folder, layer.source, PackagePart::file_or_folder);
+  const std::string path = find_source(exhibit, fields, layer.source);
   if (path.empty()) return;
   try {
     layer.shown.picture = std::make_shared<LargePicture>(
-        shared_store(), open_picture(path, name, exhibit.languages.front()));
+        shared_store(), open_picture(path, name, exhibit.languages.front(), exhibit.allowed_hosts));
   } catch (const LoadError& error) {
     problems.push_back({error.file, error.where, error.what_});
   } catch (const std::length_error& error) {
@@ -398,6 +399,7 @@ void read_piece(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& pro
 }  // namespace
 
 void read_pieces(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& problems) {
+  read_allowed_hosts(exhibit, root);
   root.parts("pieces", most_exhibit_pieces, "what hangs in the scene and is no part of its files",
              [&](FieldReader& fields) { read_piece(exhibit, fields, problems); });
 }

@@ -221,27 +221,39 @@ bool is_folder_name(const std::string& id) {
 
 }  // namespace
 
-NewExhibit make_new_exhibit(const std::string& content, const std::string& id,
-                            const std::string& model) {
+std::string name_folder(const std::string& content, const std::string& id) {
   const fs::path folder = fs::path(content) / id;
   if (!is_folder_name(id))
     throw LoadError(id, "", "an exhibit's id is of letters, digits, '-', '_' and '.'");
   std::error_code ec;
   if (fs::exists(folder, ec)) throw LoadError(folder.string(), "", "is there already");
-  Maker maker{id, model, folder, {}, {}, 1, json::array(), {}, {}};
-  maker.load();
+  return folder.string();
+}
+
+void fill_folder(const std::string& folder, const std::function<void()>& fill) {
+  std::error_code ec;
   if (!fs::create_directories(folder, ec))
-    throw LoadError(folder.string(), "", "cannot be made: " + ec.message());
+    throw LoadError(folder, "", "cannot be made: " + ec.message());
   try {
-    copy_model(model, folder);
-    maker.find_views();
-    maker.find_light();
-    maker.write();
+    fill();
   } catch (...) {
     fs::remove_all(folder, ec);
     throw;
   }
-  return {folder.string(), maker.told};
+}
+
+NewExhibit make_new_exhibit(const std::string& content, const std::string& id,
+                            const std::string& model) {
+  const std::string folder = name_folder(content, id);
+  Maker maker{id, model, folder, {}, {}, 1, json::array(), {}, {}};
+  maker.load();
+  fill_folder(folder, [&] {
+    copy_model(model, folder);
+    maker.find_views();
+    maker.find_light();
+    maker.write();
+  });
+  return {folder, maker.told};
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes a first exhibit of somebody's model: a folder with exhibit.json that can be shown at once.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct NewExhibit {
 // nothing is left behind.
 NewExhibit make_new_exhibit(const std::string& content, const std::string& id,
                             const std::string& model);
+
+// Returns the folder of a new exhibit, which is not made yet. Throws LoadError when the id is no
+// name of a folder, or the folder is there.
+std::string name_folder(const std::string& content, const std::string& id);
+// Makes the folder, and calls `fill` to write into it. Leaves nothing behind if that throws.
+void fill_folder(const std::string& folder, const std::function<void()>& fill);
 
 // Proposes places from which a scene that nobody has furnished yet can be seen: from inside if it
 // is a room, from around if it is an object.

@@ -9,9 +9,8 @@
 
 namespace wellspring::store {
 
-// Opens it by its info.json. If that names neither tiles nor sizes, tiles are as large as
-// OpenSeadragon asks for: the largest of 1024, 512 and 256 that is not longer than the shorter
-// side, else that side. Levels of one tile may be rounded up or down: they are as their file is.
+// Opens it by its info.json (iiif_info.h). Levels of one tile may be rounded up or down: they are
+// as their file is.
 std::shared_ptr<const PicturePyramid> load_iiif_folder(const std::string& file);
 
 }  // namespace wellspring::store

@@ -10,10 +10,12 @@
 
 #include "base/load_error.h"
 #include "store/format/iiif_folder.h"
+#include "store/format/iiif_service.h"
 #include "store/format/plain_picture.h"
 #include "store/format/tiff_pyramid.h"
 #include "store/format/tile_folder.h"
 #include "store/painting/painted_picture.h"
+#include "store/remote/http_get.h"
 
 namespace wellspring::store {
 namespace {
@@ -46,8 +48,13 @@ std::string_view foreign_format(std::string_view bytes) {
 
 std::shared_ptr<const PicturePyramid> open_picture(const std::string& path,
                                                    const std::string& layer,
-                                                   const std::string& language) {
+                                                   const std::string& language,
+                                                   const std::vector<std::string>& allowed_hosts) {
   std::error_code error;
+  if (is_http_address(path)) {
+    if (!layer.empty()) throw LoadError(path, "", "has no layers: only a .painting.json has");
+    return load_iiif_service(path, allowed_hosts);
+  }
   if (fs::is_directory(path, error)) {
     for (const char* name : {"ImageProperties.xml", "info.json"})
       if (const fs::path file = fs::path(path) / name; fs::exists(file, error))
