@@ -82,8 +82,11 @@ export function make_glass(canvas, send, label) {
     const share = other ? 0.5 : 1;  // of two fingers each moves it by half
     const from = other ? Math.hypot(last.x - other.x, last.y - other.y) : 1;
     const to = other ? Math.hypot(now.x - other.x, now.y - other.y) : 1;
-    change({ at: [held.at[0] + share * (now.x - last.x) / width,
-      held.at[1] + share * (now.y - last.y) / height], radius: held.radius * to / Math.max(from, 1) });
+    change({
+      at: [held.at[0] + share * (now.x - last.x) / width,
+        held.at[1] + share * (now.y - last.y) / height],
+      radius: held.radius * to / Math.max(from, 1),
+    });
   });
   for (const end of ['pointerup', 'pointercancel'])
     glass.addEventListener(end, (event) => down.delete(event.pointerId));
@@ -119,7 +122,9 @@ export function make_glass(canvas, send, label) {
     let bitmap = null;
     try {
       bitmap = await createImageBitmap(new Blob([packet.payload], { type: 'image/jpeg' }));
-    } catch {}  // a broken picture is left out
+    } catch (problem) {
+      console.warn(`picture ${packet.frame}: ${problem}`);
+    }
     send({ type: 'ack', frame: packet.frame, shown: bitmap !== null,
       decoded_ms: Math.round(10 * (performance.now() - began)) / 10 });
     const order = orders.get(packet.seq);
@@ -146,6 +151,13 @@ export function make_glass(canvas, send, label) {
     },
     put_down,
     held: () => held,
+    // As still.jpg asks for it.
+    looks() {
+      if (!held) return {};
+      const { at, radius, zoom: large, name, layer, difference } = held;
+      return { lens: [...at, radius, large].join(','),
+        ...(name && { lens_layer: `${name}:${layer}${difference ? ':difference' : ''}` }) };
+    },
     // Returns whether the message is what the glass shows.
     receive(buffer) {
       const packet = read_picture(buffer);

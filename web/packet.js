@@ -37,9 +37,10 @@ function read_keyframe(buffer, view, header) {
   return good ? { color_bytes, cuts: view.getUint32(32, true), unit, view: seen } : null;
 }
 
-// {frame, seq, time_us, width, height, quality, still, parts, keyframe, around, layer, payload:
-// lens, zoom, Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of one without
-// depth; around: it is a wide one; layer: it is what moves, over what stands still; lens: it is what a glass shows, `zoom` times as large as beside it.
+// {frame, seq, time_us, width, height, quality, still, parts, keyframe, around, layer, lens, zoom,
+// payload: Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of one
+// without depth; around: it is a wide one; layer: it is what moves, over what stands still; lens:
+// it is what a glass shows, where things are `zoom` times as large as beside it.
 export function read_picture(buffer) {
   if (buffer.byteLength < 28) return null;
   const view = new DataView(buffer);

@@ -21,10 +21,10 @@ function make_slider(label, most, step, value, on_value) {
   return slider;
 }
 
-// orders: {piece({name, layer, over, by, share})}; glass: as of make_glass().
-export function make_pieces(orders, glass) {
+// orders: {piece({name, layer, over, by, share})}; glass, ruler: as of make_glass(), make_ruler().
+export function make_pieces(orders, glass, ruler) {
   const room = by_id('card-piece');
-  let pieces = [], lang = 'en', shown = null, choice = null, name = '';
+  let pieces = [], lang = 'en', shown = null, choice = null, name = '', seen = '';
 
   const first = () => shown.layers[0];
   const dated = () => shown.layers.every((layer) => layer.year !== undefined);
@@ -96,6 +96,16 @@ export function make_pieces(orders, glass) {
     });
   }
 
+  function make_ruler_button() {
+    const button = element('button', { type: 'button', textContent: word(lang, 'ruler'),
+      ariaPressed: String(ruler.used()), onclick() {
+        ruler.use(!ruler.used());
+        button.ariaPressed = String(ruler.used());
+        say({ text: ruler.used() ? word(lang, 'ruler_hint') : '' });
+      } });
+    return button;
+  }
+
   function fill() {
     room.replaceChildren();
     room.hidden = !shown;
@@ -106,7 +116,7 @@ export function make_pieces(orders, glass) {
       change({ layer });
       fill();
     }));
-    room.append(...make_comparison(), make_glass_choice());
+    room.append(...make_comparison(), make_glass_choice(), make_ruler_button());
   }
 
   return {
@@ -116,11 +126,20 @@ export function make_pieces(orders, glass) {
       if (shown) fill();
     },
     state(message) {
+      const view = JSON.stringify([message.position, message.yaw, message.pitch, message.fov]);
+      if (shown && view !== seen) ruler.scale(true);
+      seen = view;
       if (!shown || room.contains(document.activeElement)) return;
       const told = message.pieces?.[shown.id];
       if (!told || JSON.stringify(told) === JSON.stringify(choice)) return;
       choice = told;
       fill();
+    },
+    // As still.jpg asks for them.
+    looks(state) {
+      const chosen = Object.entries(state?.pieces ?? {}).map(([id, { layer, over, by, share }]) =>
+        [id, layer, ...(by === 'none' ? [] : [over, by, share])].join(':'));
+      return chosen.length ? { pieces: chosen.join(',') } : {};
     },
     // The card of an object was opened; null: closed.
     show(object, state) {
@@ -130,6 +149,9 @@ export function make_pieces(orders, glass) {
       choice = shown && (state?.pieces?.[shown.id]
         ?? { layer: first().id, over: '', by: 'none', share: 0.5 });
       glass.put_down();
+      ruler.use(false);
+      seen = '';
+      ruler.scale(shown !== null);
       fill();
     },
   };

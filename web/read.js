@@ -44,6 +44,14 @@ function tour_article(tour) {
       element('ol.stops', {}, ...stops));
 }
 
+// What stands or hangs there: what is said of it, and of its layers and years.
+function seen_article(object) {
+  const layers = (object.layers ?? []).map((layer) =>
+    element('li', {}, spoken('strong', layer.label), layer.text ? spoken('p', layer.text) : null));
+  return element('article', { id: `seen-${object.id}` }, spoken('h3', object.title),
+      spoken('p', object.text), layers.length ? element('ul', {}, ...layers) : null);
+}
+
 // A text whose addresses are links; others than of the web stay words.
 function with_links(text) {
   return text.split(link_pattern).filter(Boolean).map((part) => (link_pattern.test(part)
@@ -81,11 +89,14 @@ function show_exhibit() {
   const stories = told.stories.map(story_article), tours = told.tours.map(tour_article);
   fill(by_id('stories'), stories);
   fill(by_id('tours'), tours);
-  by_id('contents-list').replaceChildren(...[...stories, ...tours].map(link_to));
-  by_id('contents').hidden = stories.length + tours.length < 2;
+  const seen = exhibit.objects.filter(({ title, text }) => title && text).map(seen_article);
+  fill(by_id('seen'), seen);
+  const articles = [...stories, ...tours, ...seen];
+  by_id('contents-list').replaceChildren(...articles.map(link_to));
+  by_id('contents').hidden = articles.length < 2;
   by_id('credits-list').replaceChildren(...exhibit.credits.map(credit_item));
   by_id('credits').hidden = exhibit.credits.length === 0;
-  if (stories.length + tours.length === 0) say('read_nothing');
+  if (articles.length === 0) say('read_nothing');
 }
 
 function show_languages(tags) {

@@ -7,9 +7,10 @@ import { word } from './words.js';
 
 const least = 320, most = 1920;  // pixels of a postcard's longer side
 
+// looks() -> fields of the address that say which layers are seen, and through which glass.
 // view() -> {position, yaw, pitch, roll, fov}, or null: none yet; size() -> [width, height] of the
 // picture.
-export function make_share(view, size) {
+export function make_share(view, size, looks) {
   const field = by_id('share-link'), postcard = by_id('share-postcard');
   let lang = 'en', exhibit = '', title = '';
   const say = (name) => { by_id('share-answer').textContent = name ? word(lang, name) : ''; };
@@ -40,6 +41,7 @@ export function make_share(view, size) {
       position: seen.position.join(','), yaw: seen.yaw, pitch: seen.pitch, roll: seen.roll,
       fov: seen.fov,
       width: Math.round(width * scale), height: Math.round(height * scale), denoise: 1,
+      ...looks(),
     }));
     try {
       const answer = await fetch(

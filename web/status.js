@@ -190,6 +190,31 @@ function show_figures(metrics) {
   ]);
 }
 
+// What the store of very large pictures holds, waits for and could not read.
+function show_store(metrics) {
+  const one = reader(metrics), pieces = one('store_pieces');
+  by_id('store-section').hidden = pieces === undefined;
+  if (pieces === undefined) return;
+  const read = (result) => metrics.find((metric) =>
+    metric.name === 'store_fetched_total' && metric.labels.result === result)?.value ?? 0;
+  const all = read('piece') + read('absent') + read('failed');
+  const coarser = one('store_coarser_levels');
+  fill(by_id('store'), null, [
+    ['Pictures', number(one('store_sources'))],
+    ['In memory', `${number(pieces)} pieces, ${mebibytes(one('store_bytes'))} of `
+      + `${mebibytes(one('store_budget_bytes'))}; dropped to make room: `
+      + number(one('store_dropped_total'))],
+    ['Shown', coarser > 0 ? { text: `${number(coarser, 1)} levels coarser than they could be: `
+      + 'give pieces-memory more', bad: true } : 'as fine as visitors can see'],
+    ['Wanted', `${number(one('store_waiting'))} waited for, `
+      + `${number(one('store_under_way'))} being read`],
+    ['Read', `${number(read('piece'))}, `
+      + `${number(1000 * one('store_fetch_seconds_total') / Math.max(all, 1), 1)} ms each; `
+      + `none there: ${number(read('absent'))}`],
+    ['Failed', { text: number(read('failed')), bad: read('failed') > 0 }],
+  ]);
+}
+
 // From another machine the server tells all of this only with the admin token. The token stays in
 // the tab.
 function ask(path) {
@@ -246,7 +271,9 @@ async function refresh() {
       judge(status);
       show_kiosks(status);
       by_id('sums').hidden = !status.sums;
-      show_figures(parse_metrics(await figures.text()));
+      const metrics = parse_metrics(await figures.text());
+      show_figures(metrics);
+      show_store(metrics);
       if (!speeds_shown) show_speeds().catch(() => say_speeds('The server does not tell.'));
       speeds_shown = true;
     }

@@ -23,6 +23,7 @@ import { make_pieces } from './pieces.js';
 import { make_places } from './places.js';
 import { make_player } from './player.js';
 import { make_presence } from './presence.js';
+import { make_ruler } from './ruler.js';
 import { make_share } from './share.js';
 import { make_sound } from './sound.js';
 import { make_subtitles } from './subtitles.js';
@@ -95,10 +96,12 @@ function say_what_is_unknown(message) {
 
 const send_settings = (fields) => connection?.send({ type: 'settings', ...fields });
 const comfort = make_comfort(send_settings, () => places.load());
-const glass = make_glass(canvas, (message) => connection?.send(message), (name) => word(lang, name));
+const glass = make_glass(canvas, (message) => connection?.send(message),
+    (name) => word(lang, name));
+const ruler = make_ruler(canvas, (message) => connection?.send(message), () => lang);
 const pieces = make_pieces({
   piece: (fields) => connection.send({ type: 'piece', ...fields }),
-}, glass);
+}, glass, ruler);
 const card = make_card({
   shown: (object) => pieces.show(object, state),
   story: (story) => connection.send({ type: 'storyteller', story }),
@@ -142,7 +145,8 @@ const group = make_group({
   notice: (text) => notice(text, 6),
   close: () => { if (menu.is_open()) menu.toggle(); },
 });
-const share = make_share(() => state, () => [canvas.width, canvas.height]);
+const share = make_share(() => state, () => [canvas.width, canvas.height],
+    () => ({ ...pieces.looks(state), ...glass.looks() }));
 const description = make_description(by_id('scene'));
 
 const presence = make_presence({
@@ -215,6 +219,7 @@ connection = make_connection({
       case 'went':
         if (message.object) card.open(message.object); else card.close();
         break;
+      case 'measured': ruler.measured(message); break;
       case 'reply': ask.reply(message); break;
       case 'waiting': presence.waiting(message); break;
       case 'idle': presence.idle(message); break;

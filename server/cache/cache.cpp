@@ -272,7 +272,10 @@ struct RenderCache::Projection {
   uint64_t projection = 0;
   int still_frames = 0, fresh = 0;
   CacheStats stats;
+  std::vector<uint8_t> flags;  // flags of the points
 };
+// These flags of points belong to the projection.
+static constexpr uint8_t projection_flags = point_visible | point_verified;
 
 void RenderCache::DropProjection::operator()(Projection* projection) const { delete projection; }
 
@@ -280,7 +283,7 @@ std::unique_ptr<RenderCache::Projection, RenderCache::DropProjection> RenderCach
   Impl& c = *impl_;
   std::unique_ptr<Projection, DropProjection> aside(
       new Projection{std::exchange(c.image, {}), c.view, c.projected, c.image_stale, c.projection,
-                     c.still_frames, c.fresh, c.stats});
+                     c.still_frames, c.fresh, c.stats, c.points.flags});
   c.projected = false;
   return aside;
 }
@@ -291,6 +294,9 @@ void RenderCache::put_back(std::unique_ptr<Projection, DropProjection> aside) {
   c.view = aside->view, c.projected = aside->projected, c.image_stale = aside->image_stale;
   c.projection = aside->projection, c.still_frames = aside->still_frames;
   c.fresh = aside->fresh, c.stats = aside->stats;
+  std::vector<uint8_t>& flags = c.points.flags;
+  for (size_t i = 0; i < flags.size(); i++)
+    flags[i] = uint8_t((flags[i] & ~projection_flags) | (aside->flags[i] & projection_flags));
 }
 
 void RenderCache::relight(const Changes& changes) {

@@ -21,6 +21,7 @@
 #include "show/draw/present.h"
 #include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
+#include "show/state/visitor_world.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"

@@ -248,6 +248,7 @@ struct HourOrder {
 };
 // Says how a second layer of a piece is shown.
 enum class PieceBlend : uint8_t { none, curtain, fade, difference };
+inline constexpr const char* piece_blends[] = {"none", "curtain", "fade", "difference"};
 // Chooses what is seen at the place of a piece: one of its layers, or two of them.
 struct PieceOrder {
   static constexpr const char* type = "piece";
@@ -289,6 +290,19 @@ struct LensOrder {
                    "boolean: by how much the layer differs from what is shown");
   }
   bool operator==(const LensOrder&) const = default;
+};
+// Asks how far two places of the picture are from each other in the world.
+struct MeasureOrder {
+  static constexpr const char* type = "measure";
+  uint32_t id = 0;
+  std::optional<vec2> from, to;
+  static void list(auto& message, auto& fields) {
+    fields.u32("id", message.id, "u32, which the answer says");
+    fields.place("from", message.from, "[x, y] of the picture, 0..1 from its upper left",
+                 Need::required);
+    fields.place("to", message.to, "[x, y] likewise", Need::required);
+  }
+  bool operator==(const MeasureOrder&) const = default;
 };
 // Starts an animation that is started by touch, or sends it back.
 struct PlayOrder {
@@ -425,7 +439,7 @@ struct WaitingPlace {
 
 using BrowserMessage =
     std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, Tour, StorytellerOrder, LampOrder,
-                 HourOrder, PieceOrder, LensOrder, PlayOrder, KioskTouch, GroupOrder, Ask, Settings,
-                 Ack, PresenceNews, Bye>;
+                 HourOrder, PieceOrder, LensOrder, MeasureOrder, PlayOrder, KioskTouch, GroupOrder,
+                 Ask, Settings, Ack, PresenceNews, Bye>;
 
 }  // namespace wellspring::wire

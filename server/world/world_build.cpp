@@ -453,7 +453,7 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
                         i < moving_object.size() ? moving_object[i] : 0, true, true, false, mat4(1),
                         mat3(1)});
   if (std::ranges::any_of(scene.images, [](const Image& image) { return image.large != nullptr; }))
-    for (const Image& image : scene.images) w.pictures.push_back({.base = {image.large}});
+    for (const Image& image : scene.images) w.pictures.emplace_back().base.picture = image.large;
   for (PlacedMesh& placed : w.placed) {
     const Material& material = *placed.material;
     if (material.large_picture) {

@@ -35,7 +35,8 @@ before(async () => {
   exhibit.pieces = [
     { id: 'valley', kind: 'picture', source: 'valley.painting.json', width_m: 1.2, place,
       label: { en: 'The valley' }, annotations: 'notes.json',
-      layers: [{ id: 'xray', layer: 'xray', label: { en: 'X-ray' }, text: { en: 'White lead.' } }] },
+      layers: [{ id: 'xray', layer: 'xray', label: { en: 'X-ray' },
+        text: { en: 'White lead.' } }] },
     { id: 'map', kind: 'map', width_m: 1, label: { en: 'The map' },
       place: { position: [1.6, 1.4, -2.4], yaw_deg: 180 },
       times: [{ year: 1650, source: 'old.painting.json' },
@@ -46,10 +47,10 @@ before(async () => {
   server = await start_server(['--exhibit', 'room', ...little_light],
       { content: join(folder, 'content') });
   browser = await launch();
-  page = await browser.newPage({ viewport: { width: 640, height: 360 } });
+  page = await browser.newPage({ viewport: { width: 1024, height: 576 } });
   page.on('pageerror', (error) => problems.push(String(error)));
   page.on('console', (message) => {
-    if (['error', 'warning'].includes(message.type())) problems.push(message.text());
+    if (message.type() === 'error') problems.push(message.text());
   });
   await page.goto(`${server.url}/?exhibit=room&display=server&lang=en`);
   await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 2);
@@ -70,7 +71,7 @@ async function open_card(title) {
 }
 // The colour in the middle of the museum's picture.
 async function middle() {
-  const seen = await look(page, 1, 1, { x: 312, y: 172, width: 16, height: 16 });
+  const seen = await look(page, 1, 1, { x: 504, y: 280, width: 16, height: 16 });
   return seen.slice(0, 3);
 }
 // The colour in the middle of the glass.
@@ -110,11 +111,12 @@ test('the glass shows the X-ray, follows keys at once and is put down', { skip }
   assert.match(await page.getAttribute('.glass', 'aria-label'), /The valley: X-ray\. Drag it/);
   if (pictures) await page.screenshot({ path: join(pictures, 'glass.png') });
   assert(is_green(await middle()), 'beside it the picture stays');
-  const place = () => page.evaluate(() => document.querySelector('.glass').getBoundingClientRect().x);
+  const place = () => page.evaluate(() =>
+    document.querySelector('.glass').getBoundingClientRect().x);
   const before = await place();
   await page.focus('.glass');
   await page.keyboard.press('ArrowRight');
-  assert(Math.abs(await place() - before - 6.4) < 0.5, 'a hundredth of the picture');
+  assert(Math.abs(await place() - before - 10.24) < 0.5, 'a hundredth of the picture');
   const seq = Number(await page.getAttribute('.glass', 'data-seq'));
   await page.waitForFunction((old) =>
     Number(/** @type {HTMLElement} */ (document.querySelector('.glass')).dataset.seq) > old, seq);
@@ -124,6 +126,20 @@ test('the glass shows the X-ray, follows keys at once and is put down', { skip }
   await page.keyboard.press('Escape');
   await page.waitForFunction(() => !document.querySelector('.glass'));
   assert.equal(await page.isHidden('#card'), false);
+});
+
+test('the scale bar and the ruler say centimetres', { skip }, async () => {
+  await page.waitForFunction(() => /^[125]0? cm$/.test(document.querySelector('.scale-bar')
+      ?.textContent));
+  await page.click('#card-piece button');
+  await page.mouse.move(500, 290);
+  await page.mouse.down();
+  await page.mouse.move(560, 290, { steps: 4 });
+  await page.waitForFunction(() => document.querySelector('.ruler output').textContent);
+  assert.match(await page.textContent('.ruler output'), /^\d+(\.\d)? cm$/);
+  await page.mouse.up();
+  await page.click('#card-piece button');
+  assert(await page.isHidden('.ruler'));
 });
 
 test('a note on the picture is an object that one looks at closer', { skip }, async () => {

@@ -90,5 +90,9 @@ export default {
   larger: 'größer',
   closest: 'so nah wie möglich',
   difference_to: 'Unterschied zu: {layer}',
-  glass_hint: 'Ziehen oder Pfeiltasten bewegen es; Rad oder + und - vergrößern; zwei Finger oder [ und ] ändern seine Größe.',
+  glass_hint:
+    'Ziehen oder Pfeiltasten bewegen es; Rad oder + und - vergrößern; zwei Finger oder [ und '
+    + '] ändern seine Größe.',
+  read_seen: 'Hier zu sehen',
+  ruler: 'Messen', ruler_hint: 'Ziehen Sie eine Linie über das Bild.',
 };

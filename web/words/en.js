@@ -89,5 +89,9 @@ export default {
   larger: 'larger',
   closest: 'as close as it goes',
   difference_to: 'difference to: {layer}',
-  glass_hint: 'Drag it or press arrow keys; wheel or + and - enlarge; two fingers or [ and ] change its size.',
+  glass_hint:
+    'Drag it or press arrow keys; wheel or + and - enlarge; two fingers or [ and ] change '
+    + 'its size.',
+  read_seen: 'To be seen here',
+  ruler: 'Measure', ruler_hint: 'Draw a line over the picture.',
 };

@@ -91,5 +91,9 @@ export default {
   larger: 'más grande',
   closest: 'lo más cerca posible',
   difference_to: 'diferencia con: {layer}',
-  glass_hint: 'Se mueve arrastrando o con las flechas; la rueda o + y - amplían; dos dedos o [ y ] cambian su tamaño.',
+  glass_hint:
+    'Se mueve arrastrando o con las flechas; la rueda o + y - amplían; dos dedos o [ y ] '
+    + 'cambian su tamaño.',
+  read_seen: 'Para ver aquí',
+  ruler: 'Medir', ruler_hint: 'Trace una línea sobre la imagen.',
 };

@@ -91,5 +91,9 @@ export default {
   larger: 'plus grand',
   closest: 'au plus près',
   difference_to: 'différence avec : {layer}',
-  glass_hint: 'Glisser ou flèches : elle bouge ; molette ou + et - : agrandir ; deux doigts ou [ et ] : sa taille.',
+  glass_hint:
+    'Glisser ou flèches : elle bouge ; molette ou + et - : agrandir ; deux doigts ou [ et ] '
+    + ': sa taille.',
+  read_seen: 'À voir ici',
+  ruler: 'Mesurer', ruler_hint: 'Tracez une ligne sur l’image.',
 };

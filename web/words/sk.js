@@ -86,5 +86,9 @@ export default {
   larger: 'zväčšené',
   closest: 'najbližšie, ako sa dá',
   difference_to: 'rozdiel oproti: {layer}',
-  glass_hint: 'Posúva sa ťahaním alebo šípkami; koliesko alebo + a - zväčšujú; dva prsty alebo [ a ] menia veľkosť.',
+  glass_hint:
+    'Posúva sa ťahaním alebo šípkami; koliesko alebo + a - zväčšujú; dva prsty alebo [ a ] '
+    + 'menia veľkosť.',
+  read_seen: 'Čo tu vidno',
+  ruler: 'Merať', ruler_hint: 'Ťahaním nakreslite čiaru cez obraz.',
 };

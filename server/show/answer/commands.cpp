@@ -13,10 +13,12 @@
 #include "show/answer/groups.h"
 #include "show/answer/idle.h"
 #include "show/count/count.h"
+#include "show/state/visitor_world.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
 #include "show/state/visitor_picture.h"
+#include "show/visit/route.h"
 #include "wire/json.h"
 
 namespace wellspring::show {
@@ -204,8 +206,9 @@ Answer handle_one(Show& show, Visitor& visitor, const HourOrder& order) {
 
 Answer handle_one(Show& show, Visitor& visitor, const PieceOrder& order) {
   if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
-  const std::string wrong = choose_piece(show, visitor, order);
+  const std::string wrong = choose_piece(show.stage.exhibit, order, visitor.pieces.wish);
   if (!wrong.empty()) return WireError{"unknown_piece", wrong};
+  visitor.state_sent_at = -1e9;
   return {};
 }
 
@@ -214,6 +217,16 @@ Answer handle_one(Show& show, Visitor& visitor, const LensOrder& order) {
   const std::string wrong = look_through(show.stage.exhibit, order, choices);
   if (!wrong.empty()) return WireError{"unknown_piece", wrong};
   visitor.lens = order;
+  return {};
+}
+
+Answer handle_one(Show& show, Visitor& visitor, const MeasureOrder& order) {
+  const View& view = visitor.place.last_view;
+  const Exhibit& exhibit = show.stage.exhibit;
+  const auto from = point_at(exhibit, *show.stage.world, view, *order.from);
+  const auto to = point_at(exhibit, *show.stage.world, view, *order.to);
+  if (!from || !to) return WireError{"nothing_there", "nothing is seen there"};
+  visitor.link->send_text(measured_message(order.id, double(glm::length(to->place - from->place))));
   return {};
 }
 

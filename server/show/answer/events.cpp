@@ -7,6 +7,7 @@
 
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
+#include "show/state/visitor_world.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -156,10 +157,9 @@ std::string state_message(const Show& show, const Visitor& visitor) {
     const std::vector<PieceLayer>& layers = exhibit.pieces[i].layers;
     if (layers.size() < 2) continue;
     const PieceChoice& choice = choices[i];
-    static constexpr const char* blends[] = {"none", "curtain", "fade", "difference"};
     message["pieces"][exhibit.pieces[i].id] = {{"layer", layers[size_t(choice.layer)].id},
                                                {"over", layers[size_t(choice.over)].id},
-                                               {"by", blends[size_t(choice.by)]},
+                                               {"by", piece_blends[size_t(choice.by)]},
                                                {"share", choice.share}};
   }
   if (exhibit.day) message["hour"] = hour_of(show, visitor).value_or(exhibit.day->settings.at);
@@ -199,6 +199,10 @@ std::string pose_message(const ExhibitStage& stage, const ShowVisits& visits,
               {"cut", place.camera_cuts},
               {"led", led}}
       .dump();
+}
+
+std::string measured_message(uint32_t id, double metres) {
+  return json{{"type", "measured"}, {"id", id}, {"metres", metres}}.dump();
 }
 
 std::string went_message(uint32_t seq, const std::string& object, dvec3 place, double seconds) {

@@ -18,6 +18,7 @@ std::string pose_message(const ExhibitStage& stage, const ShowVisits& visits,
                          const Visitor& visitor);
 // The visitor is on its way to an eye's `place`, or has leapt there (0 seconds); to look closer at
 // `object`, if that is not empty.
+std::string measured_message(uint32_t id, double metres);
 std::string went_message(uint32_t seq, const std::string& object, dvec3 place, double seconds);
 // Empty text: the subtitle disappears.
 std::string subtitle_message(const std::string& text, const std::string& lang,

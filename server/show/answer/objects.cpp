@@ -46,8 +46,18 @@ json describe(const PointOfInterest& point, const Say& say) {
 
 json describe_objects(const Exhibit& exhibit) {
   json objects = json::array();
-  for (const PointOfInterest& point : exhibit.points)
-    objects.push_back(describe(point, [](const LocalText& text) { return json(text); }));
+  for (const PointOfInterest& point : exhibit.points) {
+    json& about =
+        objects.emplace_back(describe(point, [](const LocalText& text) { return json(text); }));
+    const auto piece = std::ranges::find(exhibit.pieces, point.id, &ExhibitPiece::id);
+    if (piece == exhibit.pieces.end() || piece->layers.size() < 2) continue;
+    for (const PieceLayer& layer : piece->layers) {
+      if (layer.label.empty()) continue;
+      json& one = about["layers"].emplace_back(json{{"id", layer.id}, {"label", layer.label}});
+      if (!layer.text.empty()) one["text"] = layer.text;
+      if (layer.year) one["year"] = *layer.year;
+    }
+  }
   return objects;
 }
 

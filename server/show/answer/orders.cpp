@@ -28,6 +28,7 @@ constexpr OrderBound bounds[] = {
     {HourOrder::type, 10, 10},       // other light
     {PieceOrder::type, 20, 20},      // another picture
     {LensOrder::type, 60, 60},       // another glass
+    {MeasureOrder::type, 10, 10},    // rays
     {PlayOrder::type, 10, 10},       // moves things
     {GroupOrder::type, 2, 5},        // codes are not to be guessed
     {Ask::type, 2, 4},               // an answer is looked for and spoken

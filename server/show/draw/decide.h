@@ -122,7 +122,7 @@ enum class Drawing : uint8_t {
   moving,   // moving things in the visitor's picture
   skin,     // light on moving things
   go_on,    // the next step of the picture that is begun
-  lens,     // what the visitor's glass shows
+  lens,     // picture of the visitor's glass
   samples,  // samples that visitors have asked for
   pass,     // a slice of the reconstruction
   picture,  // the visitor's next picture

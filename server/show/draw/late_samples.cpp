@@ -12,7 +12,7 @@
 #include "picture/still/reconstruct_still.h"
 #include "show/draw/decide.h"
 #include "show/draw/pace.h"
-#include "show/draw/pieces.h"
+#include "show/lens/pieces.h"
 #include "show/state/renderer.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"

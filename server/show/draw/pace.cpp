@@ -5,7 +5,7 @@
 #include <cmath>
 #include <oneapi/tbb/info.h>
 
-#include "show/draw/pieces.h"
+#include "show/lens/pieces.h"
 #include "show/state/delivery.h"
 #include "show/lens/lens.h"
 #include "show/state/renderer.h"

@@ -11,7 +11,7 @@
 #include "picture/still/reconstruct_still.h"
 #include "show/draw/decide.h"
 #include "show/draw/late_samples.h"
-#include "show/draw/pieces.h"
+#include "show/lens/pieces.h"
 #include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
 #include "show/state/renderer.h"

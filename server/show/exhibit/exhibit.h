@@ -139,7 +139,7 @@ struct PointOfInterest {
 struct PieceLayer {
   std::string id, source;  // source: of the package, as exhibit.json names it
   LocalText label, text;
-  std::optional<int> year;  // of a map
+  std::optional<int> year;  // year of a map
   PictureLayer shown;
 };
 inline constexpr size_t most_piece_layers = 32;
@@ -158,8 +158,8 @@ struct ExhibitPiece {
   double floor = 0;                             // metres; height that they reach down to
   vec3 stand_color{0};                          // linear
   std::shared_ptr<const LargePicture> picture;  // the first layer, which says how it lies
-  std::vector<PieceLayer> layers;               // of the same place; the first is shown at first
-  int image = -1;                               // of the scene
+  std::vector<PieceLayer> layers;               // the first is shown at first
+  int image = -1;                               // index into Scene::images
 };
 inline constexpr size_t most_exhibit_pieces = 500;
 

@@ -9,10 +9,10 @@ namespace wellspring::show {
 
 inline constexpr size_t most_annotations = 200;
 
-// Adds a point of interest for each annotation of the file, behind that of the piece, whose objects
-// it shares. A target is the whole picture with a fragment `xywh=`, in texels of the first layer or
-// in percent, or one with a FragmentSelector or PointSelector. What cannot be used is a problem
-// that names file and place.
+// Adds a point of interest for each annotation of the file; they share the objects of `whole`, the
+// piece's own. A target is the picture's address with a fragment `xywh=`, in texels of the first
+// layer or in percent, or it has a FragmentSelector or a PointSelector. An annotation that cannot
+// be used is a problem with file and place.
 void read_annotations(Exhibit& exhibit, const ExhibitPiece& piece, const std::string& file,
                       const PointOfInterest& whole, std::vector<Problem>& problems);
 

@@ -260,12 +260,12 @@ void read_corners(FieldReader& fields, PieceLayer& layer) {
 
 // Opens the picture of a layer; without a source of its own it is in that of the piece.
 void read_source(const Exhibit& exhibit, FieldReader& fields, const std::string& otherwise,
-                 PieceLayer& layer, std::vector<Problem>& problems) {
+                 Need need, PieceLayer& layer, std::vector<Problem>& problems) {
   layer.source = otherwise;
   fields.text("source", layer.source,
               "a tiled TIFF, a Deep Zoom file, a folder of Zoomify or IIIF, a JPEG or PNG, or the "
               "address of an IIIF image service",
-              otherwise.empty() ? Need::required : Need::optional, most_address_bytes);
+              need, most_address_bytes);
   std::string name;
   fields.text("layer", name, "of a painting that is described in words; its first");
   const std::string path = find_source(exhibit, fields, layer.source);
@@ -294,7 +294,7 @@ void read_layers(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piec
                  one.name("id", layer.id, "what messages call it", Need::required);
                  layer.label = read_local_text(one, "label", "", Need::required);
                  layer.text = read_local_text(one, "text", "what there is to see in it");
-                 read_source(exhibit, one, piece.source, layer, problems);
+                 read_source(exhibit, one, piece.source, Need::optional, layer, problems);
                  read_corners(one, layer);
                  add_layer(one, std::move(layer), piece);
                });
@@ -311,7 +311,7 @@ void read_times(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece
                  layer.label = read_local_text(one, "label", "without it the year");
                  if (layer.label.empty()) layer.label[exhibit.languages.front()] = layer.id;
                  layer.text = read_local_text(one, "text", "what there is to see in it");
-                 read_source(exhibit, one, "", layer, problems);
+                 read_source(exhibit, one, "", Need::required, layer, problems);
                  read_corners(one, layer);
                  add_layer(one, std::move(layer), piece);
                });
@@ -326,7 +326,7 @@ void read_pictures(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& pi
   const bool described = fields.describes();
   if (described || kind != "map") {
     PieceLayer first;
-    read_source(exhibit, fields, "", first, problems);
+    read_source(exhibit, fields, "", described ? Need::optional : Need::required, first, problems);
     first.id = "first";
     first.label = read_local_text(fields, "label", "");
     piece.source = first.source;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <oneapi/tbb/task_arena.h>
 #include <optional>
+#include <shared_mutex>
 #include <vector>
 
 #include "denoise/denoise.h"
@@ -15,6 +16,7 @@
 #include "light/technique/technique.h"
 #include "light/visible/guides.h"
 #include "show/exhibit/exhibit_lights.h"
+#include "show/lens/lens.h"
 #include "show/state/show.h"
 #include "wire/limits.h"
 
@@ -35,9 +37,12 @@ struct StillRoom::Scenery {
   Scenery(const Show& show, std::function<double()> clock);
   std::optional<Frame> trace(const View& view, const StillJob& order, double seconds,
                              const std::function<bool()>& given_up, StillCosts& costs) const;
-  std::optional<Frame> render(const StillJob& order, const std::function<bool()>& given_up,
-                              double denoise_seconds, StillCosts& costs,
-                              StillPicture& picture) const;
+  View view_of(const StillJob& order) const;
+  std::optional<Frame> render(const StillJob& order, const View& view,
+                              const std::function<bool()>& given_up, double denoise_seconds,
+                              StillCosts& costs, StillPicture& picture) const;
+  bool add_glass(StillJob order, const std::function<bool()>& given_up, double denoise_seconds,
+                 StillCosts& costs, StillPicture& picture, Image8& image) const;
   std::string comment(const StillPicture& picture) const;
 
   const Exhibit& exhibit;
@@ -47,6 +52,8 @@ struct StillRoom::Scenery {
   std::unique_ptr<World> world;
   Lights lights;
   std::function<double()> clock;
+  // Pictures that show other pieces than at first have the world alone.
+  mutable std::shared_mutex looks;
 };
 
 StillRoom::StillRoom(const Show& show, std::function<double()> clock)
@@ -123,17 +130,20 @@ std::optional<Frame> StillRoom::Scenery::trace(const View& view, const StillJob&
   return frame;
 }
 
-std::optional<Frame> StillRoom::Scenery::render(const StillJob& order,
-                                                const std::function<bool()>& given_up,
-                                                double denoise_seconds, StillCosts& costs,
-                                                StillPicture& picture) const {
+View StillRoom::Scenery::view_of(const StillJob& order) const {
   Viewpoint at = exhibit.viewpoints[size_t(order.viewpoint)].view;
   at.position = order.position.value_or(at.position);
   at.yaw = order.yaw.value_or(at.yaw);
   at.pitch = order.pitch.value_or(at.pitch);
   at.roll = order.roll.value_or(at.roll);
   at.fov = order.fov.value_or(at.fov);
-  View view = make_view(exhibit.scene, at, order.width, order.height);
+  return make_view(exhibit.scene, at, order.width, order.height);
+}
+
+std::optional<Frame> StillRoom::Scenery::render(const StillJob& order, const View& view,
+                                                const std::function<bool()>& given_up,
+                                                double denoise_seconds, StillCosts& costs,
+                                                StillPicture& picture) const {
   auto frame = trace(view, order, order.seconds - denoise_seconds, given_up, costs);
   if (!frame) return {};
   picture.spp = costs.spp;
@@ -155,6 +165,43 @@ std::optional<Frame> StillRoom::Scenery::render(const StillJob& order,
   return frame;
 }
 
+// Lays a round picture of two radii a side, with a ring around it, over the middle of the glass.
+static void lay_glass(const Image8& glass, vec2 middle, Image8& image) {
+  constexpr float ring = 0.03f;  // share of the radius
+  constexpr uint8_t gold[] = {217, 179, 106};
+  const float radius = 0.5f * float(glass.width);
+  const int left = int(middle.x - radius), top = int(middle.y - radius);
+  for (int y = std::max(0, -top); y < std::min(glass.height, image.height - top); y++)
+    for (int x = std::max(0, -left); x < std::min(glass.width, image.width - left); x++) {
+      const float off = glm::length(vec2(float(x) + 0.5f, float(y) + 0.5f) - radius) / radius;
+      if (off > 1) continue;
+      const uint8_t* from =
+          off > 1 - ring ? gold : &glass.rgb[3 * (size_t(y) * size_t(glass.width) + size_t(x))];
+      std::copy_n(from, 3,
+                  &image.rgb[3 * (size_t(y + top) * size_t(image.width) + size_t(x + left))]);
+    }
+}
+
+// Returns false if the picture was given up.
+bool StillRoom::Scenery::add_glass(StillJob order, const std::function<bool()>& given_up,
+                                   double denoise_seconds, StillCosts& costs, StillPicture& picture,
+                                   Image8& image) const {
+  const View whole = view_of(order);
+  if (!look_through(exhibit, order.lens, order.pieces).empty()) return true;
+  show_pieces(exhibit, order.pieces, *world);
+  const View view = lens_view(whole, order.lens, zoom_of(*world, whole, order.lens), 2);
+  const double share = double(view.width) * view.height / order.pixels();
+  order.seconds *= share;
+  StillCosts spent;
+  const auto frame = render(order, view, given_up, share * denoise_seconds, spent, picture);
+  costs.trace_seconds += spent.trace_seconds, costs.denoise_seconds += spent.denoise_seconds;
+  if (!frame) return false;
+  Image8 glass;
+  tonemap(*frame, Tonemap{exhibit.exposure}, glass);
+  lay_glass(glass, *order.lens.at * vec2(float(image.width), float(image.height)), image);
+  return true;
+}
+
 std::string StillRoom::Scenery::comment(const StillPicture& picture) const {
   const std::string samples =
       std::to_string(picture.spp) + " samples a pixel by " + technique->name;
@@ -172,8 +219,9 @@ StillCosts StillRoom::measure(const StillJob& order) {
   StillPicture picture;
   oneapi::tbb::task_arena arena(1, 1, oneapi::tbb::task_arena::priority::low);
   arena.execute([&] {
-    scenery_->render(order, {}, 0, costs, picture);  // brings what the measured one needs
-    scenery_->render(order, {}, 0, costs, picture);
+    const View view = scenery_->view_of(order);
+    scenery_->render(order, view, {}, 0, costs, picture);  // brings what the measured one needs
+    scenery_->render(order, view, {}, 0, costs, picture);
   });
   return costs;
 }
@@ -193,15 +241,26 @@ StillPicture StillRoom::make(const StillJob& order, const std::function<bool()>&
   StillCosts spent;
   oneapi::tbb::task_arena arena(cores, 1, oneapi::tbb::task_arena::priority::low);
   StillPicture picture;
+  const Exhibit& exhibit = scenery_->exhibit;
+  const bool others = !order.pieces.empty() || order.lens.at;
+  std::unique_lock alone(scenery_->looks, std::defer_lock);
+  std::shared_lock together(scenery_->looks, std::defer_lock);
+  if (others) alone.lock();
+  else together.lock();
+  if (others) show_pieces(exhibit, order.pieces, *scenery_->world);
   arena.execute([&] {
-    const std::optional<Frame> frame =
-        scenery_->render(order, given_up, denoise_seconds, spent, picture);
+    const std::optional<Frame> frame = scenery_->render(order, scenery_->view_of(order), given_up,
+                                                        denoise_seconds, spent, picture);
     if (!frame) return;
     Image8 image;
-    tonemap(*frame, Tonemap{scenery_->exhibit.exposure}, image);
+    tonemap(*frame, Tonemap{exhibit.exposure}, image);
+    if (order.lens.at &&
+        !scenery_->add_glass(order, given_up, denoise_seconds, spent, picture, image))
+      return;
     encode_jpeg(image, still_jpeg_quality, true, bytes);
     add_jpeg_comment(scenery_->comment(picture), bytes);
   });
+  if (others) show_pieces(exhibit, {}, *scenery_->world);
   if (costs) *costs = spent;
   if (bytes.empty()) return {};
   picture.jpeg.assign(bytes.begin(), bytes.end());
@@ -275,6 +334,42 @@ struct QueryReader {
 
 }  // namespace
 
+// Reads "map:1850" or "valley:paint:xray:curtain:0.5"; several have commas between.
+static void read_pieces(const Exhibit& exhibit, QueryReader& fields, StillJob& job) {
+  auto split = [](const std::string& text, char at) {
+    std::vector<std::string> parts(1);
+    for (const char c : text)
+      if (c == at) parts.emplace_back();
+      else parts.back() += c;
+    return parts;
+  };
+  auto take = [&](const std::string& wrong) {
+    if (!wrong.empty()) fields.refuse(404, "unknown_piece", wrong);
+  };
+  if (const std::string text = fields.text("pieces"); !text.empty())
+    for (const std::string& one : split(text, ',')) {
+      std::vector<std::string> parts = split(one, ':');
+      parts.resize(5);
+      PieceOrder order{.name = parts[0], .layer = parts[1], .over = parts[2]};
+      for (int i = 0; i < int(std::size(piece_blends)); i++)
+        if (parts[3] == piece_blends[i]) order.by = PieceBlend(i);
+      order.share = std::clamp(float(std::atof(parts[4].c_str())), 0.0f, 1.0f);
+      take(choose_piece(exhibit, order, job.pieces));
+    }
+  const std::vector<double> glass = fields.numbers("lens", 4, 0, 64);
+  if (glass.empty()) return;
+  LensOrder& lens = job.lens;
+  lens.at = vec2(std::min(glass[0], 1.0), std::min(glass[1], 1.0));
+  lens.radius = float(std::clamp(glass[2], 0.02, 0.5)), lens.zoom = float(glass[3]);
+  if (const std::string text = fields.text("lens_layer"); !text.empty()) {
+    std::vector<std::string> parts = split(text, ':');
+    parts.resize(3);
+    lens.name = parts[0], lens.layer = parts[1], lens.difference = parts[2] == "difference";
+  }
+  PieceChoices choices;
+  take(look_through(exhibit, lens, choices));
+}
+
 StillQuestion read_still_question(const Exhibit& exhibit,
                                   const std::map<std::string, std::string>& query) {
   StillQuestion asked;
@@ -302,6 +397,7 @@ StillQuestion read_still_question(const Exhibit& exhibit,
   fields.number("pitch", -max_angle, max_angle, job.pitch);
   fields.number("roll", -max_angle, max_angle, job.roll);
   fields.number("fov", min_still_fov, max_still_fov, job.fov);
+  read_pieces(exhibit, fields, job);
   return asked;
 }
 

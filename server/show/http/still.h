@@ -14,6 +14,8 @@
 
 #include "base/clock.h"
 #include "show/exhibit/exhibit.h"
+#include "show/exhibit/piece_choices.h"
+#include "wire/messages.h"
 
 namespace wellspring::show {
 
@@ -28,6 +30,8 @@ struct StillJob {
   // In place of the viewpoint's own; metres, radians.
   std::optional<dvec3> position;
   std::optional<float> yaw, pitch, roll, fov;
+  PieceChoices pieces;
+  LensOrder lens;  // a glass over it; without `at` there is none
   bool operator==(const StillJob&) const = default;
   double pixels() const { return double(width) * height; }
 };

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/clock.h"
-#include "show/draw/pieces.h"
+#include "show/lens/pieces.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
@@ -15,12 +15,11 @@
 namespace wellspring::show {
 namespace {
 
-constexpr float sides = 3;  // of the glass's radius: half of it is margin on each side
 constexpr int least_side = 32, most_side = 1536;
 constexpr float most_zoom = 64, zoom_of_others = 4;
 constexpr double least_interval = 1 / 30.0;  // seconds from one picture to the next
 constexpr double moving_interval = 0.2;      // while something moves in the visitor's picture
-constexpr double most_share = 0.5;           // of the renderer's time, of all glasses together
+constexpr double most_share = 0.5;  // share of the renderer's time for all glasses together
 
 PieceChoices choices_of(const Show& show, const Visitor& visitor) {
   PieceChoices choices = visitor.pieces.shown;
@@ -30,7 +29,7 @@ PieceChoices choices_of(const Show& show, const Visitor& visitor) {
 
 }  // namespace
 
-View lens_view(const View& view, const LensOrder& order, float zoom) {
+View lens_view(const View& view, const LensOrder& order, float zoom, float sides) {
   const float pixel = 2 * view.tan_half_fov / float(view.height);
   const vec2 at = order.at.value_or(vec2(0.5f));
   View lens = view;
@@ -85,7 +84,7 @@ void begin_lens(Show& show, Visitor& visitor) {
   lens.lamps = visitor.lamps.lit;
   lens.drawn_at = show.time;
   if (lens.pieces.client) lens.pieces.arrivals = lens.pieces.client->arrivals();
-  show_pieces(show.stage, lens.shown);
+  show_pieces(show.stage.exhibit, lens.shown, *show.stage.world);
 }
 
 void draw_lens(Show& show, Visitor& visitor) {

@@ -16,7 +16,7 @@
 #include "show/kiosk/kiosk.h"
 #include "show/state/capacity.h"
 #include "show/state/cast.h"
-#include "show/state/shown_pieces.h"
+#include "show/exhibit/piece_choices.h"
 #include "show/state/switches.h"
 #include "show/state/visitor_attention.h"
 #include "show/visit/flow.h"
@@ -94,7 +94,7 @@ struct VisitorDelivery {
   bool has_still = false;
   bool has_layer = false;   // moving things were laid over the keyframe (packet_layer)
   bool sent_layer = false;  // a layer was the last to be sent
-  bool sent_lens = false;   // what the glass shows was the last to be sent
+  bool sent_lens = false;   // a picture of the glass was the last to be sent
   double refine_at = -1e9;  // show time when more of a picture at rest may be sent
   Flow flow;
   GiveWay way;

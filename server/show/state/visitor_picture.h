@@ -15,7 +15,7 @@
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "show/state/renderer.h"
-#include "show/state/shown_pieces.h"
+#include "show/exhibit/piece_choices.h"
 #include "store/seen_pieces.h"
 #include "wire/messages.h"
 
@@ -56,13 +56,13 @@ struct PieceWatch {
 struct LensPicture {
   std::unique_ptr<Compositor> compositor;  // null: there was none yet
   PieceWatch pieces;
-  LensOrder order;  // of the last picture
-  float zoom = 1;   // of the last picture
+  LensOrder order;  // order that the last picture shows
+  float zoom = 1;   // zoom of the last picture
   View seen;        // view through which the visitor looked then
   PieceChoices shown;
   LampLevels lamps;
   double drawn_at = -1e9;  // show time
-  float seconds = 0;       // that a picture takes, smoothed
+  float seconds = 0;       // seconds that a picture takes, smoothed
   Image8 picture;
   bool unsent = false;
 };

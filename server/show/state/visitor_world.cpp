@@ -3,6 +3,7 @@
 
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 
 namespace wellspring::show {
 namespace {
@@ -32,9 +33,22 @@ void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& 
   cast.pose_number++;
 }
 
+const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor) {
+  const Visitor* leader = leader_of(visits, visitor);
+  return (leader ? *leader : visitor).pieces.wish;
+}
+
+void follow_wish(const ShowVisits& visits, Visitor& visitor) {
+  const PieceChoices& wish = pieces_of(visits, visitor);
+  if (visitor.pieces.shown == wish) return;
+  visitor.pieces.shown = wish;
+  visitor.picture->around = {}, visitor.picture->fade = {};  // both show something else
+  look_anew(*visitor.picture);
+}
+
 void begin_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
-  show_pieces(show.stage, visitor.pieces.shown);
+  show_pieces(show.stage.exhibit, visitor.pieces.shown, *show.stage.world);
   pose_world(show.stage, show.cast, show.time, teller_of(show.cast, show.visits, visitor),
              animation_times(show, visitor));
   show.cast.posed_for = number_who_touched(show.visits, visitor);
@@ -42,7 +56,7 @@ void begin_world_of(Show& show, Visitor& visitor) {
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
-  show_pieces(show.stage, visitor.pieces.shown);
+  show_pieces(show.stage.exhibit, visitor.pieces.shown, *show.stage.world);
   if (show.cast.posed_as == teller_of(show.cast, show.visits, visitor).number &&
       show.cast.posed_for == number_who_touched(show.visits, visitor))
     return;

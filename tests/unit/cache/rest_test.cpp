@@ -33,6 +33,30 @@ TEST(Rest, TheKeptImageIsTheOneProjectedAnew) {
   EXPECT_EQ(kept.object, anew.object);
 }
 
+TEST(Rest, APictureOfAnotherViewInBetweenChangesNothing) {
+  const View view = look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, 160, 90);
+  Visit visits[3];
+  for (Visit& visit : visits) {
+    for (int i = 0; i < 12; i++) {
+      visit.step(view, 1500);
+      if (&visit != &visits[1]) continue;
+      const uint64_t before = visit.cache.projection();
+      auto aside = visit.cache.put_aside();
+      Compositor other;
+      Frame glass;
+      const View elsewhere = look_at(vec3(-1, 1.6f, 4), vec3(1, 1.2f, -2), 20, 64, 64);
+      other.draw(visit.cache, elsewhere, visit.visibility(), glass);
+      EXPECT_EQ(glass.width, 64);
+      visit.cache.put_back(std::move(aside));
+      EXPECT_EQ(visit.cache.projection(), before);
+      EXPECT_TRUE(visit.cache.has_projected(view));
+    }
+  }
+  EXPECT_TRUE(visits[0].frame.color == visits[2].frame.color);
+  EXPECT_TRUE(visits[0].frame.color == visits[1].frame.color);
+  EXPECT_EQ(visits[0].cache.still_frames(), visits[1].cache.still_frames());
+}
+
 TEST(Rest, LateAnswersShowInTheNextPicture) {
   Visit r;
   View before = hall();

@@ -40,6 +40,7 @@ struct Visit {
     shown_ = view;
   }
   const World& world() { return place().world; }
+  const VisibilityPass& visibility() { return place().visibility; }
 
  private:
   struct Place {

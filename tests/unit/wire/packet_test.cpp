@@ -155,6 +155,27 @@ TEST(Packet, keyframes_are_written_and_read_as_the_golden_bytes) {
   EXPECT_EQ(view->payload[0], 0xff);
 }
 
+TEST(Packet, what_a_glass_shows_is_written_and_read_as_the_golden_bytes) {
+  const PacketHeader header{.frame = 9,
+                            .seq = 10,
+                            .time_us = 11,
+                            .width = 48,
+                            .height = 48,
+                            .quality = 85,
+                            .flags = packet_complete | packet_lens};
+  const Packet golden = test::read_golden("lens.hex");
+  Packet packet = golden;
+  std::fill_n(packet.begin(), lens_header_bytes, uint8_t(0xee));
+  write_packet_header(header, 2, packet);
+  EXPECT_EQ(packet, golden);
+  ASSERT_TRUE(read_packet(golden));
+  EXPECT_EQ(read_packet(golden)->zoom, 2);
+  EXPECT_EQ(read_packet(golden)->payload.size(), 4u);
+  for (size_t size = 0; size < lens_header_bytes; size++)
+    EXPECT_FALSE(read_packet({golden.data(), size})) << size;
+  expect_refused(golden, {{26, {28}}, {31, {0xc0}}, {30, {0x80, 0x7f}}, {31, {0}}});
+}
+
 TEST(Packet, keyframes_that_cannot_be_are_refused) {
   const Packet golden = test::read_golden("keyframe.hex");
   for (size_t size = 0; size < keyframe_header_bytes + golden_keyframe.color_bytes; size++)

@@ -13,7 +13,8 @@
 namespace wellspring::test {
 
 void PrintTo(const Decision& one, std::ostream* out) {
-  static const char* names[] = {"nothing", "moving", "skin", "go_on", "samples", "pass", "picture"};
+  static const char* names[] = {"nothing", "moving",  "skin", "go_on",
+                                "lens",    "samples", "pass", "picture"};
   *out << names[int(one.what)] << " of " << one.visitor << (one.hurry ? ", in a hurry" : "")
        << ", kind " << int(one.kind);
 }
@@ -313,6 +314,27 @@ const std::vector<Row> rows = {
        renderer.waiting = 1;
      },
      {Drawing::go_on, 0, false}},
+    {"a glass comes after what is begun",
+     [](States& all, RendererState& renderer) {
+       all = {due(stander()), stander()};
+       all[1].lens_due = true;
+       renderer.drawn = 0;
+     },
+     {Drawing::go_on, 0}},
+    {"a glass comes before samples and pictures, whoever waited longest first",
+     [](States& all, RendererState&) {
+       all = {due(stander()), stander(), stander()};
+       all[0].asked_seconds = 0.01;
+       all[1].lens_due = all[2].lens_due = true;
+       all[1].lens_at = now - 1, all[2].lens_at = now - 2;
+     },
+     {Drawing::lens, 2}},
+    {"no glass is drawn while the picture of its visitor is",
+     [](States& all, RendererState&) {
+       all = {stander()};
+       all[0].lens_due = all[0].at_work = true;
+     },
+     {}},
     {"samples that were asked for come before the next picture",
      [](States& all, RendererState&) {
        all = {due(walker()), walker()};

@@ -27,7 +27,7 @@ class TwoColors : public AddressPicture {
 };
 
 struct ShownPictureTest : testing::Test {
-  std::shared_ptr<PieceStore> store = std::make_shared<PieceStore>(PieceStoreSettings{});
+  std::shared_ptr<PieceStore> store = std::make_shared<PieceStore>(size_t(1) << 24, 1);
   PictureLayer layer(uint8_t left, uint8_t right) {
     return {std::make_shared<LargePicture>(store, std::make_shared<TwoColors>(left, right))};
   }

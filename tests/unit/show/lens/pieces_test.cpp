@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A very large picture on a wall of a running show: who comes sees it coarse, then as it is.
-#include "show/draw/pieces.h"
+#include "show/lens/pieces.h"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +72,7 @@ TEST_F(PiecesTest, WhoStandsBeforeAPictureSeesItSharpAndAtRestExact) {
   ASSERT_TRUE(step_until([&] { return green() > 0.8; }));
   run(2);
   EXPECT_GT(green(), 0.8);
-  EXPECT_FALSE(has_new_pieces(*visitor().picture));
+  EXPECT_FALSE(has_new_pieces(visitor().picture->pieces));
   EXPECT_GT(green(truth(visitor().place.last_view, 16)), 0.8);
   const StoreStats stats = shared_store()->stats();
   EXPECT_GT(stats.pieces, 0);

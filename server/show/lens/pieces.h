@@ -7,8 +7,8 @@
 
 namespace wellspring::show {
 
-// Asks for the pieces that a picture, which was just drawn, would have liked to show. Of a map's
-// neighbouring years the same pieces are asked for, last of all.
+// Asks for the pieces that a picture, which was just drawn, would have liked to show, and last of
+// all for the same pieces of a map's neighbouring years.
 void want_pieces(const ExhibitStage& stage, const PieceChoices& shown, PieceWatch& watch);
 // Returns whether pieces have come that the last picture did not show.
 bool has_new_pieces(const PieceWatch& watch);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/draw/pieces.h"
+#include "show/lens/pieces.h"
 
 #include "show/state/lamps.h"
 #include "world/large_texture.h"

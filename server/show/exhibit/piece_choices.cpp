@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/state/shown_pieces.h"
+#include "show/exhibit/piece_choices.h"
 
 #include <algorithm>
 
-#include "show/state/lamps.h"
-#include "show/state/show.h"
-#include "show/state/visitor_picture.h"
+#include "wire/messages.h"
 
 namespace wellspring::show {
 namespace {
@@ -37,13 +35,7 @@ ShownPicture shown_picture(const ExhibitPiece& piece, const PieceChoice& choice)
 
 }  // namespace
 
-const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor) {
-  const Visitor* leader = leader_of(visits, visitor);
-  return (leader ? *leader : visitor).pieces.wish;
-}
-
-std::string choose_piece(Show& show, Visitor& visitor, const PieceOrder& order) {
-  const Exhibit& exhibit = show.stage.exhibit;
+std::string choose_piece(const Exhibit& exhibit, const PieceOrder& order, PieceChoices& choices) {
   const int number = find_piece(exhibit, order.name);
   if (number < 0) return "there is no piece '" + order.name + "'";
   const ExhibitPiece& piece = exhibit.pieces[size_t(number)];
@@ -53,9 +45,8 @@ std::string choose_piece(Show& show, Visitor& visitor, const PieceOrder& order) 
   if (choice.layer < 0) return no_layer(order.name, order.layer);
   if (choice.over < 0) return no_layer(order.name, order.over);
   if (choice.by == Blend::none) choice = {choice.layer};
-  visitor.pieces.wish.resize(exhibit.pieces.size());
-  visitor.pieces.wish[size_t(number)] = choice;
-  visitor.state_sent_at = -1e9;
+  choices.resize(exhibit.pieces.size());
+  choices[size_t(number)] = choice;
   return {};
 }
 
@@ -72,22 +63,14 @@ std::string look_through(const Exhibit& exhibit, const LensOrder& order, PieceCh
   return {};
 }
 
-void follow_wish(const ShowVisits& visits, Visitor& visitor) {
-  const PieceChoices& wish = pieces_of(visits, visitor);
-  if (visitor.pieces.shown == wish) return;
-  visitor.pieces.shown = wish;
-  visitor.picture->around = {}, visitor.picture->fade = {};  // both show something else
-  look_anew(*visitor.picture);
-}
-
-void show_pieces(ExhibitStage& stage, const PieceChoices& choices) {
-  const std::vector<ExhibitPiece>& pieces = stage.exhibit.pieces;
-  const std::span<const ShownPicture> shown = stage.world->pictures();
+void show_pieces(const Exhibit& exhibit, const PieceChoices& choices, World& world) {
+  const std::vector<ExhibitPiece>& pieces = exhibit.pieces;
+  const std::span<const ShownPicture> shown = world.pictures();
   for (size_t i = 0; i < pieces.size(); i++) {
     const int image = pieces[i].image;
     if (image < 0 || pieces[i].layers.empty()) continue;
     ShownPicture now = shown_picture(pieces[i], i < choices.size() ? choices[i] : PieceChoice{});
-    if (shown[size_t(image)] != now) stage.world->show_picture(image, now);
+    if (shown[size_t(image)] != now) world.show_picture(image, now);
   }
 }
 
