@@ -22,7 +22,8 @@ function faults(rule, value, place = '') {
   if (rule.$ref) return faults(schema.$defs[rule.$ref.replace('#/$defs/', '')], value, place);
   const found = [], say = (what) => found.push(`${place}: ${what}`);
   const fitting = (rules) => rules.filter((one) => faults(one, value, place).length === 0).length;
-  if (rule.type && type_of(value) !== rule.type) return [`${place}: is no ${rule.type}`];
+  const type = rule.type === 'integer' && Number.isInteger(value) ? 'integer' : type_of(value);
+  if (rule.type && type !== rule.type) return [`${place}: is no ${rule.type}`];
   if (rule.enum && !rule.enum.includes(value)) say('is none of the known words');
   if ('const' in rule && rule.const !== value) say(`is not ${rule.const}`);
   if (rule.anyOf && fitting(rule.anyOf) === 0) say('fits nothing');

@@ -217,6 +217,7 @@ Answer handle_one(Show& show, Visitor& visitor, const LensOrder& order) {
   const std::string wrong = look_through(show.stage.exhibit, order, choices);
   if (!wrong.empty()) return WireError{"unknown_piece", wrong};
   visitor.lens = order;
+  visitor.lens_at = show.time;
   return {};
 }
 

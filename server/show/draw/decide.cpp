@@ -187,6 +187,8 @@ bool wants_picture(double now, const VisitorDrawState& state) {
   // The light changed, or the storyteller came or went: a visitor at rest sees it at once.
   bool changed = state.other_light || state.drew_moving != state.sees_moving;
   if (!walks && changed) return true;
+  // A better picture may come when the glass stands.
+  if (!walks && state.lens_moves && state.same_view) return false;
   double rate = walks ? state.picture_rate : state.drawing_rate;
   return now - state.drawn_at >= 1 / rate - on_time;
 }

@@ -89,6 +89,7 @@ struct VisitorDrawState {
   bool unshown = false;      // the last picture has not been sent yet
   bool backdrop = false;     // the last picture is without moving things
   bool in_pass = false;      // a reconstruction of the visitor's picture is under way
+  bool lens_moves = false;   // the visitor moves a glass
   bool lens_due = false;     // the visitor's glass is to show something new
   double lens_at = -1e9;     // when it was last drawn
   double came_at = -1e9;     // when the visit began

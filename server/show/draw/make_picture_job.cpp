@@ -8,6 +8,7 @@
 #include "show/draw/decide.h"
 #include "show/draw/pace.h"
 #include "show/draw/steer.h"
+#include "show/lens/lens.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -128,6 +129,7 @@ bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor
       visitor.picture->drawn_at >= 0 && visitor.picture->job.camera_cuts == job.camera_cuts;
   return has_one && is_still(job) &&
          (visitor.place.last_view != job.expected || lamps_wait(show, visitor) ||
+          moves_lens(show.time, visitor) ||
           job.sees_moving != sees_moving(show.cast, show.visits, visitor, visitor.place.last_view));
 }
 

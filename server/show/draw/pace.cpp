@@ -81,6 +81,7 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
       show.drawing->renderer.drawn != visitor.link->id &&
       (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour ||
        picture.shown_pieces != visitor.pieces.shown || has_new_pieces(picture.pieces));
+  state.lens_moves = moves_lens(show.time, visitor);
   state.lens_due = lens_is_due(show, visitor);
   state.lens_at = picture.lens.drawn_at;
   state.sees_moving =

@@ -207,6 +207,8 @@ std::string write_metrics(const ShowReport& report) {
   per_visitor(out, report, "drawing_milliseconds",
               "Drawing shapes and reflectances of a picture, and shading them",
               [](auto& v) { return v.drawing_ms; });
+  per_visitor(out, report, "lens_milliseconds", "Drawing a picture of what the glass shows",
+              [](auto& v) { return v.lens_ms; });
   per_visitor(out, report, "converged_ratio", "Share of converged pixels",
               [](auto& v) { return v.converged; });
   per_visitor(out, report, "empty_ratio", "Share of pixels without a point",

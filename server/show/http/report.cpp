@@ -78,6 +78,7 @@ ShowReport make_report(const Show& show) {
     one.height = visitor.wants.height;
     one.budget = visitor.picture->job.samples;
     one.drawing_ms = visitor.times.drawing;
+    one.lens_ms = 1000 * visitor.picture->lens.seconds;
     const PicturePlan plan = picture_plan(show.settings, visitor);
     one.quality = plan.quality;
     one.eighths = plan.eighths;

@@ -18,8 +18,8 @@ namespace wellspring::show {
 struct VisitorReport {
   uint64_t id = 0;
   int width = 0, height = 0, budget = 0, quality = 0;
-  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, drawing_ms = 0, tonemap_ms = 0,
-        encode_ms = 0,
+  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, drawing_ms = 0, lens_ms = 0,
+        tonemap_ms = 0, encode_ms = 0,
         decode_ms = 0;               // the last: as the browser measures it
   int eighths = 8;                   // part of the width and height asked for
   Limit limit = Limit::none;         // why pictures are fewer, or less fine, than asked for

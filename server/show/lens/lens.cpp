@@ -17,6 +17,7 @@ namespace {
 
 constexpr int least_side = 32, most_side = 1536;
 constexpr float most_zoom = 64, zoom_of_others = 4;
+constexpr double pause = 0.3;                // seconds without an order: the glass stands
 constexpr double least_interval = 1 / 30.0;  // seconds from one picture to the next
 constexpr double moving_interval = 0.2;      // while something moves in the visitor's picture
 constexpr double most_share = 0.5;  // share of the renderer's time for all glasses together
@@ -58,6 +59,10 @@ float zoom_of(const World& world, const View& view, const LensOrder& order) {
                                               placed.picture->base.placing);
   const double texels = length(f.across * dvec2(double(finest.width), double(finest.height)));
   return std::clamp(float(texels), 1.0f, most_zoom);
+}
+
+bool moves_lens(double time, const Visitor& visitor) {
+  return visitor.lens.at && time - visitor.lens_at < pause;
 }
 
 bool lens_is_due(const Show& show, const Visitor& visitor) {
@@ -104,16 +109,29 @@ void draw_lens(Show& show, Visitor& visitor) {
   lens.compositor->set_skin(&stage.skin, &stage.lights);
   lens.compositor->set_maps(stage.lights.maps);
   lens.compositor->set_dynamic(lights.empty() ? nullptr : &work.dynamic);
-  auto projection = picture.cache.put_aside();
-  lens.compositor->draw(picture.cache, view, *stage.visibility, Tonemap{stage.exhibit.exposure},
-                        lens.picture);
-  picture.cache.put_back(std::move(projection));
+  auto draw = [&](RenderCache& cache) {
+    lens.compositor->draw(cache, view, *stage.visibility, Tonemap{stage.exhibit.exposure},
+                          lens.picture);
+  };
+  if (stage.lights.maps) {
+    // Maps light what is seen: to find the visitor's points in this view would cost more than all
+    // the rest.
+    RenderCache none;
+    none.resize(view.width, view.height);
+    draw(none);
+  } else {
+    auto projection = picture.cache.put_aside();
+    draw(picture.cache);
+    picture.cache.put_back(std::move(projection));
+  }
   want_pieces(stage, lens.shown, lens.pieces);
-  smooth(lens.seconds, float(seconds_now() - began), 0.3f);
+  lens.took = float(seconds_now() - began);
 }
 
 void finish_lens(Show& show, Visitor& visitor) {
-  visitor.picture->lens.unsent = true;
+  LensPicture& lens = visitor.picture->lens;
+  lens.unsent = true;
+  smooth(lens.seconds, lens.took, 0.3f);
   visitor.picture->memory_bytes = picture_memory(visitor);
   show.totals.lenses++;
 }

@@ -15,6 +15,8 @@ View lens_view(const View& view, const LensOrder& order, float zoom, float sides
 // Returns the zoom of an order: where it is 0, texels of the very large picture under the glass's
 // middle become pixels.
 float zoom_of(const World& world, const View& view, const LensOrder& order);
+// Returns whether the visitor moves a glass, or has just done so.
+bool moves_lens(double time, const Visitor& visitor);
 // Returns whether the visitor's glass is to be drawn.
 bool lens_is_due(const Show& show, const Visitor& visitor);
 

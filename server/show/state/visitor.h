@@ -157,6 +157,7 @@ struct Visitor {
   std::unique_ptr<Teller> own_teller;  // since the visitor called it; null: the house's
   VisitorLamps lamps;
   VisitorPieces pieces;
+  double lens_at = -1e9;    // show time of the last order of the glass
   LensOrder lens;           // its last order; without `at` the visitor holds no glass (show/lens)
   DynamicLights dynamic;    // lights that move or change, as they are now
   std::vector<Play> plays;  // the visitor's own, for each animation; empty: none was touched

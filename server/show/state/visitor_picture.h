@@ -62,6 +62,7 @@ struct LensPicture {
   PieceChoices shown;
   LampLevels lamps;
   double drawn_at = -1e9;  // show time
+  float took = 0;          // seconds of the last picture
   float seconds = 0;       // seconds that a picture takes, smoothed
   Image8 picture;
   bool unsent = false;

@@ -317,23 +317,21 @@ const std::vector<Row> rows = {
     {"a glass comes after what is begun",
      [](States& all, RendererState& renderer) {
        all = {due(stander()), stander()};
-       all[1].lens_due = true;
-       renderer.drawn = 0;
+       all[1].lens_due = true, renderer.drawn = 0;
      },
      {Drawing::go_on, 0}},
     {"a glass comes before samples and pictures, whoever waited longest first",
      [](States& all, RendererState&) {
        all = {due(stander()), stander(), stander()};
-       all[0].asked_seconds = 0.01;
        all[1].lens_due = all[2].lens_due = true;
        all[1].lens_at = now - 1, all[2].lens_at = now - 2;
      },
      {Drawing::lens, 2}},
+    {"while a glass moves the picture that rests is left as it is",
+     [](States& all, RendererState&) { (all = {due(stander())})[0].lens_moves = true; },
+     {}},
     {"no glass is drawn while the picture of its visitor is",
-     [](States& all, RendererState&) {
-       all = {stander()};
-       all[0].lens_due = all[0].at_work = true;
-     },
+     [](States& all, RendererState&) { (all = {stander()})[0].lens_due = all[0].at_work = true; },
      {}},
     {"samples that were asked for come before the next picture",
      [](States& all, RendererState&) {
