@@ -143,7 +143,7 @@ export function make_glass(canvas, send, label) {
       const { at, radius } = held ?? { at: [0.5, 0.5], radius: 0.18 };
       if (!held) {
         glass.hidden = true;
-        document.body.append(glass);
+        canvas.parentElement.append(glass);
       }
       held = { at, radius, ...fields };
       glass.ariaLabel = `${label('glass')}: ${text}. ${label('glass_hint')}`;

@@ -27,7 +27,7 @@ export function make_ruler(canvas, send, lang) {
   const line = element('i'), text = element('output');
   const bar = element('div.scale-bar', { hidden: true });
   layer.append(line, text);
-  document.body.append(layer, bar);
+  canvas.parentElement.append(layer, bar);
   const asked = new Map();  // id -> what takes the answer
   let id = 0, began = null;
 

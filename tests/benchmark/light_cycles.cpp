@@ -63,14 +63,14 @@ PicturePair render_ours(const World& world, const Lights& lights, const View& vi
 
 // Says what our renderer needs until its noise is as low as theirs: samples are doubled until it is
 // below, and a power law gives the time between the last two steps.
-struct Reached {
+struct CyclesReached {
   PicturePair pair;
   int spp = 4;
   double seconds = 0, processor_seconds = 0;
 };
-Reached reach_noise(const World& world, const Lights& lights, const View& view, double target,
-                    int most) {
-  Reached reached;
+CyclesReached reach_noise(const World& world, const Lights& lights, const View& view, double target,
+                          int most) {
+  CyclesReached reached;
   PicturePair before;
   double before_error = 0;
   for (;; reached.spp *= 2) {
@@ -119,7 +119,7 @@ void bench_case(BenchReport& report, const BenchOptions& options, const Case& on
   World world(scene);
   Lights lights = make_lights(world);
   const double target = noise(theirs);
-  Reached ours = reach_noise(world, lights, view, target, 16 * samples);
+  CyclesReached ours = reach_noise(world, lights, view, target, 16 * samples);
   Agreement agreement = compare_pairs(ours.pair, theirs);
   nlohmann::json fields = {{"scene", one.name},
                            {"size", std::to_string(view.width) + "x" + std::to_string(view.height)},

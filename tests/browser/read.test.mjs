@@ -85,7 +85,7 @@ test('an address leads to a story, and the visit leads there and back', { skip }
   await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 1);
   await page.click('#menu-button');
   const links = { menu: await page.getAttribute('#read-link', 'href') };
-  await page.click('#objects button');
+  await page.click('#objects [data-object=crown]');
   await page.waitForSelector('#card-read:not([hidden])');
   links.card = await page.getAttribute('#card-read', 'href');
   assert.equal(links.menu, 'read?exhibit=castle&lang=en-GB');

@@ -11,7 +11,7 @@
 namespace wellspring::show {
 namespace {
 
-constexpr size_t longest_title = 60;  // bytes; the first words of a longer note are its title
+constexpr size_t longest_title = 90;  // bytes; the first words of a longer note are its title
 
 // Holds where a picture's place is in the world, and metres for each unit of its coordinates.
 struct Spot {
@@ -149,6 +149,7 @@ void read_annotations(Exhibit& exhibit, const ExhibitPiece& piece, const std::st
       note.place = exhibit.scene.origin + dvec3(spot->place);
       note.half = 0.5f * glm::length(vec2(2.0 * part->half) * vec2(spot->across, spot->down));
       for (const auto& [language, text] : note.text) note.title[language] = first_words(text);
+      if (note.title == note.text) note.text.clear();
       exhibit.points.push_back(std::move(note));
     });
   });
