@@ -26,7 +26,6 @@ void PrintTo(const Demand& one, std::ostream* out) {
 namespace {
 
 constexpr double now = 100;  // show time
-
 using States = std::vector<VisitorDrawState>;
 
 // Returns a walking visitor whose last picture was sent, and whose next is not due for a second.
