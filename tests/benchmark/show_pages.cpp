@@ -113,17 +113,20 @@ ReportPage pieces_picture_page() {
       {{.caption = "Jumps",
         .rows = {{"jumps", "jumps"}},
         .columns = {{"pieces.picture.jump_ms_p50", "median"},
-                    {"pieces.picture.jump_ms_p95", "95th percentile"}}},
+                    {"pieces.picture.jump_ms_p95", "95th percentile"}},
+        .most_rows = 1},
        {.caption = "Tiles",
         .rows = {{"server", "server"}},
         .columns = {{"pieces.tiles_a_second", "tiles a second", 1, "1/s"},
                     {"pieces.tile_ms_p99", "a tile, 99th percentile"},
-                    {"pieces.tiles_refused", "refused"}}},
+                    {"pieces.tiles_refused", "refused"}},
+        .most_rows = 2},
        {.caption = "Memory",
         .rows = {{"visitors", "visitors"}, {"size", "size"}},
         .columns = {{"pieces.picture.store_bytes", "the store", 1.0 / (1 << 20), "MiB"},
                     {"pieces.picture.coarser_levels", "levels coarser, to fit"},
-                    {"pieces.picture.server_memory", "memory of the server"}}}}};
+                    {"pieces.picture.server_memory", "memory of the server"}},
+        .most_rows = 1}}};
 }
 
 }  // namespace wellspring::test

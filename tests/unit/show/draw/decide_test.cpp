@@ -24,10 +24,8 @@ void PrintTo(const Demand& one, std::ostream* out) {
 }
 
 namespace {
-
 constexpr double now = 100;  // show time
 using States = std::vector<VisitorDrawState>;
-
 // Returns a walking visitor whose last picture was sent, and whose next is not due for a second.
 VisitorDrawState walker() {
   VisitorDrawState state{
@@ -330,7 +328,9 @@ const std::vector<Row> rows = {
      [](States& all, RendererState&) { (all = {due(stander())})[0].lens_moves = true; },
      {}},
     {"no glass is drawn while the picture of its visitor is",
-     [](States& all, RendererState&) { (all = {stander()})[0].lens_due = all[0].at_work = true; },
+     [](States& all, RendererState&) {
+       all = {stander()}, all[0].lens_due = all[0].at_work = true;
+     },
      {}},
     {"samples that were asked for come before the next picture",
      [](States& all, RendererState&) {
