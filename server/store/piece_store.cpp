@@ -25,7 +25,10 @@ inline uint64_t scatter(uint64_t bits) {
 }  // namespace
 
 PieceStore::PieceStore(size_t budget, int threads, std::function<double()> clock)
-    : budget_(budget), clock_(std::move(clock)), slots_(new Slot[size_t(buckets) * ways]) {
+    : budget_(budget),
+      most_of_a_source_(std::max(1, threads / 2)),
+      clock_(std::move(clock)),
+      slots_(new Slot[size_t(buckets) * ways]) {
   stats_.budget = budget;
   for (int i = 0; i < threads; i++)
     threads_.emplace_back([this](std::stop_token stop) { live(stop); });
@@ -156,7 +159,6 @@ void PieceStore::fit_detail() {
 // Takes the next piece to fetch: by urgency, and among clients whoever was served longest ago.
 bool PieceStore::choose(Job& job) {
   queue_again(clock_());
-  const int most = std::max(1, int(threads_.size()) / 2);
   for (int urgency = 0; urgency < urgency_count; urgency++) {
     // Nothing is fetched for which there is no place beside what is as urgent or more.
     size_t kept = 0;
@@ -175,7 +177,7 @@ bool PieceStore::choose(Job& job) {
           key = waiting.erase(key);
           continue;
         }
-        if (from.under_way >= most) {
+        if (from.under_way >= most_of_a_source_) {
           ++key;
           continue;
         }

@@ -114,6 +114,7 @@ class PieceStore {
   void fit_detail();
 
   const size_t budget_;
+  const int most_of_a_source_;  // fetches of one source at a time
   const std::function<double()> clock_;
   std::unique_ptr<Slot[]> slots_;
   mutable std::array<Reading, 128> reading_;
