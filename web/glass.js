@@ -36,7 +36,7 @@ export function make_glass(canvas, send, label) {
     glass.style.translate = `${left + held.at[0] * width - radius}px ${
       top + held.at[1] * height - radius}px`;
     if (!picture) return;
-    // What lies under the glass stays in its place; the larger it is, the faster it passes.
+    // Things under the glass stay in their places; the larger they are, the faster they pass.
     const { at, zoom, bitmap } = picture, large = sides * picture.radius * height * ratio;
     const x = side / 2 + zoom * (at[0] - held.at[0]) * width * ratio,
         y = side / 2 + zoom * (at[1] - held.at[1]) * height * ratio;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be done with a very large picture, on the card of its object: the year of a map, another
-// layer, two of them compared, a glass over it.
+// Offers on the card of a very large picture all that can be done with it: the year of a map,
+// another layer, two of them compared, a glass over it.
 import { by_id, element } from './element.js';
 import { word } from './words.js';
 
@@ -74,7 +74,7 @@ export function make_pieces(orders, glass, ruler) {
     return parts;
   }
 
-  // What the glass may show: the same larger, another layer, how one differs.
+  // Offers all that the glass may show: the same larger, another layer, how one differs.
   function make_glass_choice() {
     const options = [['', word(lang, 'no_glass')], ['larger', word(lang, 'larger')],
       ['closest', word(lang, 'closest')],

@@ -44,7 +44,7 @@ function tour_article(tour) {
       element('ol.stops', {}, ...stops));
 }
 
-// What stands or hangs there: what is said of it, and of its layers and years.
+// Makes an article about an object: it tells its text, its layers and its years.
 function seen_article(object) {
   const layers = (object.layers ?? []).map((layer) =>
     element('li', {}, spoken('strong', layer.label), layer.text ? spoken('p', layer.text) : null));

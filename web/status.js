@@ -190,7 +190,7 @@ function show_figures(metrics) {
   ]);
 }
 
-// What the store of very large pictures holds, waits for and could not read.
+// Shows how much the store of very large pictures holds, waits for and could not read.
 function show_store(metrics) {
   const one = reader(metrics), pieces = one('store_pieces');
   by_id('store-section').hidden = pieces === undefined;
