@@ -358,6 +358,11 @@ static void send_layer(Show& show, Visitor& visitor) {
                 std::move(layer.rgb), std::move(layer.disparity));
 }
 
+// A glass that was put down has nothing to show any more.
+static bool has_lens_to_show(const Visitor& visitor) {
+  return visitor.picture->lens.unsent && visitor.lens.at;
+}
+
 // Sends what the glass shows; it takes turns with pictures.
 static void send_lens(Show& show, Visitor& visitor) {
   LensPicture& lens = visitor.picture->lens;
@@ -401,9 +406,7 @@ void present(Show& show, Visitor& visitor) {
   if (!may_take(show.time, visitor) || shown.encoder->task.busy()) return;
   const View view = visitor.place.last_view;
   bool stood = is_still(job) && job.view == view;
-  const bool lens = picture.lens.unsent && visitor.lens.at && !picture.at_work &&
-                    !(picture.unshown && shown.sent_lens);
-  if (lens) {
+  if (has_lens_to_show(visitor) && !picture.at_work && !(picture.unshown && shown.sent_lens)) {
     note_encoded(show.totals, *show.visits.capacity, visitor);
     return send_lens(show, visitor);
   }
@@ -466,7 +469,7 @@ void present_all(Show& show) {
 bool has_to_show(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = *visitor.picture;
   return is_shown(visitor) &&
-         (picture.unshown || picture.layer_unsent || picture.lens.unsent ||
+         (picture.unshown || picture.layer_unsent || has_lens_to_show(visitor) ||
           !picture.fade.from.rgb.empty() ||
           (visitor.place.last_view != visitor.shown.view && !visitor.wants.local));
 }
