@@ -185,7 +185,7 @@ bool wants_picture(double now, const VisitorDrawState& state) {
   const bool walks = !state.stands;
   if ((state.unshown || state.in_pass) && !walks) return false;
   // The light changed, or the storyteller came or went: a visitor at rest sees it at once.
-  bool changed = state.other_light || state.drew_moving != state.sees_moving;
+  bool changed = state.other_light || state.at_once || state.drew_moving != state.sees_moving;
   if (!walks && changed) return true;
   // A better picture may come when the glass stands.
   if (!walks && state.lens_moves && state.same_view) return false;

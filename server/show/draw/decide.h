@@ -83,6 +83,7 @@ struct VisitorDrawState {
   bool stands = false;     // nothing moved the visitor's view for a moment
   bool new_place = false;  // nothing was drawn yet of the visitor's present place
   bool same_view = false;  // the last picture was drawn for the visitor's present view
+  bool at_once = false;    // a picture at rest is to be there at once (show/lens/pieces.h)
   bool other_light = false;  // lamps, hour or very large pictures have changed since that picture
   bool sees_moving = false;  // something that can move may be in view
   bool drew_moving = false;  // something that can move may have been in that picture

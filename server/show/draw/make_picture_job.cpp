@@ -9,6 +9,7 @@
 #include "show/draw/pace.h"
 #include "show/draw/steer.h"
 #include "show/lens/lens.h"
+#include "show/lens/pieces.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -26,6 +27,7 @@ constexpr double least_sampling_rate = 0.75;
 constexpr double predicted_pictures = 2;
 constexpr double turn_ahead_seconds = 0.3;  // seconds for which a wide keyframe looks ahead
 constexpr double settled_samples = 8;       // samples a pixel, after which the reference takes over
+constexpr int samples_at_once = 1000;       // samples of a picture that is to be there at once
 
 // Returns the seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
@@ -85,7 +87,9 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
   job.note_seen = wants_seen(show, visitor);
   job.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
   const bool moves = !still && (hurried || visitor.shown.frame_number > 0);
-  if (moves) job.scale = plan_next_keyframe(show.visits, *show.drawing, show.time, visitor).scale;
+  // After a leap nothing moves: pixels count for more than pictures a second.
+  if (moves && (hurried || !place.leapt))
+    job.scale = plan_next_keyframe(show.visits, *show.drawing, show.time, visitor).scale;
   const View shown = scaled_view(now, job.scale);
   const double pixels = double(shown.width) * double(shown.height);
   DrawingCosts costs = drawing_costs(show.visits, *show.drawing, visitor);
@@ -95,6 +99,10 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
   // When there are all samples, changes of the light are looked for.
   if (job.kind == PictureKind::samples && has_all_samples(picture.rest))
     job.samples = samples_to_watch(job.samples);
+  // After a leap, maps light the first picture.
+  const bool leaps = !still && place.leapt && !seen && show.stage.lights.maps;
+  if (leaps || (still && is_wanted_at_once(picture, now)))
+    job.samples = std::min(job.samples, samples_at_once);
   double interval = 1 / drawing_rate(show, visitor);
   if (moves) {
     // The picture is seen from when it is finished until the next one is.

@@ -81,6 +81,7 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
       show.drawing->renderer.drawn != visitor.link->id &&
       (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour ||
        picture.shown_pieces != visitor.pieces.shown || has_new_pieces(picture.pieces));
+  state.at_once = is_wanted_at_once(picture, place.last_view);
   state.lens_moves = moves_lens(show.time, visitor);
   state.lens_due = lens_is_due(show, visitor);
   state.lens_at = picture.lens.drawn_at;
@@ -132,7 +133,9 @@ void watch(const Show& show, Visitor& visitor) {
     place.moved_at = show.time;
     visitor.picture->rest = {};
   }
-  if (note_view(place.heading, show.time, view)) place.camera_cuts++;
+  const bool leapt = note_view(place.heading, show.time, view);
+  if (view != place.last_view) place.leapt = leapt;
+  if (leapt) place.camera_cuts++;
   place.last_view = view;
   visitor.dynamic = dynamic_lights_in(view, dynamic_lights_of(show, visitor, show.time));
 }

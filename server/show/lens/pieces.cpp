@@ -53,6 +53,11 @@ bool has_new_pieces(const PieceWatch& watch) {
   return watch.client && watch.client->arrivals() != watch.arrivals;
 }
 
+bool is_wanted_at_once(const VisitorPicture& picture, const View& now) {
+  if (picture.pieces.motions.empty()) return false;
+  return !is_still(picture.job) || picture.job.view != now || has_new_pieces(picture.pieces);
+}
+
 void follow_pieces(const PieceChoices& shown, VisitorPicture& picture) {
   if (!has_new_pieces(picture.pieces) && picture.shown_pieces == shown) return;
   picture.shown_pieces = shown;

@@ -12,6 +12,9 @@ namespace wellspring::show {
 void want_pieces(const ExhibitStage& stage, const PieceChoices& shown, PieceWatch& watch);
 // Returns whether pieces have come that the last picture did not show.
 bool has_new_pieces(const PieceWatch& watch);
+// Returns whether a picture at rest is to be there at once, and samples make it better later: the
+// first one of a view with a very large picture, and those that show pieces which have just come.
+bool is_wanted_at_once(const VisitorPicture& picture, const View& now);
 // Begins anew what is kept of a view at rest, if pieces have come or others are shown; before it is
 // drawn again.
 void follow_pieces(const PieceChoices& shown, VisitorPicture& picture);

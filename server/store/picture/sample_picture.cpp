@@ -57,38 +57,43 @@ void PictureSampler::see(const LargePicture& picture, PieceKey key) {
   noted.piece.pixels++;
 }
 
-// Reads four texels of a level. False: one of them is not there.
-bool PictureSampler::read(const LargePicture& picture, int level, dvec2 at, vec3& color) {
+// Finds the tile of a texel. Neighbours mostly lie in the same one, which takes no division.
+const PictureSampler::Tile& PictureSampler::tile_at(const LargePicture& picture, int level, int x,
+                                                    int y) {
+  Tile& tile = tiles_[size_t(picture.source + level) % tiles_.size()];
+  if (tile.picture == &picture && tile.level == level && x >= tile.left && x < tile.right &&
+      y >= tile.top && y < tile.bottom)
+    return tile;
   const std::vector<PyramidLevel>& levels = picture.pyramid->levels();
   const PyramidLevel& l = levels[size_t(level)];
+  const int column = x / l.tile_width, row = y / l.tile_height;
+  tile = {&picture, level, column * l.tile_width, row * l.tile_height};
+  tile.right = tile.left + l.width_at(column), tile.bottom = tile.top + l.height_at(row);
+  tile.key = {picture.source, level, uint32_t(column), uint32_t(row)};
+  if (level + 1 == int(levels.size()))
+    tile.piece = &picture.coarsest, tile.right = int(l.width), tile.bottom = int(l.height);
+  else tile.piece = find(tile.key);
+  return tile;
+}
+
+// Reads four texels of a level. False: one of them is not there.
+bool PictureSampler::read(const LargePicture& picture, int level, dvec2 at, vec3& color) {
+  const PyramidLevel& l = picture.pyramid->levels()[size_t(level)];
   const double x = glm::clamp(at.x, 0.0, 1.0) * double(l.width) - 0.5;
   const double y = glm::clamp(at.y, 0.0, 1.0) * double(l.height) - 0.5;
-  const int64_t left = int64_t(std::floor(x)), top = int64_t(std::floor(y));
+  const int left = int(std::floor(x)), top = int(std::floor(y));
   const float wx = float(x - double(left)), wy = float(y - double(top));
-  const int64_t columns[2] = {std::max<int64_t>(left, 0), std::min(left + 1, l.width - 1)};
-  const int64_t rows[2] = {std::max<int64_t>(top, 0), std::min(top + 1, l.height - 1)};
+  const int columns[2] = {std::max(left, 0), std::min(left + 1, int(l.width) - 1)};
+  const int rows[2] = {std::max(top, 0), std::min(top + 1, int(l.height) - 1)};
   vec3 texels[4];
-  if (level == int(levels.size()) - 1) {
-    for (int i = 0; i < 4; i++)
-      texels[i] = texel_of(picture.coarsest, int(columns[i & 1]), int(rows[i >> 1]));
-  } else {
-    uint32_t tile_x[2], tile_y[2];
-    int in_x[2], in_y[2];
-    for (int i = 0; i < 2; i++) {
-      tile_x[i] = uint32_t(columns[i] / l.tile_width), in_x[i] = int(columns[i] % l.tile_width);
-      tile_y[i] = uint32_t(rows[i] / l.tile_height), in_y[i] = int(rows[i] % l.tile_height);
+  for (int i = 0; i < 4; i++) {
+    const int column = columns[i & 1], row = rows[i >> 1];
+    const Tile& tile = tile_at(picture, level, column, row);
+    if (!tile.piece) {
+      see(picture, tile.key);
+      return false;
     }
-    const bool one = tile_x[0] == tile_x[1] && tile_y[0] == tile_y[1];
-    const Piece* piece = nullptr;
-    for (int i = 0; i < 4; i++) {
-      const PieceKey key(picture.source, level, tile_x[i & 1], tile_y[i >> 1]);
-      if (i == 0 || !one) piece = find(key);
-      if (!piece) {
-        see(picture, key);
-        return false;
-      }
-      texels[i] = texel_of(*piece, in_x[i & 1], in_y[i >> 1]);
-    }
+    texels[i] = texel_of(*tile.piece, column - tile.left, row - tile.top);
   }
   const vec3 above = texels[0] + (texels[1] - texels[0]) * wx;
   const vec3 below = texels[2] + (texels[3] - texels[2]) * wx;
@@ -148,10 +153,10 @@ vec3 PictureSampler::look(const LargePicture& picture, const PictureFootprint& f
   auto note = [&](int level) {
     if (level == last) return;
     const PyramidLevel& l = levels[size_t(level)];
-    const int64_t x = int64_t(glm::clamp(at.x, 0.0, 1.0) * double(l.width));
-    const int64_t y = int64_t(glm::clamp(at.y, 0.0, 1.0) * double(l.height));
-    see(picture, {picture.source, level, uint32_t(std::min(x, l.width - 1) / l.tile_width),
-                  uint32_t(std::min(y, l.height - 1) / l.tile_height)});
+    const int x = int(glm::clamp(at.x, 0.0, 1.0) * double(l.width));
+    const int y = int(glm::clamp(at.y, 0.0, 1.0) * double(l.height));
+    see(picture, tile_at(picture, level, std::min(x, int(l.width) - 1),
+                         std::min(y, int(l.height) - 1)).key);
   };
   note(fine);
   if (blend > 0) note(coarse);

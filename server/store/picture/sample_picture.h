@@ -82,7 +82,15 @@ class PictureSampler {
     uint64_t key = 0;
     const Piece* piece = nullptr;
   };
+  struct Tile {
+    const LargePicture* picture = nullptr;
+    int level = 0;
+    int left = 0, top = 0, right = 0, bottom = 0;  // texels of the level
+    PieceKey key;
+    const Piece* piece = nullptr;  // null: it is not there
+  };
   const Piece* find(PieceKey key);
+  const Tile& tile_at(const LargePicture& picture, int level, int x, int y);
   vec3 look(const PictureLayer& layer, const PictureFootprint& footprint);
   void see(const LargePicture& picture, PieceKey key);
   bool read(const LargePicture& picture, int level, dvec2 at, vec3& color);
@@ -90,7 +98,8 @@ class PictureSampler {
 
   const PieceReader reader_;
   const PieceStore& store_;
-  std::array<Found, 8> found_;  // pieces of the last look-ups, by level
+  std::array<Found, 8> found_;  // pieces of the last look-ups
+  std::array<Tile, 4> tiles_;   // tiles of the last look-ups, by level
   struct Noted {
     const LargePicture* picture = nullptr;
     SeenPiece piece;

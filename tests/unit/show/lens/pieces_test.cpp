@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "show/draw/make_picture_job.h"
+#include "show/draw/pace.h"
 #include "show/state/visitor_picture.h"
 #include "store/picture/sample_picture.h"
 #include "unit/show/show_stage.h"
@@ -77,6 +79,41 @@ TEST_F(PiecesTest, WhoStandsBeforeAPictureSeesItSharpAndAtRestExact) {
   const StoreStats stats = shared_store()->stats();
   EXPECT_GT(stats.pieces, 0);
   EXPECT_EQ(stats.waiting, 0);
+}
+
+TEST_F(PiecesTest, TheFirstPictureAtRestWaitsNeitherForItsTurnNorForSamples) {
+  begin(11);
+  ASSERT_TRUE(step_until([&] { return green() > 0.8; }));
+  Visitor& one = visitor();
+  ASSERT_TRUE(step_until([&] { return stands(show->time, one) && !one.picture->at_work; }));
+  run(2);
+  EXPECT_FALSE(is_wanted_at_once(*one.picture, one.place.last_view));
+  const PictureJob later = make_picture_job(*show, one, 1, PictureKind::still);
+  one.picture->job.kind = PictureKind::moving;
+  EXPECT_TRUE(is_wanted_at_once(*one.picture, one.place.last_view));
+  VisitorDrawState state = draw_states(*show)[0];
+  state.at_work = state.unshown = state.in_pass = state.other_light = false;
+  state.stands = state.same_view = state.can_take = true;
+  state.drew_moving = state.sees_moving, state.drawn_at = show->time;
+  EXPECT_TRUE(wants_picture(show->time, state));
+  state.at_once = false;
+  EXPECT_FALSE(wants_picture(show->time, state)) << "it is not due";
+  const PictureJob first = make_picture_job(*show, one, 1, PictureKind::still);
+  EXPECT_LT(first.samples, later.samples);
+  one.picture->pieces.motions.clear();
+  EXPECT_FALSE(is_wanted_at_once(*one.picture, one.place.last_view)) << "it shows no pieces";
+}
+
+TEST_F(PiecesTest, AfterALeapThePictureHasAllItsPixels) {
+  begin(11);
+  ASSERT_TRUE(step_until([&] { return !pictures().empty(); }));
+  Visitor& one = visitor();
+  one.times.drawing = one.times.light = 1000;  // too slow for all pixels in motion
+  one.place.moved_at = show->time;
+  one.place.leapt = false;
+  EXPECT_LT(make_picture_job(*show, one, 1).scale, 1);
+  one.place.leapt = true;
+  EXPECT_EQ(make_picture_job(*show, one, 1).scale, 1);
 }
 
 TEST_F(PiecesTest, NothingIsReadThatNobodySees) {
