@@ -198,6 +198,9 @@ function show_store(metrics) {
   const read = (result) => metrics.find((metric) =>
     metric.name === 'store_fetched_total' && metric.labels.result === result)?.value ?? 0;
   const all = read('piece') + read('absent') + read('failed');
+  const looks = (detail) => metrics.find((metric) =>
+    metric.name === 'store_looks_total' && metric.labels.detail === detail)?.value ?? 0;
+  const soft = looks('too_coarse'), all_looks = soft + looks('wanted');
   const coarser = one('store_coarser_levels');
   fill(by_id('store'), null, [
     ['Pictures', number(one('store_sources'))],
@@ -206,6 +209,8 @@ function show_store(metrics) {
       + number(one('store_dropped_total'))],
     ['Shown', coarser > 0 ? { text: `${number(coarser, 1)} levels coarser than they could be: `
       + 'give pieces-memory more', bad: true } : 'as fine as visitors can see'],
+    ['Too soft', all_looks > 0 ? `${number(100 * soft / all_looks, 1)} % of their pixels so far, `
+      + 'while pieces were on their way' : 'nobody has looked yet'],
     ['Wanted', `${number(one('store_waiting'))} waited for, `
       + `${number(one('store_under_way'))} being read`],
     ['Read', `${number(read('piece'))}, `

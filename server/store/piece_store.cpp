@@ -348,6 +348,7 @@ StoreStats PieceStore::stats() const {
   stats.pieces = int(entries_.size());
   stats.under_way = int(under_way_.size());
   stats.coarser = coarser();
+  stats.looked = looked_, stats.looked_coarse = looked_coarse_;
   for (const auto& [whose, client] : clients_)
     for (const auto& waiting : client.waiting) stats.waiting += int(waiting.size());
   return stats;

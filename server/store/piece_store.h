@@ -37,6 +37,8 @@ struct StoreStats {
   int pieces = 0, sources = 0, waiting = 0, under_way = 0;
   uint64_t fetched = 0, absent = 0, failed = 0, dropped = 0;
   float coarser = 0;         // as PieceStore::coarser()
+  // Look-ups by pixels, and those of them that were more than a level too coarse.
+  uint64_t looked = 0, looked_coarse = 0;
   double fetch_seconds = 0;  // all fetches together
   std::string last_error;    // a source's; empty: none
 };
@@ -60,6 +62,12 @@ class PieceStore {
   // Returns levels by which everybody looks up more coarsely, because what is shown is more than
   // the budget holds.
   float coarser() const { return coarser_.load(std::memory_order_relaxed); }
+
+  // Counts look-ups of pixels, and those whose texels were more than one level too coarse.
+  void count_looks(uint64_t looks, uint64_t coarse) const {
+    looked_.fetch_add(looks, std::memory_order_relaxed);
+    looked_coarse_.fetch_add(coarse, std::memory_order_relaxed);
+  }
 
   // Fetches the next piece on the calling thread. False: nobody wants one.
   bool fetch_next();
@@ -120,6 +128,7 @@ class PieceStore {
   mutable std::array<Reading, 128> reading_;
   std::atomic<uint64_t> epoch_{1};
   std::atomic<float> coarser_{0};
+  mutable std::atomic<uint64_t> looked_{0}, looked_coarse_{0};
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any wanted_;

@@ -26,6 +26,7 @@ namespace {
 
 constexpr double sharp_share = 0.6;
 constexpr double jump_rest = 5;  // seconds
+constexpr double pan_distance = 0.4, pan_speed = 0.25;  // metres, metres a second
 constexpr int tile_connections = 8;
 constexpr int gazers = 32, gazer_width = 640, gazer_height = 360;
 
@@ -120,6 +121,36 @@ void measure_jumps(BenchReport& report, const ServerProcess& server, bool quick)
   report.add("pieces.picture.jump_ms_p95", quantile(times, 0.95), "ms", where);
 }
 
+// Counts pixels of large pictures, and those more than a level too coarse, over a walk along the
+// picture at display rate.
+void measure_pan(BenchReport& report, const ServerProcess& server, bool quick) {
+  using Room = LargePictureRoom;
+  WsClient client;
+  join_alone(client, server);
+  const double reach = 0.42 * Room::picture_width, seconds = quick ? 6 : 20;
+  CameraTo to;
+  auto go = [&](double across) {
+    to.seq++;
+    to.position = {across, Room::middle_height, Room::surface + pan_distance};
+    client.send_text(write_message(to));
+  };
+  go(-reach);
+  look_until(client, seconds_now() + 2, [](const WsMessage&) {});
+  auto read = [&](const char* detail) {
+    return read_metric(server.port, std::string("store_looks_total{detail=\"") + detail + "\"}");
+  };
+  const double wanted = read("wanted"), coarse = read("too_coarse"), began = seconds_now();
+  for (double now = began; now < began + seconds; now = seconds_now()) {
+    const double way = std::fmod(pan_speed * (now - began), 4 * reach);
+    go(way < 2 * reach ? way - reach : 3 * reach - way);
+    look_until(client, now + 1 / 60.0, [](const WsMessage&) {});
+  }
+  const double soft = read("too_coarse") - coarse, all = read("wanted") - wanted + soft;
+  client.close();
+  report.add("pieces.picture.pan_too_coarse", soft / std::max(all, 1.0), "",
+             {{"size", "1280x720"}, {"speed", pan_speed}});
+}
+
 void measure_tiles(BenchReport& report, const std::string& server, uint16_t port,
                    const std::string& picture, double seconds) {
   ask_for_tiles(port, picture, tile_connections, 1);  // so that nobody begins with cold files
@@ -178,6 +209,7 @@ void bench_pieces_picture(BenchReport& report, const BenchOptions& asked) {
   {
     const ServerProcess server(options, LargePictureRoom::exhibit);
     measure_jumps(report, server, options.quick);
+    measure_pan(report, server, options.quick);
     const std::string picture =
         std::string("/iiif/") + LargePictureRoom::exhibit + "~" + LargePictureRoom::piece;
     measure_tiles(report, "wellspring", server.port, picture, seconds);

@@ -302,6 +302,10 @@ std::string store_metrics(const StoreStats& store) {
   add_metric(out, "store_under_way", "Pieces that are being read", store.under_way);
   add_metric(out, "store_coarser_levels", "Levels left out because all that is seen does not fit",
              double(store.coarser));
+  begin_metric(out, "store_looks_total", "Look-ups of pixels, by the detail that was there");
+  add_sample(out, "store_looks_total", {{"detail", "wanted"}},
+             double(store.looked - store.looked_coarse));
+  add_sample(out, "store_looks_total", {{"detail", "too_coarse"}}, double(store.looked_coarse));
   add_metric(out, "store_fetch_seconds_total", "Time of reading, of all threads",
              store.fetch_seconds);
   begin_metric(out, "store_fetched_total", "Pieces read, by what came of it");

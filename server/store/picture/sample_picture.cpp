@@ -37,6 +37,7 @@ LargePicture::~LargePicture() { store->remove(source); }
 PictureSampler::PictureSampler(const PieceStore& store) : reader_(store), store_(store) {}
 
 PictureSampler::~PictureSampler() {
+  if (looked_ > 0) store_.count_looks(looked_, looked_coarse_);
   for (const Noted& noted : noted_)
     if (noted.picture) noted.picture->seen.add(noted.piece.key, noted.piece.pixels);
 }
@@ -123,7 +124,7 @@ vec3 PictureSampler::look(const LargePicture& picture, const PictureFootprint& f
   if (!std::isfinite(longer)) return texel_of(picture.coarsest, 0, 0);
   const double width = std::max({shorter, longer / most_taps, 1e-9});
   int taps = glm::clamp(int(std::ceil(longer / std::max(width, 1.0) - 0.01)), 1, int(most_taps));
-  const float detail = float(std::log2(width)) + store_.coarser();
+  const float wanted = float(std::log2(width)), detail = wanted + store_.coarser();
   int fine = 0;
   const int last = int(levels.size()) - 1;
   while (fine < last && picture.scale[size_t(fine) + 1] <= detail) fine++;
@@ -158,6 +159,9 @@ vec3 PictureSampler::look(const LargePicture& picture, const PictureFootprint& f
     see(picture, tile_at(picture, level, std::min(x, int(l.width) - 1),
                          std::min(y, int(l.height) - 1)).key);
   };
+  looked_++;
+  // Of the two levels of a pixel the finer one has at least the texels that are wanted.
+  if (picture.scale[size_t(got)] > std::max(wanted, 0.0f) + 1) looked_coarse_++;
   note(fine);
   if (blend > 0) note(coarse);
   return sum / float(taps);

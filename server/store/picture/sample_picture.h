@@ -105,6 +105,7 @@ class PictureSampler {
     SeenPiece piece;
   };
   Noted noted_[2];
+  uint64_t looked_ = 0, looked_coarse_ = 0;
 };
 
 }  // namespace wellspring::store

@@ -70,6 +70,19 @@ TEST(SamplePicture, LevelIsTheLogarithmOfTexelsAPixel) {
   }
 }
 
+TEST(SamplePicture, LooksThatFoundTexelsTooCoarseAreCounted) {
+  Shown shown;
+  PieceClient client(shown.store);
+  std::vector<PieceMotion> motions;
+  shown.look({0.31, 0.62}, 3, 3);
+  EXPECT_EQ(shown.store->stats().looked_coarse, 1u) << "only the coarsest level is there";
+  shown.fetch_seen(client, motions);
+  shown.look({0.31, 0.62}, 3, 3);
+  shown.look({0.31, 0.62}, 1.6, 1.6);  // one level finer than what was fetched
+  EXPECT_EQ(shown.store->stats().looked, 3u);
+  EXPECT_EQ(shown.store->stats().looked_coarse, 1u);
+}
+
 // Along a path with jumps, all that is shown is of the tile that was asked for or of one above it.
 TEST(SamplePicture, EveryTexelIsTheRightOneOrItsAncestor) {
   Shown shown(whole, whole, size_t(24) << 20);
