@@ -351,10 +351,16 @@ static void read_pieces(const Exhibit& exhibit, QueryReader& fields, StillJob& j
       std::vector<std::string> parts = split(one, ':');
       parts.resize(5);
       PieceOrder order{.name = parts[0], .layer = parts[1], .over = parts[2]};
-      for (int i = 0; i < int(std::size(piece_blends)); i++)
-        if (parts[3] == piece_blends[i]) order.by = PieceBlend(i);
-      order.share = std::clamp(float(std::atof(parts[4].c_str())), 0.0f, 1.0f);
-      take(choose_piece(exhibit, order, job.pieces));
+      const auto by = std::ranges::find(piece_blends, parts[3].empty() ? "none" : parts[3]);
+      order.by = PieceBlend(by - std::begin(piece_blends));
+      const char *begin = parts[4].data(), *end = begin + parts[4].size();
+      const auto [after, error] = std::from_chars(begin, end, order.share);
+      const bool is_share = after == end && order.share >= 0 && order.share <= 1;
+      if (by == std::end(piece_blends) || (begin != end && !(error == std::errc() && is_share)))
+        fields.refuse(400, "bad_parameter",
+                      "pieces: must be PIECE:LAYER:OVER:BY:SHARE, BY none, curtain, fade or "
+                      "difference, SHARE 0 to 1, of which the end may be left out");
+      else take(choose_piece(exhibit, order, job.pieces));
     }
   const std::vector<double> glass = fields.numbers("lens", 4, 0, 64);
   if (glass.empty()) return;

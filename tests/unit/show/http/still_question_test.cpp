@@ -49,6 +49,9 @@ TEST(StillQuestion, NamesTheFieldThatIsWrong) {
                                                         {"spp", "0"},
                                                         {"seconds", "0"},
                                                         {"seconds", "soon"},
+                                                        {"pieces", "map:1850:1650:curtian"},
+                                                        {"pieces", "map:1850:1650:fade:2"},
+                                                        {"pieces", "map:1850:1650:fade:half"},
                                                         {"width", "1e3"}}) {
     StillQuestion asked = read_still_question(exhibit, {{name, text}});
     EXPECT_EQ(asked.status, 400) << name << "=" << text;
