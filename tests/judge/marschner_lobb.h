@@ -25,8 +25,8 @@ inline double marschner_lobb(glm::dvec3 at) {
 
 inline glm::dvec3 marschner_lobb_gradient(glm::dvec3 at) {
   const double radius = std::max(std::hypot(at.x, at.y), 1e-12);
-  const double slope = ripple_height * std::sin(ripple_phase(radius)) * ripple_pi *
-                       ripple_pi * ripple_frequency * std::sin(ripple_pi * radius / 2);
+  const double slope = ripple_height * std::sin(ripple_phase(radius)) * ripple_pi * ripple_pi *
+                       ripple_frequency * std::sin(ripple_pi * radius / 2);
   return glm::dvec3(slope * at.x / radius, slope * at.y / radius,
                     -ripple_pi / 2 * std::cos(ripple_pi * at.z / 2)) /
          (2 * (1 + ripple_height));

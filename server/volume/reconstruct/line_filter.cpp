@@ -65,9 +65,7 @@ void filter_block(LineBlock& block, LineFilter filter) {
         add_tap(block, distance, distance == 0 ? 8.0 / 6 : -1.0 / 6);
       return;
     case LineFilter::interpolating: return solve_spline(block);
-    case LineFilter::central_difference:
-      add_tap(block, 1, 0.5), add_tap(block, -1, -0.5);
-      return;
+    case LineFilter::central_difference: add_tap(block, 1, 0.5), add_tap(block, -1, -0.5); return;
     case LineFilter::wide_difference:
       add_tap(block, 1, 5.0 / 6), add_tap(block, -1, -5.0 / 6);
       add_tap(block, 2, -1.0 / 6), add_tap(block, -2, 1.0 / 6);

@@ -12,11 +12,11 @@
 namespace wellspring::volume {
 
 // Reads words at the places and those after them.
-inline void load_word_pairs(const void* from, const LaneMask& index, LaneBits& near, LaneBits& far) {
+inline void load_word_pairs(const void* from, const LaneMask& index, LaneBits& near,
+                            LaneBits& far) {
 #ifdef __AVX2__
   auto pairs = [&](const HalfLaneBits& at) {
-    return LaneBits(
-        _mm256_i32gather_epi64(static_cast<const long long*>(from), __m128i(at), 4));
+    return LaneBits(_mm256_i32gather_epi64(static_cast<const long long*>(from), __m128i(at), 4));
   };
   const LaneBits bits = lanes_as<LaneBits>(index);
   const LaneBits low = pairs(low_half(bits)), high = pairs(high_half(bits));

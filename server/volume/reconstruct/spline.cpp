@@ -67,8 +67,10 @@ template <class Real>
 ValueGradient<Real> spline_gradient_of(const SampleBox<Real>& box, glm::vec<3, Real> place) {
   const auto x = place_on_axis(place.x, box.size.x), y = place_on_axis(place.y, box.size.y),
              z = place_on_axis(place.z, box.size.z);
-  const auto wx = spline_weights<Real>(x.way), wy = spline_weights<Real>(y.way), wz = spline_weights<Real>(z.way);
-  const auto sx = spline_slopes<Real>(x.way), sy = spline_slopes<Real>(y.way), sz = spline_slopes<Real>(z.way);
+  const auto wx = spline_weights<Real>(x.way), wy = spline_weights<Real>(y.way),
+             wz = spline_weights<Real>(z.way);
+  const auto sx = spline_slopes<Real>(x.way), sy = spline_slopes<Real>(y.way),
+             sz = spline_slopes<Real>(z.way);
   const Real* corner = box.samples + ptrdiff_t(x.at - 1) + ptrdiff_t(y.at - 1) * box.row +
                        ptrdiff_t(z.at - 1) * box.slice;
   ValueGradient<Real> sum;

@@ -16,10 +16,10 @@ namespace wellspring::volume {
 // are filters of line_filter.h. An order counts by which power of the distance of samples an error
 // falls.
 enum class GradientScheme {
-  central,       // c * b, order 2: for comparison. Takes three more grids.
-  wide,          // d * b, order 4: sharp, mild to noise. Takes three more grids.
-  analytic,      // b', order 2: soft, mild to noise
-  prefiltered,   // p * b', order 3: sharpest; shows the steps of coarsely rounded samples
+  central,      // c * b, order 2: for comparison. Takes three more grids.
+  wide,         // d * b, order 4: sharp, mild to noise. Takes three more grids.
+  analytic,     // b', order 2: soft, mild to noise
+  prefiltered,  // p * b', order 3: sharpest; shows the steps of coarsely rounded samples
   // The paper counts orders along one axis. In space, c * b, d * b and b' are of order 2, since b
   // blurs across the derivative, too. These two are not the paper's:
   wide_across,   // d along the derivative, p across it, then b: order 4 in space
@@ -72,7 +72,8 @@ LanesGradient gradient_at(const Spline<float>& spline, const Lanes3& place);
 // The same of coefficients that lie anywhere, such as bricks with a skirt: one coefficient before
 // and after the box's along each axis can be read, two after an axis of one. `first` is added to
 // the index of each lane's coefficients.
-Lanes spline_value(const SampleBox<float>& box, const Lanes3& place, const LaneMask& first = LaneMask{});
+Lanes spline_value(const SampleBox<float>& box, const Lanes3& place,
+                   const LaneMask& first = LaneMask{});
 LanesGradient spline_gradient(const SampleBox<float>& box, const Lanes3& place,
                               const LaneMask& first = LaneMask{});
 

@@ -97,7 +97,8 @@ Lanes sum_place(const SampleBox<float>& box, const LaneMask& corner, const AxisW
 
 Lanes spline_value(const SampleBox<float>& box, const Lanes3& place, const LaneMask& first) {
   const LanesCorner corner = corner_of(box, place, first);
-  const AxisWeights y = spline_weights<float>(corner.way_y), z = spline_weights<float>(corner.way_z);
+  const AxisWeights y = spline_weights<float>(corner.way_y),
+                    z = spline_weights<float>(corner.way_z);
   const RowSums sum{sum_place<0>(box, corner.at, y, z), sum_place<1>(box, corner.at, y, z),
                     sum_place<2>(box, corner.at, y, z), sum_place<3>(box, corner.at, y, z)};
   return add_rows(sum, spline_weights<float>(corner.way_x)) * box.scale + box.offset;
@@ -106,13 +107,13 @@ Lanes spline_value(const SampleBox<float>& box, const Lanes3& place, const LaneM
 LanesGradient spline_gradient(const SampleBox<float>& box, const Lanes3& place,
                               const LaneMask& first) {
   const LanesCorner corner = corner_of(box, place, first);
-  const RowWeights weights{
-      spline_weights<float>(corner.way_y), spline_weights<float>(corner.way_z),
-      spline_slopes<float>(corner.way_y), spline_slopes<float>(corner.way_z)};
+  const RowWeights weights{spline_weights<float>(corner.way_y), spline_weights<float>(corner.way_z),
+                           spline_slopes<float>(corner.way_y), spline_slopes<float>(corner.way_z)};
   RowSums value, along_y, along_z;
   [&]<int... places>(std::integer_sequence<int, places...>) {
     (add_place<places>(box, corner.at, weights, value, along_y, along_z), ...);
-  }(std::make_integer_sequence<int, 4>());
+  }
+  (std::make_integer_sequence<int, 4>());
   const AxisWeights x = spline_weights<float>(corner.way_x);
   const Lanes3 gradient{add_rows(value, spline_slopes<float>(corner.way_x)), add_rows(along_y, x),
                         add_rows(along_z, x)};

@@ -71,7 +71,8 @@ inline Lanes3 mix_normals(const uint32_t* normals, const LanesCell& cell) {
   auto add_row = [&](int shift, const Lanes& weight) {
     LaneBits near, far;
     load_word_pairs(normals, cell.at + shift, near, far);
-    sum = sum + unpack_normals(near) * (weight * back_x) + unpack_normals(far) * (weight * cell.way_x);
+    sum = sum + unpack_normals(near) * (weight * back_x) +
+          unpack_normals(far) * (weight * cell.way_x);
   };
   add_row(0, back_y * back_z);
   add_row(cell.down, cell.way_y * back_z);
