@@ -36,7 +36,7 @@ const may_enter = {
     compressed: [''],
     compare: ['reconstruct', ''],
     nebula: [''],
-    bricks: ['compressed', 'reconstruct', 'format', ''],
+    draw: ['reconstruct', ''],
   },
   world: {
     '': [],
