@@ -18,10 +18,12 @@ inline void load_word_pairs(const void* from, const LaneMask& index, LaneBits& n
   auto pairs = [&](const HalfLaneBits& at) {
     return LaneBits(_mm256_i32gather_epi64(static_cast<const long long*>(from), __m128i(at), 4));
   };
-  const LaneBits bits = lanes_as<LaneBits>(index);
+  // In this order, the pairs of both loads are parted within halves of vectors, which is cheap.
+  const LaneMask order = __builtin_shufflevector(index, index, 0, 1, 4, 5, 2, 3, 6, 7);
+  const LaneBits bits = lanes_as<LaneBits>(order);
   const LaneBits low = pairs(low_half(bits)), high = pairs(high_half(bits));
-  near = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
-  far = __builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
+  near = __builtin_shufflevector(low, high, 0, 2, 8, 10, 4, 6, 12, 14);
+  far = __builtin_shufflevector(low, high, 1, 3, 9, 11, 5, 7, 13, 15);
 #else
   for (int i = 0; i < lane_count; i++) {
     uint32_t pair[2];

@@ -16,7 +16,8 @@ namespace wellspring::volume {
 // 8-bit numbers that would be 0.4 degrees off.
 constexpr float normal_step = 1.0f / 511;
 
-uint32_t pack_normal(glm::dvec3 direction);  // of any length; 0 stays 0
+// Packs a direction of any length; 0 stays 0.
+uint32_t pack_normal(glm::dvec3 direction);
 // Returns the whole numbers: normals times 511.
 inline Lanes3 unpack_normals(const LaneBits& words) {
   auto part = [&](int shift) {

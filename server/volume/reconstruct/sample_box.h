@@ -35,8 +35,7 @@ SampleBox<Sample> whole_box(const Sample* samples, glm::ivec3 size) {
           .count = size.x * size.y * size.z};
 }
 
-// A place is this far, 0 to 1, from sample `at` to the next one. Of an axis with one sample, the
-// way is 0.
+// A place is this far, 0 to 1, from sample `at` to the next one; 0 if there is no next one.
 template <class Real>
 struct AxisPlace {
   int at;

@@ -81,32 +81,22 @@ inline Lanes3 mix_normals(const uint32_t* normals, const LanesCell& cell) {
   return sum * all_lanes(normal_step);
 }
 
-// The same as for one place. `first` is added to the index of each lane's samples, so that lanes
-// can be in different bricks of a pool.
+// Asks for one place after the other: in boxes that are too small for pairs.
 template <class Sample>
-inline Lanes linear_value(const SampleBox<Sample>& box, const Lanes3& place,
-                          const LaneMask& first = LaneMask{}) {
-  if (has_pairs(box)) return mix_samples(box, cell_of(box, place, first));
+[[gnu::noinline]] Lanes linear_value_slowly(SampleBox<Sample> box, const Lanes3& place,
+                                            const LaneMask& first) {
+  const Sample* samples = box.samples;
   Lanes value;
   for (int i = 0; i < lane_count; i++) {
-    SampleBox<Sample> own = box;
-    own.samples += first[i];
-    value[i] = linear_value(own, place.at(i));
+    box.samples = samples + first[i];
+    value[i] = linear_value(box, place.at(i));
   }
   return value;
 }
-
-struct LanesLit {
-  Lanes value;
-  Lanes3 normal;  // of a length up to 1, short where neighbours disagree, 0 where there is none
-};
-// Returns normals, too, of packed ones that lie as the samples do: `normals` has that of sample 0.
 template <class Sample>
-inline LanesLit linear_value_and_normal(const SampleBox<Sample>& box, const uint32_t* normals,
-                                        const Lanes3& place, const LaneMask& first = LaneMask{}) {
-  const LanesCell cell = cell_of(box, place, first);
-  if (has_pairs(box)) return {mix_samples(box, cell), mix_normals(normals, cell)};
-  LanesLit lit{linear_value(box, place, first), {}};
+[[gnu::noinline]] Lanes3 mix_normals_slowly(const SampleBox<Sample>& box, const uint32_t* normals,
+                                            const LanesCell& cell) {
+  Lanes3 sum;
   for (int corner = 0; corner < 8; corner++) {
     const int right = corner & 1, down = corner >> 1 & 1, behind = corner >> 2;
     const Lanes weight = (right ? cell.way_x : 1.0f - cell.way_x) *
@@ -115,9 +105,31 @@ inline LanesLit linear_value_and_normal(const SampleBox<Sample>& box, const uint
     LaneBits words;
     const int shift = (box.size.x > 1 ? right : 0) + down * cell.down + behind * cell.behind;
     for (int i = 0; i < lane_count; i++) words[i] = normals[cell.at[i] + shift];
-    lit.normal = lit.normal + unpack_normals(words) * (weight * normal_step);
+    sum = sum + unpack_normals(words) * (weight * normal_step);
   }
-  return lit;
+  return sum;
+}
+
+// The same as for one place. `first` is added to the index of each lane's samples, so that lanes
+// can be in different bricks of a pool.
+template <class Sample>
+inline Lanes linear_value(const SampleBox<Sample>& box, const Lanes3& place,
+                          const LaneMask& first = LaneMask{}) {
+  if (!has_pairs(box)) return linear_value_slowly(box, place, first);
+  return mix_samples(box, cell_of(box, place, first));
+}
+
+struct LanesLit {
+  Lanes value;
+  Lanes3 normal;  // its length is up to 1: shorter where neighbours disagree, 0 where none has one
+};
+// Returns normals, too, of packed ones that lie as the samples do: `normals` has that of sample 0.
+template <class Sample>
+inline LanesLit linear_value_and_normal(const SampleBox<Sample>& box, const uint32_t* normals,
+                                        const Lanes3& place, const LaneMask& first = LaneMask{}) {
+  const LanesCell cell = cell_of(box, place, first);
+  if (has_pairs(box)) return {mix_samples(box, cell), mix_normals(normals, cell)};
+  return {linear_value_slowly(box, place, first), mix_normals_slowly(box, normals, cell)};
 }
 
 }  // namespace wellspring::volume

@@ -9,7 +9,7 @@
 namespace wellspring::test {
 namespace {
 
-std::vector<double> random_samples(size_t count) {
+std::vector<double> line_samples(size_t count) {
   std::mt19937 random(5);
   std::vector<double> samples(count);
   for (double& sample : samples) sample = double(random()) / 2147483648.0 - 1;
@@ -27,7 +27,7 @@ TEST(LineFilter, MirrorsStandInTheLastSamples) {
 
 TEST(LineFilter, ASplineOfInterpolatingCoefficientsMeetsTheSamples) {
   for (int length : {1, 2, 3, 4, 50}) {
-    const std::vector<double> samples = random_samples(size_t(length));
+    const std::vector<double> samples = line_samples(size_t(length));
     std::vector<double> c = samples;
     filter_axis(c, {length, 1, 1}, 0, LineFilter::interpolating);
     for (int i = 0; i < length; i++) {
@@ -57,7 +57,7 @@ TEST(LineFilter, TapsAreThoseOfThePaper) {
 
 TEST(LineFilter, EachAxisIsFilteredLikeALine) {
   const glm::ivec3 size(19, 5, 7);
-  const std::vector<double> samples = random_samples(19 * 5 * 7);
+  const std::vector<double> samples = line_samples(19 * 5 * 7);
   const size_t strides[] = {1, 19, 19 * 5};
   for (int axis = 0; axis < 3; axis++) {
     std::vector<double> filtered = samples;

@@ -11,20 +11,20 @@
 namespace wellspring::test {
 namespace {
 
-struct LargestErrors {
+struct SplineErrors {
   double value = 0, gradient = 0;
 };
-double order_of(double coarse, double fine) { return std::log2(coarse / fine); }
+double spline_order(double coarse, double fine) { return std::log2(coarse / fine); }
 
 // Samples sin x + 0.3 cos(2.3 x + 0.7) over [0, 4] and looks where borders are far.
-LargestErrors errors_on_line(GradientScheme scheme, int intervals) {
+SplineErrors errors_on_line(GradientScheme scheme, int intervals) {
   const double step = 4.0 / intervals;
   auto wave = [](double x) { return std::sin(x) + 0.3 * std::cos(2.3 * x + 0.7); };
   auto slope = [](double x) { return std::cos(x) - 0.69 * std::sin(2.3 * x + 0.7); };
   std::vector<double> samples;
   for (int i = 0; i <= intervals; i++) samples.push_back(wave(i * step));
   const auto spline = make_spline<double>(samples, {intervals + 1, 1, 1}, scheme);
-  LargestErrors most;
+  SplineErrors most;
   for (int i = 0; i < 3000; i++) {
     const double x = 1.2 + 1.6 * i / 3000;
     const ValueGradient<double> found = gradient_at(spline, {x / step, 0, 0});
@@ -46,11 +46,11 @@ TEST(SplineOrder, ErrorsFallByThePapersOrders) {
         SchemeOrders{GradientScheme::prefiltered, 4, 3},
         SchemeOrders{GradientScheme::wide_across, 4, 4},
         SchemeOrders{GradientScheme::interpolating, 4, 3}}) {
-    LargestErrors coarse = errors_on_line(wanted.scheme, 80);
+    SplineErrors coarse = errors_on_line(wanted.scheme, 80);
     for (int intervals : {160, 320}) {
-      const LargestErrors fine = errors_on_line(wanted.scheme, intervals);
-      EXPECT_NEAR(order_of(coarse.value, fine.value), wanted.value, 0.1) << int(wanted.scheme);
-      EXPECT_NEAR(order_of(coarse.gradient, fine.gradient), wanted.gradient, 0.1)
+      const SplineErrors fine = errors_on_line(wanted.scheme, intervals);
+      EXPECT_NEAR(spline_order(coarse.value, fine.value), wanted.value, 0.1) << int(wanted.scheme);
+      EXPECT_NEAR(spline_order(coarse.gradient, fine.gradient), wanted.gradient, 0.1)
           << int(wanted.scheme);
       coarse = fine;
     }
@@ -89,7 +89,7 @@ double gradient_error_in_space(GradientScheme scheme, int intervals) {
 
 TEST(SplineOrder, InSpaceTheWideDifferenceNeedsThePrefilterAcross) {
   auto order = [](GradientScheme scheme) {
-    return order_of(gradient_error_in_space(scheme, 32), gradient_error_in_space(scheme, 64));
+    return spline_order(gradient_error_in_space(scheme, 32), gradient_error_in_space(scheme, 64));
   };
   EXPECT_NEAR(order(GradientScheme::central), 2, 0.1);
   EXPECT_NEAR(order(GradientScheme::wide), 2, 0.1);

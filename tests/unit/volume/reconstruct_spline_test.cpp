@@ -18,14 +18,14 @@ constexpr GradientScheme all_schemes[] = {
     GradientScheme::prefiltered, GradientScheme::wide_across, GradientScheme::interpolating};
 
 template <class Real>
-std::vector<Real> noise(glm::ivec3 size) {
+std::vector<Real> spline_noise(glm::ivec3 size) {
   std::mt19937 random(9);
   std::vector<Real> samples(size_t(size.x) * size_t(size.y) * size_t(size.z));
   for (Real& sample : samples) sample = Real(double(random()) / 2147483648.0 - 1);
   return samples;
 }
 
-double difference(const ValueGradient<double>& a, const ValueGradient<double>& b) {
+double spline_difference(const ValueGradient<double>& a, const ValueGradient<double>& b) {
   return std::max(std::abs(a.value - b.value), glm::length(a.gradient - b.gradient));
 }
 
@@ -33,7 +33,7 @@ TEST(Spline, BordersAreMirrors) {
   const glm::ivec3 size(5, 4, 2);
   const int beyond = 24;
   const glm::ivec3 large = size + 2 * beyond;
-  const std::vector<double> samples = noise<double>(size);
+  const std::vector<double> samples = spline_noise<double>(size);
   std::vector<double> mirrors;
   for (int z = 0; z < large.z; z++)
     for (int y = 0; y < large.y; y++)
@@ -46,8 +46,9 @@ TEST(Spline, BordersAreMirrors) {
     const auto reference = make_spline<double>(mirrors, large, scheme);
     for (int i = 0; i < 125; i++) {
       const glm::dvec3 at = glm::dvec3(size - 1) * glm::dvec3(i % 5, i / 5 % 5, i / 25) / 4.0;
-      EXPECT_LT(difference(gradient_at(spline, at), gradient_at(reference, at + double(beyond))),
-                1e-12)
+      EXPECT_LT(
+          spline_difference(gradient_at(spline, at), gradient_at(reference, at + double(beyond))),
+          1e-12)
           << int(scheme) << ' ' << i;
     }
   }
@@ -55,7 +56,7 @@ TEST(Spline, BordersAreMirrors) {
 
 TEST(Spline, InterpolatingOnesMeetAllSamplesAlsoAtBorders) {
   const glm::ivec3 size(6, 3, 5);
-  const std::vector<double> samples = noise<double>(size);
+  const std::vector<double> samples = spline_noise<double>(size);
   const auto spline = make_spline<double>(samples, size, GradientScheme::interpolating);
   for (int i = 0; i < 90; i++)
     EXPECT_NEAR(value_at(spline, glm::dvec3(i % 6, i / 6 % 3, i / 18)), samples[size_t(i)], 1e-13);
@@ -64,11 +65,12 @@ TEST(Spline, InterpolatingOnesMeetAllSamplesAlsoAtBorders) {
 TEST(Spline, PlacesOutsideAreMovedToTheBorder) {
   const glm::ivec3 size(5, 6, 7);
   for (GradientScheme scheme : all_schemes) {
-    const auto spline = make_spline<double>(noise<double>(size), size, scheme);
+    const auto spline = make_spline<double>(spline_noise<double>(size), size, scheme);
     const double far = std::numeric_limits<double>::infinity();
     const auto at_border = gradient_at(spline, glm::dvec3(0, 5, 2.5));
-    EXPECT_EQ(difference(gradient_at(spline, glm::dvec3(-far, 1e9, 2.5)), at_border), 0);
-    EXPECT_EQ(difference(gradient_at(spline, glm::dvec3(std::nan(""), 5, 2.5)), at_border), 0);
+    EXPECT_EQ(spline_difference(gradient_at(spline, glm::dvec3(-far, 1e9, 2.5)), at_border), 0);
+    EXPECT_EQ(spline_difference(gradient_at(spline, glm::dvec3(std::nan(""), 5, 2.5)), at_border),
+              0);
     EXPECT_NEAR(at_border.gradient.x, 0, 1e-14);
     EXPECT_NEAR(at_border.gradient.y, 0, 1e-14);
   }
@@ -85,7 +87,7 @@ TEST(Spline, OneSampleIsTheSameEverywhere) {
 }
 
 TEST(Spline, AThinGridIsALine) {
-  const std::vector<double> samples = noise<double>({1, 1, 4000});
+  const std::vector<double> samples = spline_noise<double>({1, 1, 4000});
   for (GradientScheme scheme : all_schemes) {
     const auto deep = make_spline<double>(samples, {1, 1, 4000}, scheme);
     const auto line = make_spline<double>(samples, {4000, 1, 1}, scheme);
@@ -130,7 +132,7 @@ TEST(Spline, EightPlacesAtATimeAreAsOne) {
   };
   for (glm::ivec3 size : {glm::ivec3(9, 8, 7), glm::ivec3(1, 2, 3), glm::ivec3(1, 1, 40)})
     for (GradientScheme scheme : all_schemes) {
-      const std::vector<float> samples = noise<float>(size);
+      const std::vector<float> samples = spline_noise<float>(size);
       const auto spline = make_spline<float>(samples, size, scheme);
       for (int i = 0; i < 200; i++) {
         Lanes3 places;
@@ -151,7 +153,7 @@ TEST(Spline, EightPlacesAtATimeAreAsOne) {
 TEST(Spline, CoefficientsOfBricksAreReadWhereTheyLie) {
   const glm::ivec3 brick(6, 6, 6);
   const int each = 216;
-  std::vector<float> pool = noise<float>({6, 6, 12});
+  std::vector<float> pool = spline_noise<float>({6, 6, 12});
   SampleBox<float> box = whole_box(pool.data(), brick);
   const int inner = 1 + box.row + box.slice;
   box.samples += inner, box.size = glm::ivec3(4), box.scale = 2, box.offset = 5;

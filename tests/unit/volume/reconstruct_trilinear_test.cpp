@@ -12,11 +12,11 @@ namespace {
 
 template <class Sample>
 class Trilinear : public ::testing::Test {};
-using SampleTypes = ::testing::Types<uint8_t, uint16_t, float>;
-TYPED_TEST_SUITE(Trilinear, SampleTypes);
+using TrilinearSamples = ::testing::Types<uint8_t, uint16_t, float>;
+TYPED_TEST_SUITE(Trilinear, TrilinearSamples);
 
 template <class Sample>
-std::vector<Sample> noise_of(size_t count) {
+std::vector<Sample> trilinear_noise(size_t count) {
   std::mt19937 random(21);
   std::vector<Sample> samples(count);
   for (Sample& sample : samples)
@@ -25,7 +25,7 @@ std::vector<Sample> noise_of(size_t count) {
   return samples;
 }
 
-Lanes3 random_places(std::mt19937& random, glm::ivec3 size) {
+Lanes3 trilinear_places(std::mt19937& random, glm::ivec3 size) {
   Lanes3 places;
   for (int l = 0; l < lane_count; l++) {
     vec3 at;
@@ -56,11 +56,12 @@ TYPED_TEST(Trilinear, EightPlacesAtATimeAreAsOne) {
   for (glm::ivec3 size :
        {glm::ivec3(9, 8, 7), glm::ivec3(2, 1, 1), glm::ivec3(1, 1, 4000), glm::ivec3(1, 1, 1),
         glm::ivec3(4, 1, 1), glm::ivec3(2, 2, 1), glm::ivec3(1, 9, 3), glm::ivec3(3, 1, 5)}) {
-    const auto samples = noise_of<TypeParam>(size_t(size.x) * size_t(size.y) * size_t(size.z));
+    const auto samples =
+        trilinear_noise<TypeParam>(size_t(size.x) * size_t(size.y) * size_t(size.z));
     const SampleBox<TypeParam> box = whole_box(samples.data(), size);
     const float unit = std::is_same_v<TypeParam, float> ? 1 : std::numeric_limits<TypeParam>::max();
     for (int i = 0; i < 100; i++) {
-      const Lanes3 places = random_places(random, size);
+      const Lanes3 places = trilinear_places(random, size);
       const Lanes found = linear_value(box, places);
       for (int l = 0; l < lane_count; l++)
         EXPECT_NEAR(found[l], linear_value(box, places.at(l)), 5e-7f * unit);
@@ -71,11 +72,11 @@ TYPED_TEST(Trilinear, EightPlacesAtATimeAreAsOne) {
 TYPED_TEST(Trilinear, LanesCanBeInDifferentBricksOfAPool) {
   const glm::ivec3 size(4, 3, 2);
   const int each = 24;
-  const auto pool = noise_of<TypeParam>(each * 8);
+  const auto pool = trilinear_noise<TypeParam>(each * 8);
   SampleBox<TypeParam> box = whole_box(pool.data(), size);
   box.count = each * 8;
   std::mt19937 random(8);
-  const Lanes3 places = random_places(random, size);
+  const Lanes3 places = trilinear_places(random, size);
   const LaneMask first = LaneMask{7, 6, 5, 4, 3, 2, 1, 0} * each;
   const Lanes found = linear_value(box, places, first);
   for (int l = 0; l < lane_count; l++) {
@@ -86,7 +87,7 @@ TYPED_TEST(Trilinear, LanesCanBeInDifferentBricksOfAPool) {
 
 TYPED_TEST(Trilinear, PlacesOutsideAreMovedToTheBorder) {
   const glm::ivec3 size(3, 3, 3);
-  const auto samples = noise_of<TypeParam>(27);
+  const auto samples = trilinear_noise<TypeParam>(27);
   const SampleBox<TypeParam> box = whole_box(samples.data(), size);
   const float far = std::numeric_limits<float>::infinity();
   const Lanes found = linear_value(
@@ -137,7 +138,7 @@ TEST(NormalGrid, NormalsAreMixedAsSamplesAre) {
   std::mt19937 random(6);
   for (glm::ivec3 size : {glm::ivec3(5, 4, 3), glm::ivec3(1, 4, 3), glm::ivec3(2, 1, 1)}) {
     const size_t count = size_t(size.x) * size_t(size.y) * size_t(size.z);
-    const std::vector<float> samples = noise_of<float>(count);
+    const std::vector<float> samples = trilinear_noise<float>(count);
     std::vector<uint32_t> words;
     Grid parts[3] = {Grid(size), Grid(size), Grid(size)};
     for (size_t i = 0; i < count; i++) {
@@ -146,7 +147,7 @@ TEST(NormalGrid, NormalsAreMixedAsSamplesAre) {
       for (int axis = 0; axis < 3; axis++) parts[axis].values[i] = normal[axis];
     }
     const SampleBox<float> box = whole_box(samples.data(), size);
-    const Lanes3 places = random_places(random, size);
+    const Lanes3 places = trilinear_places(random, size);
     const LanesLit found = linear_value_and_normal(box, words.data(), places);
     for (int l = 0; l < lane_count; l++) {
       EXPECT_NEAR(found.value[l], linear_value(box, places.at(l)), 5e-7f);
