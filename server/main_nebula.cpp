@@ -28,7 +28,7 @@ struct Options {
 void save_preview(const std::string& file, const Volume& volume) {
   image::LinearImage shown = show_cubes(volume);
   std::vector<float> light;
-  for (const vec3 color : shown.color) light.push_back(std::max({color.r, color.g, color.b}));
+  for (const vec3 color : shown.color) light.push_back(std::max({color.x, color.y, color.z}));
   const auto white = light.end() - ptrdiff_t(light.size() / 200) - 1;
   std::nth_element(light.begin(), white, light.end());
   Frame frame;

@@ -45,7 +45,7 @@ NrrdKind nrrd_kind(SampleKind kind) {
 
 // Returns a direction or place in the frame of NRRD: millimetres, left, posterior, superior.
 std::string nrrd_vector(glm::dvec4 metres) {
-  return fmt::format("({:.17g},{:.17g},{:.17g})", 1000 * metres.x, -1000 * metres.z,
+  return fmt::format("({:.17g},{:.17g},{:.17g})", 1000 * metres.x, 0.0 - 1000 * metres.z,
                      1000 * metres.y);
 }
 

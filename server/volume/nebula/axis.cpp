@@ -28,7 +28,7 @@ void each_lit_pixel(const image::LinearImage& picture, const Act& act) {
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
       const vec3 color = picture.color[size_t(y) * size_t(picture.width) + size_t(x)];
-      const double light = double(color.r) + double(color.g) + double(color.b);
+      const double light = double(color.x) + double(color.y) + double(color.z);
       if (light > 0) act(glm::dvec2(x + 0.5, y + 0.5), light);
     }
 }

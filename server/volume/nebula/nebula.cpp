@@ -72,7 +72,7 @@ void make_rays(int most, NebulaPicture& nebula) {
       if (std::abs(ray.y) >= nebula.extent.y) continue;
       const vec3 color = small.color[size_t(y) * size_t(small.width) + size_t(x)];
       nebula.rays.push_back(ray);
-      nebula.gathered.push_back({double(color.r), double(color.g), double(color.b), 0});
+      nebula.gathered.push_back(ColorLanes{double(color.x), double(color.y), double(color.z), 0});
     }
 }
 

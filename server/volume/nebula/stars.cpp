@@ -15,11 +15,13 @@ namespace {
 
 constexpr int levels = 1024;  // of a median, spaced as square roots of light
 
+constexpr float most_light = 1e30f;  // so that sums of pixels are numbers, too
+
 float finite_light(float light) {
-  return light > 0 && light <= std::numeric_limits<float>::max() ? light : 0;
+  return light > 0 && light <= std::numeric_limits<float>::max() ? std::min(light, most_light) : 0;
 }
 
-float brightness(vec3 color) { return (color.r + color.g + color.b) / 3; }
+float brightness(vec3 color) { return (color.x + color.y + color.z) / 3; }
 
 float decode_srgb_code(double code) {
   return float(code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4));
@@ -256,7 +258,7 @@ StarReport clean_sky(image::LinearImage& picture, bool remove_stars, const StarS
   StarReport report;
   report.mask.resize(picture.color.size());
   for (vec3& color : picture.color)
-    color = {finite_light(color.r), finite_light(color.g), finite_light(color.b)};
+    color = {finite_light(color.x), finite_light(color.y), finite_light(color.z)};
   report.sky = edge_median(picture);
   for (vec3& color : picture.color) color = glm::max(color - report.sky, vec3(0));
   if (remove_stars && !picture.color.empty()) fill_stars(picture, settings, report);

@@ -28,7 +28,7 @@ inline RingMap lobes_map(RingGrid grid) {
     for (int k = 0; k < grid.radial; ++k) {
       const double light =
           lobes_and_core((k + 0.5) / grid.radial, 2 * (m + 0.5) / grid.axial - 1);
-      map.light[size_t(grid.index(k, m))] = {light, light / 3, light / 9, 0};
+      map.light[size_t(grid.index(k, m))] = ColorLanes{light, light / 3, light / 9, 0};
     }
   return map;
 }
@@ -38,7 +38,7 @@ inline std::vector<glm::dvec2> square_rays(int side, double half) {
   std::vector<glm::dvec2> rays;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
-      rays.push_back(half * (2 * glm::dvec2(x + 0.5, y + 0.5) / double(side) - 1.0));
+      rays.push_back(half * (2.0 * glm::dvec2(x + 0.5, y + 0.5) / double(side) - 1.0));
   return rays;
 }
 

@@ -59,7 +59,8 @@ TEST(NebulaRings, ABallOfEvenLightLooksAsAbelsIntegralSays) {
   for (int m = 0; m < grid.axial; ++m)
     for (int k = 0; k < grid.radial; ++k) {
       const double r = (k + 0.5) * grid.thickness(), z = (m + 0.5) * grid.slab() - 42;
-      if (std::hypot(r, z) < radius) map.light[size_t(grid.index(k, m))] = {light, light, light, 0};
+      if (std::hypot(r, z) < radius)
+        map.light[size_t(grid.index(k, m))] = ColorLanes{light, light, light, 0};
     }
   const std::vector<glm::dvec2> rays{{0, 0}, {10.2, 0}, {0.1, 20}, {-15, 25}, {30, -10}};
   for (const double tilt : {0.0, 30.0, 60.0}) {

@@ -38,7 +38,7 @@ TEST(NebulaStars, KnownStarsGoAndTheNebulaStays) {
   EXPECT_LT(report.pixels, 128 * 128 / 10);
   double most = 0;
   for (size_t i = 0; i < nebula.color.size(); ++i)
-    most = std::max(most, std::abs(double(picture.color[i].r - nebula.color[i].r)));
+    most = std::max(most, std::abs(double(picture.color[i].x - nebula.color[i].x)));
   EXPECT_LT(most, 0.08);
 }
 
@@ -48,16 +48,16 @@ TEST(NebulaStars, ANebulaWithoutStarsIsLeftAlone) {
   const StarReport report = clean_sky(picture, true);
   EXPECT_EQ(report.stars, 0);
   for (size_t i = 0; i < nebula.color.size(); ++i)
-    EXPECT_NEAR(picture.color[i].g, nebula.color[i].g, 1e-5);
+    EXPECT_NEAR(picture.color[i].y, nebula.color[i].y, 1e-5);
 }
 
 TEST(NebulaStars, TheSkyIsTakenOff) {
   image::LinearImage picture = soft_ellipse(64, 64, 0, 10, 8);
   for (vec3& color : picture.color) color += vec3(0.1f, 0.2f, 0.05f);
   const StarReport report = clean_sky(picture, false);
-  EXPECT_NEAR(report.sky.g, 0.2f, 1e-4);
-  EXPECT_NEAR(picture.color[0].g, 0, 1e-4);
-  EXPECT_NEAR(picture.color[32 * 64 + 32].r, 1, 0.02);
+  EXPECT_NEAR(report.sky.y, 0.2f, 1e-4);
+  EXPECT_NEAR(picture.color[0].y, 0, 1e-4);
+  EXPECT_NEAR(picture.color[32 * 64 + 32].x, 1, 0.02);
 }
 
 TEST(NebulaStars, LightThatIsNoNumberBecomesNone) {
@@ -80,11 +80,11 @@ TEST(NebulaStars, TinyAndBlackPicturesAreTaken) {
 TEST(NebulaStars, CodesBecomeLinearLight) {
   image::ImageCodes codes{2, 1, {255, 188, 0, 255, 255, 255, 255, 0}, {}};
   const image::LinearImage picture = linearise(codes);
-  EXPECT_FLOAT_EQ(picture.color[0].r, 1);
-  EXPECT_NEAR(picture.color[0].g, 0.5, 0.005);
+  EXPECT_FLOAT_EQ(picture.color[0].x, 1);
+  EXPECT_NEAR(picture.color[0].y, 0.5, 0.005);
   EXPECT_EQ(picture.color[1], vec3(0));
   codes = {1, 1, {}, {65535, 32768, 0, 65535}};
-  EXPECT_NEAR(linearise(codes).color[0].g, 0.214, 0.001);
+  EXPECT_NEAR(linearise(codes).color[0].y, 0.214, 0.001);
 }
 
 TEST(NebulaStars, ShrinkingKeepsTheMean) {

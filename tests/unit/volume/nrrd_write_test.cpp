@@ -44,7 +44,7 @@ TEST(NrrdWrite, ColoursLieOnTheFirstAxisAndPlacesAreMillimetres) {
   const auto [header, data] = split_nrrd(encode_nrrd(volume));
   EXPECT_EQ(header,
             "NRRD0005\ntype: uint8\ndimension: 4\nspace: left-posterior-superior\nsizes: 3 2 3 1\n"
-            "space directions: none (1,-0,0) (0,-0,2) (0,3,0)\nspace origin: (1000,-3000,2000)\n"
+            "space directions: none (1,0,0) (0,0,2) (0,3,0)\nspace origin: (1000,-3000,2000)\n"
             "space units: \"mm\" \"mm\" \"mm\"\nkinds: RGB-color space space space\n"
             "endian: little\nencoding: gzip\n\n");
   ASSERT_EQ(data.size(), volume.byte_count());
