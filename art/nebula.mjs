@@ -42,7 +42,7 @@ function glow(x, y, z, light) {
   const r = Math.hypot(x, y), far = Math.hypot(r, z), around = Math.atan2(y, x);
   if (far > 1) return;
   const end = Math.abs(z), upper = z > 0;
-  const thread = filaments(4.5 * x + (upper ? 0 : 9), 4.5 * y, 3 * z);
+  const thread = filaments(6.5 * x + (upper ? 0 : 9), 6.5 * y, 4 * z);
   // The lobes: one is a little longer, and each bulges to one side.
   const length = upper ? 0.86 : 0.8;
   const bulge = 1 + 0.12 * Math.cos(around - (upper ? 0.7 : 3.4));
@@ -50,29 +50,29 @@ function glow(x, y, z, light) {
   const wall = (0.09 + 0.3 * Math.sin(Math.PI * part ** 0.8) ** 0.75) * bulge * (1 - part ** 6);
   const thin = 0.022 + 0.03 * part;
   const fade = Math.max(0, 1 - part ** 3) * (1 + 0.45 * Math.cos(around + 1.9 + 2 * z));
-  const lobe = bell(r - wall, thin) * fade * (0.25 + 2.1 * thread);
-  const inside = r < wall ? (1 - part) * 0.16 * (1 - (r / wall) ** 4) : 0;
-  add(light, 2.6 * lobe, 0.52 * lobe, 0.62 * lobe);
+  const lobe = bell(r - wall, thin) * fade * (0.06 + 2.6 * thread ** 1.4);
+  const inside = r < wall ? (1 - part) * 0.2 * (1 - (r / wall) ** 4) : 0;
+  add(light, 2.6 * lobe, 0.26 * lobe, 0.42 * lobe);
   const lining = bell(r - wall + 0.03, thin) * fade * (0.3 + thread) * (1 - 0.6 * part);
-  add(light, 0.1 * lining, 1.0 * lining, 0.95 * lining);
-  add(light, 0.1 * inside, 0.55 * inside, 0.95 * inside);
+  add(light, 0.02 * lining, 0.75 * lining, 0.8 * lining);
+  add(light, 0.06 * inside, 0.62 * inside, 0.9 * inside);
   // The ring round the waist.
   const warm = bell(Math.hypot(r - 0.2 - 0.012 * Math.sin(3 * around), z), 0.036) *
       (0.55 + 0.9 * noise(9 * x, 9 * y, 9 * z)) * (1 + 0.4 * Math.cos(around - 0.4));
-  add(light, 7.5 * warm, 3.6 * warm, 1.7 * warm);
+  add(light, 8.5 * warm, 3.4 * warm, 1.2 * warm);
   // The bubble, and the glow about the star that made it all.
   const bubble = bell(Math.hypot(r, 0.72 * z) - 0.125, 0.022) * (0.5 + noise(14 * x, 14 * y, 11 * z));
-  add(light, 1.2 * bubble, 5.2 * bubble, 5.6 * bubble);
+  add(light, 0.4 * bubble, 2.9 * bubble, 3.1 * bubble);
   const heart = bell(far, 0.07);
-  add(light, 1.6 * heart, 2.6 * heart, 3.4 * heart);
+  add(light, 1.2 * heart, 1.7 * heart, 2.2 * heart);
   // Knots beyond the lobes, not quite opposite one another.
   for (const [kx, ky, kz, size] of [[0.05, 0.02, 0.93, 0.035], [-0.07, 0.04, -0.9, 0.03]]) {
     const knot = bell(Math.hypot(x - kx, y - ky, 0.6 * (z - kz)), size);
     add(light, 9 * knot, 1.4 * knot, 1.1 * knot);
   }
   // The halo of older gas.
-  const halo = bell(far - 0.3, 0.36) * (0.3 + 1.3 * filaments(2.2 * x, 2.2 * y, 2.2 * z + 3));
-  add(light, 0.085 * halo, 0.07 * halo, 0.2 * halo);
+  const halo = bell(far - 0.25, 0.3) * (1 - far * far) * (0.3 + 1.3 * filaments(2.2 * x, 2.2 * y, 2.2 * z + 3));
+  add(light, 0.06 * halo, 0.07 * halo, 0.21 * halo);
 }
 function add(light, red, green, blue) {
   light[0] += red, light[1] += green, light[2] += blue;
@@ -119,11 +119,11 @@ function draw_stars(picture) {
 function encode(picture) {
   const rows = Buffer.alloc(side * side * 3);
   for (let pixel = 0; pixel < side * side; pixel++) {
-    const light = [0, 1, 2].map((c) => 2.3 * picture[3 * pixel + c]);
+    const light = [0, 1, 2].map((c) => 1.45 * picture[3 * pixel + c]);
     const peak = Math.max(...light, 1e-9);
     const shown = peak < 0.5 ? peak : 1 - 0.25 / peak;
     light.forEach((value, c) => {
-      const level = mix((value / peak) * shown, shown, Math.max(0, shown - 0.72) * 1.1);
+      const level = mix((value / peak) * shown, shown, Math.max(0, shown - 0.75) * 0.9);
       const code = level <= 0.0031308 ? 12.92 * level : 1.055 * level ** (1 / 2.4) - 0.055;
       rows[3 * pixel + c] = Math.round(255 * Math.min(1, Math.max(0, code)));
     });
