@@ -46,8 +46,9 @@ void tell(const NebulaReport& report, const Volume& volume) {
   std::cout << fmt::format(
       "stars: {} filled, {} pixels\naxis: {:.1f} degrees{}\ntilt: {:.1f} degrees{}\n"
       "rays: {} in {} rings, {} lengths\nresidual: {:.4f} {:.4f} {:.4f} after {} iterations\n"
-      "voxels: {} x {} x {}\nreprojection error: {:.1e}, {} pixels unreached ({:.3f} % of the light)"
-      "\nseconds: {:.2f} picture, {:.2f} rays, {:.2f} solve, {:.2f} voxels\n",
+      "voxels: {} x {} x {}\nreprojection error: {:.1e}\n"
+      "unreached: {} pixels, {:.3f} % of the light\n"
+      "seconds: {:.2f} picture, {:.2f} rays, {:.2f} solve, {:.2f} voxels\n",
       report.stars, report.star_pixels, report.angle_degrees,
       report.angle_proposed ? ", proposed" : "", report.tilt_degrees,
       report.tilt_proposed ? ", proposed (or the other way)" : "", report.rays, report.rings,
@@ -95,14 +96,15 @@ int main(int argc, char** argv) {
   using namespace wellspring::program;
   if (answer_version(argc, argv)) return 0;
   log::start("nebula");
-  CLI::App app{"Makes a volume of light of one picture of a planetary nebula, as NRRD, and beside it "
-               "a picture of it from the front and from the right."};
+  CLI::App app{
+      "Makes a volume of light of one picture of a planetary nebula, as NRRD, and beside "
+      "it a picture of it from the front and from the right."};
   Options options;
   app.add_option("picture", options.picture, "PNG, JPEG or WebP")->required();
   const CLI::Option& angle = *app.add_option(
       "--angle", options.angle, "of the axis, degrees from the right, counter-clockwise");
-  const CLI::Option& tilt = *app.add_option(
-      "--tilt", options.tilt, "of that end of the axis out of the picture, degrees");
+  const CLI::Option& tilt = *app.add_option("--tilt", options.tilt,
+                                            "of that end of the axis out of the picture, degrees");
   app.get_option("--tilt")->check(CLI::Range(-75.0, 75.0));
   app.add_option("--rings", options.rings, "along the radius and the axis")->capture_default_str();
   app.add_option("--solver", options.solver)
@@ -119,6 +121,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--width", options.nebula.cubes.width_metres, "of the longer side, in metres")
       ->check(CLI::Range(0.001, 1000.0))
+      ->capture_default_str();
+  app.add_option("--star-radius", options.nebula.stars.radius,
+                 "pixels: stars are about a third of it; 0: a 64th of the longer side")
+      ->check(CLI::Range(0, 200))
       ->capture_default_str();
   app.add_flag("--keep-stars", options.keep_stars, "leave stars in the picture");
   app.add_option("--out", options.out, "NRRD file; beside it a PNG is written");

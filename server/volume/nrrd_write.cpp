@@ -58,7 +58,8 @@ std::string nrrd_header(const Volume& volume) {
   if (colours) text += fmt::format(" {}", volume.channels);
   text += fmt::format(" {} {} {}\nspace directions:", volume.size.x, volume.size.y, volume.size.z);
   if (colours) text += " none";
-  for (int axis = 0; axis < 3; ++axis) text += " " + nrrd_vector(volume.to_metres[axis]);
+  for (int axis = 0; axis < 3; ++axis)
+    text += fmt::format(" {}", nrrd_vector(volume.to_metres[axis]));
   text += fmt::format("\nspace origin: {}\nspace units: \"mm\" \"mm\" \"mm\"\nkinds:",
                       nrrd_vector(volume.to_metres[3]));
   if (colours) text += volume.channels == 3 ? " RGB-color" : " vector";
@@ -104,8 +105,7 @@ template <class Sample>
 std::vector<Sample> measured(const Volume& volume) {
   std::vector<Sample> values(volume.samples() * size_t(volume.channels));
   std::memcpy(values.data(), volume.bytes.get(), volume.byte_count());
-  for (Sample& value : values)
-    value = Sample(double(value) * volume.slope + volume.intercept);
+  for (Sample& value : values) value = Sample(double(value) * volume.slope + volume.intercept);
   return values;
 }
 
@@ -119,8 +119,7 @@ std::vector<char> encode_nrrd(const Volume& volume) {
     append_gzip(std::as_bytes(std::span<const float>(measured<float>(volume))), file);
   else if (volume.kind == SampleKind::f64 && !plain)
     append_gzip(std::as_bytes(std::span<const double>(measured<double>(volume))), file);
-  else
-    append_gzip({volume.bytes.get(), volume.byte_count()}, file);
+  else append_gzip({volume.bytes.get(), volume.byte_count()}, file);
   return file;
 }
 

@@ -71,10 +71,11 @@ std::optional<double> propose_tilt(const image::LinearImage& picture, const Pict
   // The shapes are what is brighter than these parts of the brightest light.
   constexpr double thresholds[] = {0.7, 0.5, 0.35, 0.25, 0.15};
   constexpr int fewest_pixels = 30;
-  constexpr double flattest = 0.9;  // rounder shapes are taken for spheres
+  constexpr double roundest = 0.75;  // rounder shapes may be anything
   double brightest = 0;
-  each_lit_pixel(picture, [&](glm::dvec2, double light) { brightest = std::max(brightest, light); });
-  double best = flattest;
+  each_lit_pixel(picture,
+                 [&](glm::dvec2, double light) { brightest = std::max(brightest, light); });
+  double best = roundest;
   for (const double threshold : thresholds) {
     Moments shape;
     each_lit_pixel(picture, [&](glm::dvec2 place, double light) {
@@ -86,7 +87,7 @@ std::optional<double> propose_tilt(const image::LinearImage& picture, const Pict
                  beside = shape.yy / shape.light - mean.y * mean.y;
     if (beside > 0) best = std::min(best, std::sqrt(std::max(0.0, along) / beside));
   }
-  if (best >= flattest) return {};
+  if (best >= roundest) return {};
   return std::asin(best);
 }
 

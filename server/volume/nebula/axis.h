@@ -24,8 +24,9 @@ struct PictureAxis {
 PictureAxis propose_axis(const image::LinearImage& picture);
 
 // Returns the tilt out of the picture, in radians, at which the flattest of the picture's bright
-// shapes would be a circle round the axis; none if all are longer than wide. It is positive, but
-// the other sign fits as well: forward and backward tilts give the same picture.
+// shapes would be a circle round the axis; none if that is more than 49 degrees, where a ball looks
+// nearly the same. It is positive, but the other sign fits as well: forward and backward tilts give
+// the same picture.
 std::optional<double> propose_tilt(const image::LinearImage& picture, const PictureAxis& axis);
 
 // Returns half the length along the axis and half the width beside it that hold `part` of the

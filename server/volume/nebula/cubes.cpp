@@ -124,10 +124,10 @@ void store_row(const VoxelRow& row, float step, glm::ivec3 size, int y, std::byt
       for (int c = 0; c < 3; ++c) {
         Sample& sample = line[size_t(3 * x + c)];
         if constexpr (whole) {
-          // What rounding took is given to the next voxel of the pixel.
+          // The rest that rounding took is given to the next voxel of the pixel.
           const float wanted = light[c] / step + carried[size_t(x)][c];
-          sample = Sample(std::clamp(wanted + 0.5f, 0.0f,
-                                     float(std::numeric_limits<Sample>::max())));
+          sample =
+              Sample(std::clamp(wanted + 0.5f, 0.0f, float(std::numeric_limits<Sample>::max())));
           carried[size_t(x)][c] = wanted - float(sample);
         } else {
           sample = light[c];
@@ -214,9 +214,9 @@ Volume fill_cubes(const RingMap& map, const PictureAxis& axis, double tilt,
   const double bytes = double(picture.width) * picture.height * depth * 3 * bytes_of(volume.kind);
   if (bytes > most_bytes) throw LoadError("nebula", "", "would be a volume of more than 2 GB");
   const double step = settings.width_metres / std::max(picture.width, picture.height);
-  volume.to_metres = glm::dmat4(step, 0, 0, 0, 0, -step, 0, 0, 0, 0, -step, 0,
-                                -0.5 * step * (picture.width - 1),
-                                0.5 * step * (picture.height - 1), 0.5 * step * (depth - 1), 1);
+  volume.to_metres =
+      glm::dmat4(step, 0, 0, 0, 0, -step, 0, 0, 0, 0, -step, 0, -0.5 * step * (picture.width - 1),
+                 0.5 * step * (picture.height - 1), 0.5 * step * (depth - 1), 1);
   const std::shared_ptr<std::byte[]> samples(new std::byte[volume.byte_count()]);
   volume.bytes = std::shared_ptr<const std::byte>(samples, samples.get());
   const auto each = [&](const auto& act) {
@@ -231,8 +231,7 @@ Volume fill_cubes(const RingMap& map, const PictureAxis& axis, double tilt,
     std::vector<float> brightest(size_t(picture.height));
     each([&](int y, const VoxelRow& row) {
       for (const HalfLanes light : row.light)
-        for (int c = 0; c < 3; ++c)
-          brightest[size_t(y)] = std::max(brightest[size_t(y)], light[c]);
+        for (int c = 0; c < 3; ++c) brightest[size_t(y)] = std::max(brightest[size_t(y)], light[c]);
     });
     const float most = *std::max_element(brightest.begin(), brightest.end());
     const bool wide = settings.kind == SampleKind::u16;

@@ -12,9 +12,9 @@
 namespace wellspring::volume {
 
 struct CubeSettings {
-  bool correct = true;               // multiply each pixel's voxels by I_o / I_p
+  bool correct = true;                // multiply each pixel's voxels by I_o / I_p
   SampleKind kind = SampleKind::f32;  // or u8 or u16, with a slope
-  double width_metres = 1;           // of the picture's longer side
+  double width_metres = 1;            // the picture's longer side
 };
 
 struct CubeReport {
@@ -27,9 +27,9 @@ struct CubeReport {
 
 // Fills a volume of 3 channels of linear light per voxel's depth. Voxel (x, y, z) lies behind pixel
 // (x, y) of the picture, z runs away from the visitor, and the sum over z is the pixel's value. The
-// axis's end that its angle points to leans to the visitor if the tilt is positive. The volume is as
-// deep as the rings that have light. Whole numbers are rounded so that the error of a pixel's sum
-// stays below half a step. Throws LoadError if the volume were larger than 2 GB.
+// axis's end that its angle points to leans to the visitor if the tilt is positive. The volume is
+// as deep as the rings that have light. Whole numbers are rounded so that the error of a pixel's
+// sum stays below half a step. Throws LoadError if the volume were larger than 2 GB.
 Volume fill_cubes(const RingMap& map, const PictureAxis& axis, double tilt,
                   const image::LinearImage& picture, const CubeSettings& settings,
                   CubeReport& report);

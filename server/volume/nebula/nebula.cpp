@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t most_file_bytes = 256 << 20;
 constexpr int64_t most_picture_pixels = 64 << 20;
-constexpr int most_clean_side = 1024;  // of the picture in which stars are looked for
+constexpr int most_clean_side = 1024;  // the picture in which stars are looked for
 
 image::LinearImage cut_out(const image::LinearImage& picture, const image::ImagePart& part) {
   image::LinearImage cut{part.width, part.height, {}};
@@ -140,8 +140,7 @@ Volume make_nebula(const image::LinearImage& picture, const NebulaSettings& sett
   // Only what glows can be shown.
   for (ColorLanes& light : map.light) light = light > 0 ? light : ColorLanes{};
   const double began = seconds_now();
-  Volume volume =
-      fill_cubes(map, nebula.axis, tilt, nebula.picture, settings.cubes, report.cubes);
+  Volume volume = fill_cubes(map, nebula.axis, tilt, nebula.picture, settings.cubes, report.cubes);
   report.cubes_seconds = seconds_now() - began;
   return volume;
 }

@@ -23,7 +23,7 @@ struct NebulaSettings {
   bool remove_stars = true;
   StarSettings stars;
   double light_inside = 0.998;  // part of the light that the rings shall reach
-  int most_side = 256;          // of the volume: larger pictures are shrunk by a whole number
+  int most_side = 256;          // the volume's: larger pictures are shrunk by a whole number
   int most_rays = 40000;        // likewise for the solver
   CubeSettings cubes;
 };
@@ -37,7 +37,7 @@ struct NebulaReport {
   image::ImagePart crop;  // the part that was taken, in pixels of the shrunk picture
   int shrunk = 1;         // by how much the file's picture was shrunk before
   int rays = 0, rings = 0;
-  size_t entries = 0;  // of the matrix
+  size_t entries = 0;                // lengths in the matrix
   std::vector<glm::dvec3> residual;  // as SolveResult has it
   CubeReport cubes;
   double prepare_seconds = 0, system_seconds = 0, solve_seconds = 0, cubes_seconds = 0;

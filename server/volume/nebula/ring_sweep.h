@@ -31,6 +31,9 @@ inline void spread_row(const RingRows& rows, size_t row, ColorLanes value, Color
     back[ring[i]] += double(length[i]) * value;
 }
 
+// Returns A times the light: what each ray gathers.
+std::vector<ColorLanes> gather_rays(const RingSystem& system, std::span<const ColorLanes> light);
+
 // Keeps the memory of sweeps from one to the next.
 struct RingSweep {
   std::vector<std::vector<ColorLanes>> parts;  // for each piece of the matrix

@@ -7,14 +7,13 @@
 
 #include "base/load_error.h"
 #include "base/parallel.h"
-#include "volume/nebula/ring_sweep.h"
 
 namespace wellspring::volume {
 
 namespace {
 
 constexpr int pieces_of_a_system = 8;
-constexpr double least_length = 1e-9;  // of a grid's ring thickness; shorter ones are left out
+constexpr double least_length = 1e-9;  // in ring thicknesses; shorter ones are left out
 
 // Adds the lengths of one ray. The place on a ray is told by q, its distance from the plane that
 // holds the axis and is parallel to it: there the radius is sqrt(beside^2 + q^2), the height along
@@ -114,16 +113,6 @@ RingSystem make_ring_system(const RingGrid& grid, double tilt, std::span<const g
     }
   });
   return system;
-}
-
-std::vector<ColorLanes> gather_rays(const RingSystem& system, std::span<const ColorLanes> light) {
-  std::vector<ColorLanes> gathered(size_t(system.rays));
-  parallel_each(int(system.pieces.size()), [&](int piece) {
-    const RingRows& rows = system.pieces[size_t(piece)];
-    for (size_t row = 0; row + 1 < rows.begin.size(); ++row)
-      gathered[size_t(rows.first_ray) + row] = gather_row(rows, row, light.data());
-  });
-  return gathered;
 }
 
 }  // namespace wellspring::volume

@@ -59,7 +59,4 @@ struct RingSystem {
 // Throws LoadError if the grid has no rings, more than most_rings, or the tilt is too large.
 RingSystem make_ring_system(const RingGrid& grid, double tilt, std::span<const glm::dvec2> rays);
 
-// Returns A times the light: what each ray gathers.
-std::vector<ColorLanes> gather_rays(const RingSystem& system, std::span<const ColorLanes> light);
-
 }  // namespace wellspring::volume

@@ -45,9 +45,8 @@ struct Course {
 // Sets the sweep to A^T (b - A x), and the difference to what is in the brackets.
 void sweep_difference(RingSweep& sweep, Lights& difference, const RingSystem& system, Rays b,
                       const Lights& light) {
-  sweep_rings(sweep, system, light, [&](size_t ray, ColorLanes gathered) {
-    return difference[ray] = b[ray] - gathered;
-  });
+  sweep_rings(sweep, system, light,
+              [&](size_t ray, ColorLanes gathered) { return difference[ray] = b[ray] - gathered; });
 }
 
 void solve_by_fista(const RingSystem& system, Rays b, Lights& light, Course& course) {

@@ -35,8 +35,8 @@ struct SolveSettings {
 
 struct SolveResult {
   std::vector<ColorLanes> light;  // for each ring
-  // The norm of b - A x by that of b for each iteration and channel, 0 if b is 0: after its step for
-  // conjugate gradients, before it for fista (where momentum has carried x) and mlem.
+  // The norm of b - A x by that of b for each iteration and channel, 0 if b is 0: after its step
+  // for conjugate gradients, before it for fista (where momentum has carried x) and mlem.
   std::vector<glm::dvec3> residual;
 };
 

@@ -13,7 +13,7 @@ namespace wellspring::volume {
 
 namespace {
 
-constexpr int levels = 1024;  // of a median, spaced as square roots of light
+constexpr int levels = 1024;  // a median has so many, spaced as square roots of light
 
 constexpr float most_light = 1e30f;  // so that sums of pixels are numbers, too
 
@@ -113,7 +113,7 @@ bool is_star(const Blob& blob, int radius, double roundest) {
                yy = blob.yy / blob.light - y * y + 1. / 12;
   const double middle = (xx + yy) / 2, apart = std::hypot((xx - yy) / 2, xy);
   const double most = middle + apart, least = std::max(middle - apart, 1e-9);
-  return std::sqrt(xx + yy) <= 0.5 * radius + 0.7 && std::sqrt(most / least) <= roundest;
+  return std::sqrt(xx + yy) <= 0.35 * radius + 0.3 && std::sqrt(most / least) <= roundest;
 }
 
 template <class Act>
@@ -226,9 +226,9 @@ image::LinearImage linearise(const image::ImageCodes& codes) {
   for (size_t i = 0; i < pixels; ++i)
     for (int c = 0; c < 3; ++c) {
       const size_t at = 4 * i + size_t(c);
-      picture.color[i][c] = wide ? table[codes.codes16[at]] * float(codes.codes16[4 * i + 3]) / 65535
-                                 : image::decode_srgb(codes.codes8[at]) *
-                                       float(codes.codes8[4 * i + 3]) / 255;
+      picture.color[i][c] =
+          wide ? table[codes.codes16[at]] * float(codes.codes16[4 * i + 3]) / 65535
+               : image::decode_srgb(codes.codes8[at]) * float(codes.codes8[4 * i + 3]) / 255;
     }
   return picture;
 }

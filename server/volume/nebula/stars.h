@@ -19,17 +19,18 @@ image::LinearImage shrink(const image::LinearImage& picture, int factor);
 
 struct StarSettings {
   // Half the side of the window whose median stands for the nebula; 0: a 64th of the picture's
-  // longer side, at least 3. Stars of up to about this radius are found.
+  // longer side, at least 3. Stars are found whose light lies within about a third of it; knots
+  // and filaments of the nebula are wider.
   int radius = 0;
-  double contrast = 1;     // least height of a star over that median, in medians
-  double least = 0.01;     // and in parts of the picture's brightest light
-  double roundest = 2.5;   // longest shape, long axis by short, that is a star
+  double contrast = 1;    // least height of a star over that median, in medians
+  double least = 0.01;    // and in parts of the picture's brightest light
+  double roundest = 2.5;  // longest shape, long axis by short, that is a star
 };
 
 struct StarReport {
-  vec3 sky{0};          // light that was taken off everywhere
-  int stars = 0;        // found and filled
-  int pixels = 0;       // that were filled
+  vec3 sky{0};                // light that was taken off everywhere
+  int stars = 0;              // found and filled
+  int pixels = 0;             // filled with them
   std::vector<uint8_t> mask;  // 1: filled; a byte a pixel
 };
 

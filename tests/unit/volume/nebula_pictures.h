@@ -26,8 +26,7 @@ inline RingMap lobes_map(RingGrid grid) {
   RingMap map{grid, std::vector<ColorLanes>(size_t(grid.count()))};
   for (int m = 0; m < grid.axial; ++m)
     for (int k = 0; k < grid.radial; ++k) {
-      const double light =
-          lobes_and_core((k + 0.5) / grid.radial, 2 * (m + 0.5) / grid.axial - 1);
+      const double light = lobes_and_core((k + 0.5) / grid.radial, 2 * (m + 0.5) / grid.axial - 1);
       map.light[size_t(grid.index(k, m))] = ColorLanes{light, light / 3, light / 9, 0};
     }
   return map;

@@ -7,6 +7,7 @@
 
 #include "base/load_error.h"
 #include "unit/volume/nebula_pictures.h"
+#include "volume/nebula/ring_sweep.h"
 
 namespace wellspring::test {
 namespace {
@@ -23,8 +24,7 @@ TEST(NebulaRings, LengthsOfARaySumToItsChord) {
   for (const double tilt : {0.0, 1e-12, 0.01, 0.3, 35.0, 45.0, 60.0, -45.0, 75.0})
     for (const double beside : {0.0, 0.5, -3.0, 17.3, 29.0, 29.999})
       for (const double along : {0.0, 0.49, -7.0}) {
-        const double chord =
-            2 * std::sqrt(30 * 30 - beside * beside) / std::cos(tilt * degree);
+        const double chord = 2 * std::sqrt(30 * 30 - beside * beside) / std::cos(tilt * degree);
         EXPECT_NEAR(chord_of(grid, tilt * degree, {along, beside}), chord, 1e-6 * chord)
             << tilt << " " << beside << " " << along;
       }

@@ -7,6 +7,7 @@
 
 #include "base/load_error.h"
 #include "unit/volume/nebula_pictures.h"
+#include "volume/nebula/ring_sweep.h"
 
 namespace wellspring::test {
 namespace {

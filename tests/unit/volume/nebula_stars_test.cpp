@@ -14,8 +14,8 @@ namespace {
 struct Star {
   double x, y, size, light;
 };
-const std::vector<Star> stars{{20.3, 22.1, 1.0, 0.8},  {100.5, 30.5, 0.8, 0.4},
-                              {64.2, 40.7, 1.2, 2.0},  {30.0, 90.4, 1.0, 0.6},
+const std::vector<Star> stars{{20.3, 22.1, 1.0, 0.8},   {100.5, 30.5, 0.8, 0.4},
+                              {64.2, 40.7, 1.2, 2.0},   {30.0, 90.4, 1.0, 0.6},
                               {110.6, 105.2, 1.4, 1.5}, {70.1, 70.3, 1.0, 5.0}};
 
 void add_star(image::LinearImage& picture, const Star& star) {
@@ -31,7 +31,7 @@ TEST(NebulaStars, KnownStarsGoAndTheNebulaStays) {
   const image::LinearImage nebula = soft_ellipse(128, 128, 0.4, 30, 18);
   image::LinearImage picture = nebula;
   for (const Star& star : stars) add_star(picture, star);
-  const StarReport report = clean_sky(picture, true);
+  const StarReport report = clean_sky(picture, true, {.radius = 6});
   EXPECT_EQ(report.stars, int(stars.size()));
   for (const Star& star : stars)
     EXPECT_EQ(report.mask[size_t(star.y) * 128 + size_t(star.x)], 1) << star.x;
@@ -62,7 +62,8 @@ TEST(NebulaStars, TheSkyIsTakenOff) {
 
 TEST(NebulaStars, LightThatIsNoNumberBecomesNone) {
   const float infinite = std::numeric_limits<float>::infinity();
-  image::LinearImage picture{4, 1, {{std::nanf(""), 1, 1}, {infinite, 1, 2}, {-3, 1, 1}, {1, 1, 1}}};
+  image::LinearImage picture{
+      4, 1, {{std::nanf(""), 1, 1}, {infinite, 1, 2}, {-3, 1, 1}, {1, 1, 1}}};
   clean_sky(picture, true);
   for (const vec3 color : picture.color)
     for (int c = 0; c < 3; ++c) EXPECT_TRUE(color[c] >= 0 && color[c] < 3);

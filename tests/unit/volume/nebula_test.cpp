@@ -26,8 +26,7 @@ NebulaSettings small_nebula() {
 image::LinearImage lopsided(int width, int height) {
   image::LinearImage picture = soft_ellipse(width, height, 0.5, 0.25 * width, 0.13 * width);
   for (int y = height / 3; y < height / 2; ++y)
-    for (int x = width / 2; x < 3 * width / 5; ++x)
-      picture.color[size_t(y * width + x)].x += 0.5f;
+    for (int x = width / 2; x < 3 * width / 5; ++x) picture.color[size_t(y * width + x)].x += 0.5f;
   return picture;
 }
 
@@ -46,8 +45,7 @@ TEST(Nebula, AfterCorrectionItShowsThePictureAgain) {
   double voxels = 0, pixels = 0;
   for (int y = 0; y < volume.size.y; ++y)
     for (int x = 0; x < volume.size.x; ++x) {
-      const double wanted =
-          double(nebula.picture.color[size_t(y * volume.size.x + x)].x);
+      const double wanted = double(nebula.picture.color[size_t(y * volume.size.x + x)].x);
       double sum = 0;
       for (int z = 0; z < volume.size.z; ++z) {
         EXPECT_GE(volume.at(x, y, z, 0), 0);
@@ -132,9 +130,9 @@ TEST(Nebula, TinyAndBlackPicturesAndLightThatIsNoNumberAreTaken) {
   NebulaSettings settings;
   settings.rings = {5, 7};
   for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(1, 9), glm::ivec2(4, 2)})
-    for (const float light : {0.0f, 1.0f, std::nanf(""), -1.0f,
-                              std::numeric_limits<float>::infinity(),
-                              std::numeric_limits<float>::max()})
+    for (const float light :
+         {0.0f, 1.0f, std::nanf(""), -1.0f, std::numeric_limits<float>::infinity(),
+          std::numeric_limits<float>::max()})
       for (const double tilt : {0.0, -75.0}) {
         image::LinearImage picture{size.x, size.y, std::vector<vec3>(size_t(size.x * size.y))};
         picture.color.back() = vec3(light);
