@@ -34,9 +34,8 @@ std::pair<std::string, std::string> split_nrrd(const std::vector<char>& file) {
   stream.avail_out = uInt(data.size());
   EXPECT_EQ(inflate(&stream, Z_FINISH), Z_STREAM_END);
   EXPECT_EQ(stream.avail_in, 0u);
-  data.resize(data.size() - stream.avail_out);
   inflateEnd(&stream);
-  return {text.substr(0, end), data};
+  return {text.substr(0, end), data.substr(0, stream.total_out)};
 }
 
 TEST(NrrdWrite, ColoursLieOnTheFirstAxisAndPlacesAreMillimetres) {
