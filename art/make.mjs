@@ -38,6 +38,8 @@ export const parts = {
     command: (out) => ['bash', 'castle/book/make_pictures.sh', out] },
   'castle/pictures': { scripts: ['paintings.mjs', 'paintings'], into: 'content/castle/pictures',
     files: /\.painting\.json$/, command: (out) => ['node', 'paintings.mjs', out] },
+  'castle/nebula': { scripts: ['nebula.mjs'], into: 'content/castle/pictures',
+    files: /^nebula\.png$/, command: (out) => ['node', 'nebula.mjs', out] },
   'first-room/scene': { scripts: ['first-room'], into: 'content/first-room', files: /^scene\.glb$/,
     command: (out) => blender('first-room/make_room.py', join(out, 'scene.glb')) },
 };

@@ -12,6 +12,7 @@ namespace wire {}
 namespace ledger {}
 namespace image {}
 namespace store {}
+namespace volume {}
 namespace frame {}
 namespace attention {}
 namespace denoise {}
@@ -35,6 +36,12 @@ using namespace image;
 using namespace json;
 }  // namespace store
 
+namespace volume {
+using namespace store;
+using namespace image;
+using namespace json;
+}  // namespace volume
+
 namespace wire {
 using namespace json;
 }  // namespace wire
@@ -47,11 +54,13 @@ namespace world {
 using namespace gltf;
 using namespace image;
 using namespace store;
+using namespace volume;
 }  // namespace world
 
 namespace light {
 using namespace world;
 using namespace store;
+using namespace volume;
 using namespace frame;
 }  // namespace light
 
@@ -77,6 +86,7 @@ using namespace json;
 namespace show {
 using namespace picture;
 using namespace store;
+using namespace volume;
 using namespace cache;
 using namespace denoise;
 using namespace light;
@@ -115,6 +125,7 @@ using namespace wire;
 using namespace ledger;
 using namespace image;
 using namespace store;
+using namespace volume;
 using namespace frame;
 using namespace attention;
 using namespace denoise;

@@ -29,6 +29,15 @@ const may_enter = {
     painting: ['picture', ''],
     open: ['format', 'painting', 'remote', 'picture', ''],
   },
+  volume: {
+    '': [],
+    format: [''],
+    reconstruct: [''],
+    compressed: [''],
+    compare: ['reconstruct', ''],
+    nebula: [''],
+    draw: ['reconstruct', ''],
+  },
   world: {
     '': [],
     motion: [''],

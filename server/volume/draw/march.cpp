@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/draw/march.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "volume/draw/along_ray.h"
+#include "volume/reconstruct/trilinear.h"
+
+namespace wellspring::volume {
+namespace {
+
+constexpr float nearly_opaque = 0.004f;  // share of light that comes through and changes no code
+constexpr float least_leap = 1e-3f;      // samples beyond a cell's border
+
+// Follows eight rays through one level.
+class March {
+ public:
+  March(const ShownVolume& volume, const DrawnPreset& preset, const VolumeRays& rays,
+        const MarchSettings& settings)
+      : level_(volume.levels[size_t(settings.level)]),
+        box_(level_.box()),
+        preset_(preset),
+        seen_(preset.seen[size_t(settings.level)]),
+        to_finest_(std::ldexp(1.0f, settings.level)) {
+    const ToSamples to_samples(volume, settings.level);
+    origin_ = to_samples.place(rays.origin), way_ = to_samples.way(rays.direction);
+    const Lanes speed = lanes_sqrt(dot(way_, way_));  // samples a metre
+    step_ = settings.step / speed;
+    near_ = rays.near, far_ = rays.far;
+    clip_to(origin_.x, way_.x, level_.size.x), clip_to(origin_.y, way_.y, level_.size.y),
+        clip_to(origin_.z, way_.z, level_.size.z);
+    for (const VolumeCut& cut : settings.cuts) clip_to(rays, cut);
+    // Normals are counted in samples; the transpose turns them to metres.
+    for (int i = 0; i < 3; i++)
+      normal_[i] = vec3(to_samples.turn[i][0], to_samples.turn[i][1], to_samples.turn[i][2]);
+    place_ = near_ + settings.jitter * step_;
+    toward_eye_ = -rays.direction;
+    if (preset.table.mode() == VolumeMode::maximum) follow_maximum();
+    else if (preset.table.mode() == VolumeMode::surface) find_surface();
+    else add_up();
+  }
+  MarchedLight found;
+
+ private:
+  const VolumeLevel& level_;
+  const SampleBox<uint16_t> box_;
+  const DrawnPreset& preset_;
+  const std::vector<uint8_t>& seen_;
+  const float to_finest_;
+  Lanes3 origin_, way_, toward_eye_;
+  Lanes step_, near_, far_, place_;
+  vec3 normal_[3];
+
+  void clip(const Lanes& distance, const Lanes& speed) {
+    // Keeps where distance + t * speed >= 0.
+    const Lanes at = -distance / speed;
+    near_ = speed > 0.0f ? lanes_max(near_, at) : near_;
+    far_ = speed < 0.0f ? lanes_min(far_, at) : far_;
+    far_ = (speed == 0.0f) & (distance < 0.0f) ? all_lanes(-INFINITY) : far_;
+  }
+  void clip_to(const Lanes& from, const Lanes& way, int size) {
+    clip(from + 0.5f, way);
+    clip(float(size) - 0.5f - from, -way);
+  }
+  void clip_to(const VolumeRays& rays, const VolumeCut& cut) {
+    clip(dot(rays.origin, all_lanes(cut.normal)) - cut.offset,
+         dot(rays.direction, all_lanes(cut.normal)));
+  }
+  Lanes3 at(const Lanes& place) const { return origin_ + way_ * place; }
+
+  // Returns the lanes whose cell shows something; moves the others to the end of theirs.
+  LaneMask leap(const LaneMask& active) {
+    LaneMask full{};
+    const Lanes3 p = at(place_);
+    for (unsigned bits = negative_lanes(active); bits != 0; bits &= bits - 1) {
+      const int k = std::countr_zero(bits);
+      const glm::ivec3 cell =
+          glm::clamp(glm::ivec3(glm::floor(p.at(k))) / cell_side, glm::ivec3(0), level_.cells - 1);
+      if (seen_[(size_t(cell.z) * size_t(level_.cells.y) + size_t(cell.y)) *
+                    size_t(level_.cells.x) +
+                size_t(cell.x)]) {
+        full[k] = -1;
+        continue;
+      }
+      const vec3 way = way_.at(k), from = origin_.at(k);
+      float end = INFINITY;
+      for (int axis = 0; axis < 3; axis++) {
+        if (way[axis] == 0) continue;
+        const bool up = way[axis] > 0;
+        const bool last = up ? cell[axis] + 1 == level_.cells[axis] : cell[axis] == 0;
+        if (last) continue;  // beyond it is the end of the volume
+        const float border = float((cell[axis] + up) * cell_side) + (up ? 1 : -1) * least_leap;
+        end = std::min(end, (border - from[axis]) / way[axis]);
+      }
+      // By whole steps, so that where a ray is sampled does not depend on cells.
+      const float steps = std::ceil((end - place_[k]) / step_[k]);
+      place_[k] = end == INFINITY ? INFINITY : place_[k] + std::max(steps, 1.0f) * step_[k];
+    }
+    return full;
+  }
+
+  // Returns the light that matter of this colour sends to the eye.
+  Lanes3 lit(const Lanes3& color, const Lanes3& p, const Lanes3& stored) const {
+    const VolumeLight& light = preset_.light;
+    const Lanes3 n = {stored.x * normal_[0].x + stored.y * normal_[0].y + stored.z * normal_[0].z,
+                      stored.x * normal_[1].x + stored.y * normal_[1].y + stored.z * normal_[1].z,
+                      stored.x * normal_[2].x + stored.y * normal_[2].y + stored.z * normal_[2].z};
+    const Lanes length2 = dot(n, n);
+    // Where neighbours disagree there is no surface: light goes all ways.
+    const Lanes surface = lanes_min(dot(stored, stored) * 2.0f, all_lanes(1));
+    const Lanes unit = 1.0f / lanes_sqrt(lanes_max(length2, all_lanes(1e-20f)));
+    const Lanes facing = dot(n, all_lanes(light.to_lamp)) * unit;
+    const Lanes diffuse = positive_lanes(facing) * surface + 0.25f * (1.0f - surface);
+    const Lanes3 half = toward_eye_ + all_lanes(light.to_lamp);
+    const Lanes along = positive_lanes(dot(n, half) * unit /
+                                       lanes_sqrt(lanes_max(dot(half, half), all_lanes(1e-12f))));
+    const Lanes two = along * along, four = two * two, eight = four * four;
+    const Lanes shine =
+        0.15f * eight * eight * four * surface * (facing > 0.0f ? all_lanes(1) : Lanes{});
+    const LightGrid& grid = preset_.grid;
+    const Lanes3 fine = (p + all_lanes(vec3(0.5f))) * all_lanes(to_finest_) - all_lanes(vec3(0.5f));
+    const Lanes3 node = fine * all_lanes(grid.scale);
+    const Lanes lamp = linear_value(whole_box(grid.lamp.data(), grid.size), node) * (1 / 255.0f);
+    const Lanes around =
+        linear_value(whole_box(grid.around.data(), grid.size), node) * (1 / 255.0f);
+    const Lanes3 from_lamp = all_lanes(light.lamp) * lamp;
+    return color * (from_lamp * diffuse + all_lanes(light.around) * around) + from_lamp * shine;
+  }
+
+  void add_up() {
+    found.clear = all_lanes(1), found.depth = all_lanes(INFINITY);
+    LaneMask active = place_ < far_;
+    while (any_lane(active)) {
+      const LaneMask full = leap(active);
+      if (any_lane(full)) {
+        const Lanes3 p = at(place_);
+        const LanesLit sample = linear_value_and_normal(box_, level_.normals.words.data(), p);
+        Lanes density;
+        const Lanes3 color = preset_.table.look(sample.value, density);
+        const Lanes through = fade(density * step_);
+        const LaneMask some = full & (density > 0.0f);
+        found.steps += std::popcount(negative_lanes(full));
+        if (any_lane(some)) {
+          const Lanes share = keep_lanes(some, found.clear * (1.0f - through));
+          found.color = found.color + lit(color, p, sample.normal) * share;
+          const Lanes after = some ? found.clear * through : found.clear;
+          found.depth = (found.clear > 0.5f) & (after <= 0.5f) ? place_ : found.depth;
+          found.clear = after;
+        }
+        place_ = full ? place_ + step_ : place_;
+      }
+      active = (place_ < far_) & (found.clear > nearly_opaque);
+    }
+  }
+
+  void find_surface() {
+    found.clear = all_lanes(1), found.depth = all_lanes(INFINITY);
+    const float threshold = preset_.table.threshold();
+    Lanes before = near_, value_before{};
+    LaneMask first = LaneMask{} - 1;  // nothing was read yet
+    LaneMask active = place_ < far_;
+    while (any_lane(active)) {
+      const LaneMask full = leap(active);
+      if (any_lane(full)) {
+        const Lanes value = linear_value(box_, at(place_));
+        found.steps += std::popcount(negative_lanes(full));
+        const LaneMask hit = full & (value >= threshold) & (found.clear > 0.5f);
+        if (any_lane(hit)) {
+          const LaneMask crossed = hit & ~first & (value_before < threshold);
+          const Lanes way = (threshold - value_before) / (value - value_before);
+          const Lanes place = crossed ? before + (place_ - before) * way : place_;
+          const Lanes3 p = at(place);
+          const LanesLit there = linear_value_and_normal(box_, level_.normals.words.data(), p);
+          Lanes density;
+          const Lanes3 color =
+              preset_.table.look(lanes_max(there.value, all_lanes(threshold)), density);
+          const Lanes3 light = lit(color, p, there.normal);
+          found.color = choose(hit, light, found.color);
+          found.depth = hit ? place : found.depth;
+          found.clear = hit ? Lanes{} : found.clear;
+        }
+        before = full ? place_ : before, value_before = full ? value : value_before;
+        first &= ~full;
+        place_ = full ? place_ + step_ : place_;
+      }
+      active = (place_ < far_) & (found.clear > 0.5f);
+      // What was leapt over lies below the threshold.
+    }
+  }
+
+  void follow_maximum() {
+    Lanes most = all_lanes(-1), where = all_lanes(INFINITY);
+    LaneMask active = place_ < far_;
+    while (any_lane(active)) {
+      const LaneMask full = leap(active);
+      if (any_lane(full)) {
+        const Lanes value = linear_value(box_, at(place_));
+        found.steps += std::popcount(negative_lanes(full));
+        const LaneMask more = full & (value > most);
+        most = more ? value : most, where = more ? place_ : where;
+        place_ = full ? place_ + step_ : place_;
+      }
+      active = place_ < far_;
+    }
+    Lanes opacity;
+    const Lanes3 color = preset_.table.look(positive_lanes(most), opacity);
+    opacity = keep_lanes(most >= 0.0f, lanes_min(opacity, all_lanes(1)));
+    found.color = color * opacity;
+    found.clear = 1.0f - opacity;
+    found.depth = opacity > 0.5f ? where : all_lanes(INFINITY);
+  }
+};
+
+}  // namespace
+
+DrawnPreset::DrawnPreset(const ShownVolume& volume, const Preset& preset, const VolumeLight& of)
+    : table(preset, volume), light(of), grid(make_light_grid(volume, table, of)) {
+  for (const VolumeLevel& level : volume.levels) {
+    std::vector<uint8_t>& cells = seen.emplace_back();
+    for (const CodeRange& range : level.ranges) cells.push_back(!table.is_empty(range));
+  }
+}
+
+MarchedLight march(const ShownVolume& volume, const DrawnPreset& preset, const VolumeRays& rays,
+                   const MarchSettings& settings) {
+  return March(volume, preset, rays, settings).found;
+}
+
+int level_for(const ShownVolume& volume, double footprint) {
+  const double levels = std::log2(std::max(footprint / volume.voxel, 1.0));
+  return std::min(int(levels), int(volume.levels.size()) - 1);
+}
+
+}  // namespace wellspring::volume

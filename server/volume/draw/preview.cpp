@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/draw/preview.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace wellspring::volume {
+namespace {
+
+constexpr float eye_distance = 2.5f;  // radii of the sphere around the volume
+constexpr float room = 1.06f;         // picture's width over the sphere's
+
+}  // namespace
+
+VolumeLight preview_light() {
+  return {
+      .to_lamp = normalize(vec3(-0.5f, 0.75f, 0.6f)), .lamp = vec3(0.95f), .around = vec3(0.35f)};
+}
+
+VolumePicture draw_volume(const ShownVolume& volume, const DrawnPreset& preset,
+                          const PreviewView& view) {
+  const glm::dvec3 last = glm::dvec3(volume.levels.front().size) - 1.0;
+  const vec3 centre(volume.to_metres * glm::dvec4(0.5 * last, 1));
+  float radius = 0;
+  for (int corner = 0; corner < 8; corner++) {
+    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+    const vec3 place(volume.to_metres * glm::dvec4(side * (last + 1.0) - 0.5, 1));
+    radius = std::max(radius, length(place - centre));
+  }
+  const float up = std::sin(view.rise), level = std::cos(view.rise);
+  const vec3 from = vec3(std::sin(view.turn) * level, up, std::cos(view.turn) * level);
+  const vec3 eye = centre + from * (eye_distance * radius);
+  const vec3 right = normalize(cross(vec3(0, 1, 0), from)), above = cross(from, right);
+  const float half = room / std::sqrt(eye_distance * eye_distance - 1);  // tangent
+  const float pixel = 2 * half / float(view.side);
+  MarchSettings settings;
+  settings.level = level_for(volume, double(pixel * (eye_distance - 1) * radius));
+  settings.step = view.step;
+  settings.cuts = view.cuts;
+  VolumePicture picture{view.side, view.side, {}, {}};
+  picture.color.resize(size_t(view.side) * size_t(view.side));
+  picture.clear.resize(picture.color.size());
+  std::atomic<int64_t> steps{0};
+  parallel_each(view.side, [&](int y) {
+    VolumeRays rays;
+    rays.origin = all_lanes(eye);
+    for (int x = 0; x < view.side; x += lane_count) {
+      for (int k = 0; k < lane_count; k++) {
+        const vec3 way = normalize(right * ((float(x + k) + 0.5f) * pixel - half) -
+                                   above * ((float(y) + 0.5f) * pixel - half) - from);
+        rays.direction.set(k, way);
+      }
+      rays.near = Lanes{}, rays.far = all_lanes(INFINITY);
+      const MarchedLight found = march(volume, preset, rays, settings);
+      steps += found.steps;
+      for (int k = 0; k < std::min(lane_count, view.side - x); k++) {
+        const size_t at = size_t(y) * size_t(view.side) + size_t(x + k);
+        picture.color[at] = found.color.at(k), picture.clear[at] = found.clear[k];
+      }
+    }
+  });
+  picture.steps = steps;
+  return picture;
+}
+
+}  // namespace wellspring::volume

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws a volume by itself, as somebody sees it who stands before it.
+#pragma once
+#include <vector>
+
+#include "volume/draw/march.h"
+
+namespace wellspring::volume {
+
+struct VolumePicture {
+  int width = 0, height = 0;
+  std::vector<vec3> color;   // linear light of the volume, rows from the top
+  std::vector<float> clear;  // share of the light behind it that comes through
+  int64_t steps = 0;         // samples that were read
+};
+
+// Holds how a volume is looked at: from its front, turned around the upright axis.
+struct PreviewView {
+  int side = 480;     // pixels, both ways
+  float turn = 0.5f;  // radians to the left
+  float rise = 0.2f;  // radians from above
+  float step = 0.7f;  // samples
+  std::vector<VolumeCut> cuts;
+};
+
+VolumePicture draw_volume(const ShownVolume& volume, const DrawnPreset& preset,
+                          const PreviewView& view);
+
+// Returns the light in which presets are looked at: a lamp from the upper left, before the volume.
+VolumeLight preview_light();
+
+}  // namespace wellspring::volume
