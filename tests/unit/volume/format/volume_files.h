@@ -86,7 +86,7 @@ inline std::string pack(const std::string& bytes, bool as_gzip = true, int level
   state.next_out = reinterpret_cast<Bytef*>(packed.data());
   state.avail_out = uInt(packed.size());
   deflate(&state, Z_FINISH);
-  packed.resize(packed.size() - state.avail_out);
+  packed.resize(size_t(state.total_out));
   deflateEnd(&state);
   return packed;
 }
