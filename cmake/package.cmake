@@ -85,7 +85,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_SERVER_PACKAGE_NAME wellspring)
 set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "adduser, ca-certificates, init-system-helpers")
-set(CPACK_DEBIAN_SERVER_PACKAGE_RECOMMENDS "libvips-tools, fonts-dejavu-core, fonts-urw-base35")
+set(CPACK_DEBIAN_SERVER_PACKAGE_RECOMMENDS "libvips-tools, dcm2niix, fonts-dejavu-core, fonts-urw-base35")
 set(CPACK_DEBIAN_SERVER_DESCRIPTION
   "Serves virtual museums to browsers, ray-traced for every visitor, with a storyteller.")
 set(CPACK_DEBIAN_KIOSK_PACKAGE_NAME wellspring-kiosk)

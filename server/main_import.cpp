@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs `wellspring import picture FILE...`: makes tiled TIFFs with smaller versions inside of
-// pictures of any format that vips reads, for `pieces` of exhibit.json. Exit status: 0 done, 1 the
-// input is wrong, 2 the command line is wrong.
+// pictures of any format that vips reads, for `pieces` of exhibit.json; and `wellspring import
+// volume PATH`: reads a scanned volume, of DICOM by dcm2niix, and puts it into an exhibit. Exit
+// status: 0 done, 1 the input is wrong, 2 the command line is wrong.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <unistd.h>
 
@@ -13,7 +15,9 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "main_import_volume.h"
 #include "store/open/open_picture.h"
+#include "volume/format/raw_json.h"
 
 using namespace wellspring;
 using namespace wellspring::program;
@@ -95,7 +99,7 @@ void import_picture(const Options& options, const std::string& file) {
 int main(int argc, char** argv) {
   if (answer_version(argc, argv)) return 0;
   log::start("import");
-  CLI::App app{"Makes of a large file what an exhibit can show a part of."};
+  CLI::App app{"Makes of large files and of scans what an exhibit can show."};
   app.require_subcommand(1);
   Options options;
   CLI::App& picture = *app.add_subcommand(
@@ -108,12 +112,35 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   picture.add_flag("--overwrite", options.overwrite, "replace what is there");
+  VolumeImport scan;
+  CLI::App& volume = *app.add_subcommand(
+      "volume", "a scan, for an exhibit: checks it, copies it, prints a piece for exhibit.json");
+  volume
+      .add_option("path", scan.path,
+                  "a folder of DICOM, or NIfTI, Analyze, NRRD, MetaImage, SLC, or JSON of raw "
+                  "samples")
+      ->required();
+  volume.add_option("--out", scan.out, "folder for the volume")->capture_default_str();
+  volume
+      .add_option("--series", scan.series, "of DICOM, as they are listed; that with most samples")
+      ->check(CLI::Range(1, 100000));
+  volume.add_option("--time", scan.time, "of several in a file, from 0, to be looked at")
+      ->check(CLI::Range(0, 1 << 20));
+  volume.add_flag("--overwrite", scan.overwrite, "replace what is there");
+  volume.add_flag_callback(
+      "--raw-schema",
+      [] {
+        std::cout << raw_json_schema().dump(2) << "\n";
+        throw CLI::Success();
+      },
+      "print the JSON Schema of the file that describes raw samples");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
+    if (volume.parsed()) return import_volume(scan), 0;
     fs::create_directories(options.out);
     for (const std::string& file : options.files) import_picture(options, file);
     return 0;

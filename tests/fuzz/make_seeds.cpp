@@ -14,6 +14,7 @@
 #include "unit/folder.h"
 #include "unit/show/exhibit/room_package.h"
 #include "unit/store/format/pictures.h"
+#include "unit/volume/format/volume_files.h"
 
 namespace wellspring::test {
 namespace {
@@ -215,6 +216,51 @@ void write_large_pictures(const Corpus& corpus) {
   corpus.put("plain_picture", "small.png", png_of(5, 3, pattern));
 }
 
+// The first byte is the number of the name in fuzz_volume_file.cpp.
+void write_volumes(const Corpus& corpus) {
+  const auto put = [&](const char* name, char number, const std::string& bytes) {
+    corpus.put("volume_file", name, std::string(1, number) + bytes);
+  };
+  NiftiFile nifti;
+  nifti.dim = {4, 2, 3, 2, 2}, nifti.type = 4, nifti.sform_code = nifti.qform_code = 1;
+  nifti.slope = 2;
+  const std::string samples(48, 'a');
+  put("one.nii", 0, nifti.header() + samples);
+  put("packed.nii.gz", 1, pack(nifti.header() + samples));
+  nifti.is_big = true, nifti.sform_code = 0;
+  put("big.nii", 0, nifti.header() + samples);
+  nifti.is_version_2 = true;
+  put("version_2.nii", 0, nifti.header() + samples);
+  nifti.is_version_2 = false, nifti.type = 2304, nifti.magic = "ni1";
+  put("pair.hdr", 2, nifti.header());
+  nifti.type = 2, nifti.magic = "", nifti.orient = 1;
+  put("analyze.hdr", 2, nifti.header());
+  const std::string nrrd = "NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nendian: big\n";
+  put("vectors.nrrd", 3,
+      nrrd +
+          "encoding: raw\nspace: LPS\nspace directions: (1,0,0) (0,1,0) (0,0.5,1)\n"
+          "space origin: (1,2,3)\nbyte skip: -1\n\n" +
+          samples);
+  put("packed.nrrd", 3, nrrd + "encoding: gzip\nspacings: 1 2 3\n\n" + pack(samples));
+  put("numbered.nhdr", 4, nrrd + "encoding: raw\ndata file: volume.%d 1 2 1\nline skip: 1\n");
+  put("listed.nhdr", 4, nrrd + "encoding: raw\ndata file: LIST\nvolume.1\nvolume.2\n");
+  put("color.nrrd", 3,
+      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 2 2\nencoding: raw\n"
+      "kinds: RGB-color domain domain\n\n" +
+          samples);
+  const std::string meta =
+      "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_FLOAT\n"
+      "TransformMatrix = 0 1 0 1 0 0 0 0 1\nOffset = 1 2 3\nElementSpacing = 1 2 3\n";
+  put("local.mha", 5,
+      meta + "CompressedData = True\nElementDataFile = LOCAL\n" + pack(samples, false));
+  put("beside.mhd", 6, meta + "HeaderSize = -1\nElementDataFile = volume.raw\n");
+  put("runs.slc", 7,
+      std::string("11111\n2 2 2 8\n1 1 1\n1 7 0 1\n1 1 Xrgb2X\x04q5X\x82") + "ab\x02z");
+  put("raw.json", 8,
+      R"({"file": "volume.raw", "size": [2, 3, 4], "kind": "i16", "spacing_mm": [1, 2, 3],)"
+      R"( "byte_order": "big", "origin": [0, 0, 1], "axes": "RAS", "slope": 2})");
+}
+
 }  // namespace
 }  // namespace wellspring::test
 
@@ -232,5 +278,6 @@ int main(int argc, char** argv) {
   write_weights(corpus);
   write_sums(corpus);
   write_large_pictures(corpus);
+  write_volumes(corpus);
   return 0;
 }
