@@ -366,6 +366,7 @@ std::vector<ReportPage> declared_pages() {
           load_visitors_page(),
           load_seats_page(),
           pieces_picture_page(),
+          volume_compressed_page(),
           light_frame_page(),
           light_scaling_page(),
           splat_page(),

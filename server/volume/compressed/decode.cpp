@@ -18,57 +18,126 @@ namespace {
 using ShortLanes = uint16_t __attribute__((vector_size(32)));
 using ByteLanes = uint8_t __attribute__((vector_size(32)));
 
-// A block's codevectors, as indices into the tables.
+// Finds a block's codevectors, as indices into the tables.
 struct BlockEntries {
   size_t entry[most_code_levels];
   int levels;
 };
 
-inline BlockEntries entries_of(const CompressedVolume& volume, size_t block) {
-  BlockEntries found;
-  found.levels = volume.levels;
-  uint64_t code = volume.code(block);
-  const int bits = index_bits(volume.codevectors);
-  const uint64_t mask = (uint64_t(1) << bits) - 1;
-  for (int level = 0; level < volume.levels; level++, code >>= bits)
-    found.entry[level] = (size_t(level) << bits) + size_t(code & mask);
-  return found;
-}
+class EntryReader {
+ public:
+  explicit EntryReader(const CompressedVolume& volume)
+      : codes_(volume.codes),
+        levels_(volume.levels),
+        bits_(index_bits(volume.codevectors)),
+        mask_((uint64_t(1) << bits_) - 1) {}
+  void read(BlockEntries& entries, size_t block) const {
+    const uint64_t at = block * uint64_t(levels_ * bits_);
+    uint64_t code;
+    std::memcpy(&code, codes_ + at / 8, sizeof code);
+    code >>= at & 7;
+    entries.levels = levels_;
+    for (int level = 0; level < levels_; level++, code >>= bits_)
+      entries.entry[level] = (size_t(level) << bits_) + size_t(code & mask_);
+  }
 
-// Cuts sixteen sums, which count from -rgb_below, to 0 to 255.
-inline ShortLanes cut_shorts(ShortLanes sums) {
+ private:
+  const std::byte* codes_;
+  int levels_, bits_;
+  uint64_t mask_;
+};
+
+// Cuts sixteen numbers, which count from -rgb_below, to 0 to 255.
+inline ShortLanes cut_shorts(ShortLanes numbers) {
   constexpr uint16_t least = rgb_below, most = rgb_below + 255;
-  sums = sums > least ? sums : ShortLanes{} + least;
-  sums = sums < most ? sums : ShortLanes{} + most;
-  return sums - least;
+  numbers = numbers > least ? numbers : ShortLanes{} + least;
+  numbers = numbers < most ? numbers : ShortLanes{} + most;
+  return numbers - least;
 }
 
-// Returns two rows of four colours, each in the first 12 bytes of a half.
-inline ByteLanes rows_of_colors(LaneBits sums) {
-  const LaneBits red_green = (sums >> 5 & 0x07ff0000u) | (sums >> 10 & 0x7ffu);
-  const ShortLanes red_green_cut = cut_shorts(lanes_as<ShortLanes>(red_green) >> 2);
-  const ShortLanes blue = cut_shorts(lanes_as<ShortLanes>(sums & 1023u) >> 1);
-  const ByteLanes bytes = lanes_as<ByteLanes>(red_green_cut | blue << 8);
-  return __builtin_shufflevector(bytes, bytes, 2, 0, 1, 6, 4, 5, 10, 8, 9, 14, 12, 13, 3, 3, 3, 3,
-                                 18, 16, 17, 22, 20, 21, 26, 24, 25, 30, 28, 29, 19, 19, 19, 19);
+inline ShortLanes red_green_of(LaneBits sums) {
+  return cut_shorts(lanes_as<ShortLanes>((sums >> 12 & 0x1ffu) | (sums >> 7 & 0x01ff0000u)));
+}
+
+// Turns sixteen sums into four rows of four colours, each in the first 12 bytes of a half.
+inline void rows_of_colors(ByteLanes (&rows)[2], LaneBits first, LaneBits second) {
+  // Bytes of a lane: green and red, of the first and the second in turns; blue of either.
+  const ByteLanes red_green = lanes_as<ByteLanes>(red_green_of(first) | red_green_of(second) << 8);
+  const ByteLanes blue = lanes_as<ByteLanes>(
+      cut_shorts(lanes_as<ShortLanes>((first >> 1 & 0x1ffu) | (second << 15 & 0x01ff0000u))));
+  rows[0] = __builtin_shufflevector(red_green, blue, 2, 0, 32, 6, 4, 36, 10, 8, 40, 14, 12, 44, 33,
+                                    33, 33, 33, 18, 16, 48, 22, 20, 52, 26, 24, 56, 30, 28, 60, 49,
+                                    49, 49, 49);
+  rows[1] = __builtin_shufflevector(red_green, blue, 3, 1, 34, 7, 5, 38, 11, 9, 42, 15, 13, 46, 33,
+                                    33, 33, 33, 19, 17, 50, 23, 21, 54, 27, 25, 58, 31, 29, 62, 49,
+                                    49, 49, 49);
 }
 
 // Writes a block of colours of 1:1. `line` and `slice` lead to the next y and z, in samples.
 template <int known_levels>
 inline void write_colors(uint8_t* to, const CompressedVolume& volume, const BlockEntries& entries,
                          size_t line, size_t slice) {
-  const uint32_t* words = volume.words.data();
   const uint32_t* from[most_code_levels];
   const int levels = known_levels > 0 ? known_levels : entries.levels;
   for (int level = 0; level < levels; level++)
-    from[level] = words + entries.entry[level] * block_voxels;
-  for (int i = 0; i < block_voxels; i += lane_count) {
+    from[level] = volume.words.data() + entries.entry[level] * block_voxels;
+  const auto sum = [&](int i) {
     LaneBits sums = load_lanes<LaneBits>(from[0] + i);
     for (int level = 1; level < levels; level++) sums += load_lanes<LaneBits>(from[level] + i);
-    const ByteLanes rows = rows_of_colors(sums);
-    uint8_t* place = to + size_t(i / 16) * slice + size_t(i / 4 % 4) * line;
-    std::memcpy(place, &rows, 12);
-    std::memcpy(place + line, reinterpret_cast<const uint8_t*>(&rows) + 16, 12);
+    return sums;
+  };
+  for (int z = 0; z < block_side; z++, to += slice) {
+    ByteLanes rows[2];
+    rows_of_colors(rows, sum(16 * z), sum(16 * z + lane_count));
+    for (int y = 0; y < block_side; y++)
+      std::memcpy(to + size_t(y) * line, reinterpret_cast<const uint8_t*>(rows) + 16 * y, 12);
+  }
+}
+
+// Rounds and cuts colours, a byte each: red in the lowest.
+inline LaneBits bytes_of_colors(Lanes red, Lanes green, Lanes blue) {
+  const auto cut = [](Lanes x) {
+    return to_whole(lanes_min(lanes_max(x, Lanes{}), all_lanes(255)) + 0.5f);
+  };
+  return cut(red) | cut(green) << 8 | cut(blue) << 16;
+}
+
+// The same at 2:1.
+inline void write_half_colors(uint8_t* to, const CompressedVolume& volume,
+                              const BlockEntries& entries, size_t line, size_t slice) {
+  Lanes red{}, green{}, blue{};
+  for (int level = 0; level < entries.levels; level++) {
+    const float* from = &volume.halves[24 * entries.entry[level]];
+    red += load_lanes(from), green += load_lanes(from + 8), blue += load_lanes(from + 16);
+  }
+  const ByteLanes bytes = lanes_as<ByteLanes>(bytes_of_colors(red, green, blue));
+  const ByteLanes rows =
+      __builtin_shufflevector(bytes, bytes, 0, 1, 2, 4, 5, 6, 3, 3, 8, 9, 10, 12, 13, 14, 3, 3, 16,
+                              17, 18, 20, 21, 22, 19, 19, 24, 25, 26, 28, 29, 30, 19, 19);
+  const uint8_t* from = reinterpret_cast<const uint8_t*>(&rows);
+  std::memcpy(to, from, 6);
+  std::memcpy(to + line, from + 8, 6);
+  std::memcpy(to + slice, from + 16, 6);
+  std::memcpy(to + slice + line, from + 24, 6);
+}
+
+// The same at 4:1.
+inline void write_quarter_color(uint8_t* to, const CompressedVolume& volume,
+                                const BlockEntries& entries) {
+  HalfLanes sums{};
+  for (int level = 0; level < entries.levels; level++)
+    sums += load_lanes<HalfLanes>(&volume.quarters[4 * entries.entry[level]]);
+  constexpr HalfLanes none{}, most{255, 255, 255, 255};
+  sums = sums > none ? sums : none;
+  sums = sums < most ? sums : most;
+  for (int channel = 0; channel < 3; channel++) to[channel] = uint8_t(int(sums[channel] + 0.5f));
+}
+
+// Asks for the codevectors of colours that are needed next.
+inline void prefetch(const CompressedVolume& volume, const BlockEntries& entries) {
+  for (int level = 0; level < entries.levels; level++) {
+    const uint32_t* from = volume.words.data() + entries.entry[level] * block_voxels;
+    for (int i = 0; i < block_voxels; i += 16) __builtin_prefetch(from + i);
   }
 }
 
@@ -121,12 +190,13 @@ inline Sample to_sample(float sum, float slope, float intercept) {
 }
 
 template <class Sample>
-void write_block(Sample* to, const CompressedVolume& volume, size_t block, int detail, size_t line,
-                 size_t slice) {
-  const BlockEntries entries = entries_of(volume, block);
+void write_block(Sample* to, const CompressedVolume& volume, const BlockEntries& entries,
+                 int detail, size_t line, size_t slice) {
   if constexpr (std::is_same_v<Sample, uint8_t>)
-    if (volume.channels == 3 && detail == 0) {
-      if (volume.levels == 4) write_colors<4>(to, volume, entries, line, slice);
+    if (volume.channels == 3) {
+      if (detail == 2) write_quarter_color(to, volume, entries);
+      else if (detail == 1) write_half_colors(to, volume, entries, line, slice);
+      else if (entries.levels == 4) write_colors<4>(to, volume, entries, line, slice);
       else write_colors<0>(to, volume, entries, line, slice);
       return;
     }
@@ -184,12 +254,21 @@ void decode_box(std::span<Sample> samples, const CompressedVolume& volume, int d
   const int side = block_side >> detail;
   const glm::ivec3 last = inside.first + inside.size, blocks = volume.blocks();
   const glm::ivec3 first_block = inside.first / side, end_block = (last + side - 1) / side;
+  const bool ahead = volume.channels == 3 && detail == 0;
+  const EntryReader reader(volume);
   Sample whole[3 * block_voxels];
   for (int z = first_block.z; z < end_block.z; z++)
-    for (int y = first_block.y; y < end_block.y; y++)
+    for (int y = first_block.y; y < end_block.y; y++) {
+      size_t block =
+          (size_t(z) * size_t(blocks.y) + size_t(y)) * size_t(blocks.x) + size_t(first_block.x);
+      BlockEntries next;
+      reader.read(next, block);
       for (int x = first_block.x; x < end_block.x; x++) {
-        const size_t block =
-            (size_t(z) * size_t(blocks.y) + size_t(y)) * size_t(blocks.x) + size_t(x);
+        const BlockEntries entries = next;
+        if (x + 1 < end_block.x) {
+          reader.read(next, ++block);
+          if (ahead) prefetch(volume, next);
+        }
         const glm::ivec3 origin = glm::ivec3(x, y, z) * side;
         const glm::ivec3 begin = glm::max(origin, inside.first);
         const glm::ivec3 end = glm::min(origin + side, last);
@@ -197,11 +276,11 @@ void decode_box(std::span<Sample> samples, const CompressedVolume& volume, int d
                      size_t(begin.y - box.first.y) * line +
                      size_t(begin.x - box.first.x) * channels;
         if (end - begin == glm::ivec3(side)) {
-          write_block(to, volume, block, detail, line, slice);
+          write_block(to, volume, entries, detail, line, slice);
           continue;
         }
         const size_t row = size_t(side) * channels;
-        write_block(whole, volume, block, detail, row, row * size_t(side));
+        write_block(whole, volume, entries, detail, row, row * size_t(side));
         for (int k = begin.z; k < end.z; k++)
           for (int j = begin.y; j < end.y; j++) {
             const glm::ivec3 at = glm::ivec3(begin.x, j, k) - origin;
@@ -211,6 +290,7 @@ void decode_box(std::span<Sample> samples, const CompressedVolume& volume, int d
                 to + size_t(k - begin.z) * slice + size_t(j - begin.y) * line);
           }
       }
+    }
   if (inside.size != box.size) fill_outside(samples.data(), box, inside, channels);
 }
 

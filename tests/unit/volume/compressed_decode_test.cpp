@@ -75,8 +75,9 @@ void expect_rounded(const CompressedVolume& volume, int detail) {
   for (size_t i = 0; i < exact.size(); i++) {
     const double sum = (double(exact[i]) - volume.intercept) / volume.slope;
     EXPECT_NEAR(double(rounded[i]), std::clamp(sum, least, most), 0.505) << i;
-    if (volume.channels == 3 && detail == 0)
+    if (volume.channels == 3 && detail == 0) {
       EXPECT_EQ(double(rounded[i]), std::floor(std::clamp(sum, least, most) + 0.5)) << i;
+    }
   }
 }
 
