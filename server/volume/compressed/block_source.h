@@ -15,7 +15,7 @@ struct BlockSource {
   SampleKind kind = SampleKind::u8;  // u8, u16 or i16; colours u8
   bool brought = false;              // coded sample: round((s - least) * scale)
   double least = 0, scale = 1;
-  double slope = 1, intercept = 0;  // of the coded samples
+  double slope = 1, intercept = 0;  // coded samples measure this
   int dimensions() const { return 64 * volume.channels; }
 };
 

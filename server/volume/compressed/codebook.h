@@ -22,7 +22,7 @@ struct Codebook {
 Codebook make_codebook(int dimensions, std::vector<float> vectors);
 
 // Sets `nearest` to the index of the codevector nearest to each of the rows, which lie one after
-// the other, by the matrix product |x|^2 - 2 x.c + |c|^2; of equally near ones the first. Where its
+// the other, by the matrix product |x|^2 - 2 x.c + |c|^2; of equally near ones the first. If its
 // rounding could hide which of very near ones is nearest, all differences are computed.
 void find_nearest(std::span<int> nearest, const Codebook& codebook, const float* rows);
 

@@ -14,11 +14,11 @@ namespace wellspring::volume {
 
 struct CompressionSettings {
   int levels = 4;          // 1 to 8
-  int codevectors = 4096;  // of each level, 1 to 65536; a code has at most 56 bits
+  int codevectors = 4096;  // a level, 1 to 65536; a code has at most 56 bits
   // Codebooks are trained on this part of all blocks, but on no fewer and no more than these.
   double training_share = 0.05;
   int least_training_blocks = 1 << 14, most_training_blocks = 1 << 17;
-  int most_rounds = 12;  // of k-means, for each level
+  int most_rounds = 12;  // rounds of k-means a level
   uint64_t seed = 1;
   // Blocks of which no sample is above this are background: they are not trained on, and become
   // one flat colour, their mean. Without it blocks of zeros are background. Samples before slope

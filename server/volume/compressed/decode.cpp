@@ -15,7 +15,7 @@ namespace wellspring::volume {
 
 namespace {
 
-using ShortLanes = uint16_t __attribute__((vector_size(32)));
+using ShortLanes = int16_t __attribute__((vector_size(32)));
 using ByteLanes = uint8_t __attribute__((vector_size(32)));
 
 // Finds a block's codevectors, as indices into the tables.
@@ -49,7 +49,7 @@ class EntryReader {
 
 // Cuts sixteen numbers, which count from -rgb_below, to 0 to 255.
 inline ShortLanes cut_shorts(ShortLanes numbers) {
-  constexpr uint16_t least = rgb_below, most = rgb_below + 255;
+  constexpr int16_t least = rgb_below, most = rgb_below + 255;
   numbers = numbers > least ? numbers : ShortLanes{} + least;
   numbers = numbers < most ? numbers : ShortLanes{} + most;
   return numbers - least;

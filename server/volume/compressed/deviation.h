@@ -11,9 +11,9 @@
 namespace wellspring::volume {
 
 struct Deviation {
-  double mean_square = 0;                   // of coded samples, 0 to 255 or 65535
+  double mean_square = 0;                   // coded samples are 0 to 255 or 65535
   double decibel = 0;                       // peak signal to noise; infinite if nothing was lost
-  double bits_a_voxel = 0;                  // of the whole file: header, codes, codebooks, ranges
+  double bits_a_voxel = 0;                  // counts header, codes, codebooks, ranges
   uint64_t foreground = 0, background = 0;  // blocks
 };
 

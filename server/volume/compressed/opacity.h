@@ -34,7 +34,7 @@ class OpacityTable {
 
   int side_ = 0;
   std::vector<float> opacities_;
-  std::vector<std::vector<float>> greatest_;  // of cells of 1, 2, 4, .. colours along each axis
+  std::vector<std::vector<float>> greatest_;  // cells are 1, 2, 4, .. colours wide
   std::vector<int> sides_;
 };
 

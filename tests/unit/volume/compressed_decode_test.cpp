@@ -160,7 +160,7 @@ TEST(CompressedFetch, BetweenVoxelsIsTheirTrilinearMean) {
   };
   const auto at = [&](int x, int y, int z) { return fetch(compressed, {x, y, z}); };
   near({5, 6, 7}, at(5, 6, 7));
-  near({3.25f, 6, 7}, at(3, 6, 7) * 0.75f + at(4, 6, 7) * 0.25f);  // of two blocks
+  near({3.25f, 6, 7}, at(3, 6, 7) * 0.75f + at(4, 6, 7) * 0.25f);  // two blocks'
   near({5, 3.5f, 2}, (at(5, 3, 2) + at(5, 4, 2)) * 0.5f);
   glm::vec3 eight(0);
   for (int i = 0; i < 8; i++) eight += at(3 + (i & 1), 7 + (i >> 1 & 1), 3 + (i >> 2)) / 8.f;
