@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks for the first boundary along eight lines at once, to both sides of their middles.
+#pragma once
+#include <vector>
+
+#include "volume/compare/density.h"
+
+namespace wellspring::volume {
+
+// Half a voxel is one step. Middles and steps are in index.
+inline constexpr double steps_per_voxel = 2;
+inline constexpr int most_line_steps = 128;
+
+struct LineBatch {
+  Lanes3 middle, step;
+  Lanes limit{};  // steps from the middle beyond which nothing counts; negative: the line is unused
+};
+
+struct LineHits {
+  Lanes offset{};    // steps from the middle, negative against the line's direction
+  LaneMask found{};  // all bits where a boundary was found
+};
+
+// Derivatives are weighted sums of differences; this many of them are a slope of 1 per step.
+inline constexpr float derivative_scale = 6;
+
+// Finds the peak or valley nearest to the middle whose slope exceeds `threshold` per step; if
+// `falling`, valleys alone.
+LineHits first_boundaries(const DensityField& field, const LineBatch& lines, float threshold,
+                          bool falling);
+
+// Returns the slopes per step along the first line at -steps, ..., 0, ..., steps.
+std::vector<float> line_slopes(const DensityField& field, const LineBatch& lines, int steps);
+
+}  // namespace wellspring::volume
