@@ -14,22 +14,19 @@ namespace {
 
 // Cones that are narrower are their axis: other rays would find the same place.
 constexpr float narrowest_cone = 1.5f * pi / 180;
-// Nearer boundaries are not looked for once one is this near, in steps.
-constexpr float near_enough = 0.01f;
+// Nearer boundaries are not looked for once one is this near, in voxels.
+constexpr float near_enough = 0.005f;
 
 struct ConeSearch {
   const DensityField& field;
   const ConeSettings& settings;
-  float threshold = 0;  // slope per step
-  float reach = 0;      // steps
-  double step = 0;      // metres
-  mat3 to_step{1};      // from a unit direction in metres to a step in index
+  float reach = 0;  // metres
 };
 
 // The nearest boundary that was found from a point so far.
 struct NearestBoundary {
   vec3 ray{0};
-  float offset = 0;  // steps
+  float offset = 0;  // metres
   bool found = false;
 };
 
@@ -43,49 +40,68 @@ vec3 middle_of(const ConeSearch& search, const SurfacePoint& point) {
   return vec3(search.field.to_index * glm::dvec4(point.position, 1));
 }
 
+// Collects lines, and what a step of each is worth.
+struct ConeLines {
+  const ConeSearch& search;
+  LineBatch lines{};
+  float metres[lane_count] = {};
+
+  explicit ConeLines(const ConeSearch& search) : search(search) { clear(); }
+  void clear() { lines.limit = all_lanes(-1); }
+  void set(int lane, vec3 middle, vec3 ray) {
+    const LineScale scale = line_scale(search.field, ray, search.settings.threshold);
+    lines.middle.set(lane, middle);
+    lines.step.set(lane, scale.step);
+    lines.threshold[lane] = float(scale.threshold);
+    metres[lane] = float(scale.metres);
+  }
+  // Boundaries farther away than `limit` metres do not count.
+  void limit(int lane, float limit) {
+    lines.limit[lane] = std::min(limit / metres[lane], float(most_line_steps - 1));
+  }
+  LineHits look() const {
+    return first_boundaries(search.field, lines, search.settings.boundary == Boundary::falling);
+  }
+};
+
 // Finds the boundaries along the axes of eight points.
 void search_axes(const ConeSearch& search, const SurfacePoint* points, int count,
                  NearestBoundary* nearest) {
-  LineBatch lines;
-  for (int i = 0; i < lane_count; i++) {
-    const bool used = i < count && can_measure(points[i]);
-    lines.limit[i] = used ? search.reach : -1;
-    if (!used) continue;
-    lines.middle.set(i, middle_of(search, points[i]));
-    lines.step.set(i, search.to_step * points[i].normal);
+  ConeLines lines(search);
+  for (int i = 0; i < count; i++) {
+    if (!can_measure(points[i])) continue;
+    lines.set(i, middle_of(search, points[i]), points[i].normal);
+    lines.limit(i, search.reach);
   }
-  const LineHits hits = first_boundaries(search.field, lines, search.threshold,
-                                         search.settings.boundary == Boundary::falling);
+  const LineHits hits = lines.look();
   for (int i = 0; i < count; i++)
-    nearest[i] = {points[i].normal, hits.offset[i], hits.found[i] != 0};
+    nearest[i] = {points[i].normal, hits.offset[i] * lines.metres[i], hits.found[i] != 0};
 }
 
-// Shoots rays from one point, eight at a time, and calls each(ray, offset) for each that meets a
-// boundary. `limit` returns how many steps away boundaries still count.
+// Shoots rays from one point, eight at a time, and calls each(ray, offset in metres) for each that
+// meets a boundary. `limit` returns how many metres away boundaries still count.
 template <class Limit, class Each>
 struct RayShooter {
-  const ConeSearch& search;
   vec3 middle;
   Limit limit;
   Each each;
-  LineBatch lines{};
+  ConeLines lines;
   vec3 rays[lane_count] = {};
   int waiting = 0;
 
   void shoot(vec3 ray) {
     rays[waiting] = ray;
-    lines.step.set(waiting, search.to_step * ray);
+    lines.set(waiting, middle, ray);
     if (++waiting == lane_count) finish();
   }
   void finish() {
     if (waiting == 0) return;
-    lines.middle = all_lanes(middle);
-    for (int i = 0; i < lane_count; i++) lines.limit[i] = i < waiting ? limit() : -1;
-    const LineHits hits = first_boundaries(search.field, lines, search.threshold,
-                                           search.settings.boundary == Boundary::falling);
+    for (int i = 0; i < waiting; i++) lines.limit(i, limit());
+    const LineHits hits = lines.look();
     for (int i = 0; i < waiting; i++)
-      if (hits.found[i]) each(rays[i], hits.offset[i]);
+      if (hits.found[i]) each(rays[i], hits.offset[i] * lines.metres[i]);
     waiting = 0;
+    lines.clear();
   }
 };
 
@@ -108,8 +124,8 @@ void search_cone(const ConeSearch& search, const SurfacePoint& point, NearestBou
     if (!nearest.found || std::abs(offset) < std::abs(nearest.offset))
       nearest = {ray, offset, true};
   };
-  RayShooter<decltype(limit), decltype(keep)> shooter{search, middle_of(search, point), limit,
-                                                      keep};
+  RayShooter<decltype(limit), decltype(keep)> shooter{middle_of(search, point), limit, keep,
+                                                      ConeLines(search)};
   const int circles = std::max(1, int(std::ceil(point.search_angle / search.settings.ray_spacing)));
   for (int circle = 1; circle <= circles; circle++) {
     const float angle = point.search_angle * float(circle) / float(circles);
@@ -117,20 +133,20 @@ void search_cone(const ConeSearch& search, const SurfacePoint& point, NearestBou
     each_ray_around(point.normal, angle,
                     std::max(6, int(std::ceil(2 * pi * std::sin(angle) / spacing))),
                     [&](vec3 ray) { shooter.shoot(ray); });
-    if (nearest.found && std::abs(nearest.offset) < near_enough) return;
+    if (nearest.found && std::abs(nearest.offset) < near_enough * search.field.voxel) return;
   }
   shooter.finish();
 }
 
 float uncertainty_of(const ConeSearch& search, const SurfacePoint& point,
                      const NearestBoundary& nearest) {
-  const float voxel = float(steps_per_voxel);
+  const float voxel = float(search.field.voxel);
   float farthest = std::abs(nearest.offset);
   const float angle = std::min(point.search_angle, std::atan2(voxel, farthest));
   auto limit = [&] { return search.reach; };
   auto keep = [&](vec3, float offset) { farthest = std::max(farthest, std::abs(offset)); };
-  RayShooter<decltype(limit), decltype(keep)> shooter{search, middle_of(search, point), limit,
-                                                      keep};
+  RayShooter<decltype(limit), decltype(keep)> shooter{middle_of(search, point), limit, keep,
+                                                      ConeLines(search)};
   each_ray_around(nearest.ray, angle, lane_count, [&](vec3 ray) { shooter.shoot(ray); });
   return farthest - std::abs(nearest.offset);
 }
@@ -139,15 +155,14 @@ Deviation measure(const ConeSearch& search, const SurfacePoint& point, NearestBo
   Deviation result;
   if (!can_measure(point)) return result;
   const bool has_cone = point.search_angle > narrowest_cone;
-  result.cone_base = float(2 * search.reach * search.step) * std::sin(point.search_angle);
+  result.cone_base = 2 * search.reach * std::sin(point.search_angle);
   if (has_cone) search_cone(search, point, nearest);
   if (!nearest.found) return result;
   result.found = true;
   result.ray = nearest.ray;
-  const double along = nearest.offset * search.step;
-  result.boundary = point.position + dvec3(nearest.ray) * along;
-  result.distance = float(-along);
-  if (has_cone) result.uncertainty = float(uncertainty_of(search, point, nearest) * search.step);
+  result.boundary = point.position + dvec3(nearest.ray) * double(nearest.offset);
+  result.distance = -nearest.offset;
+  if (has_cone) result.uncertainty = uncertainty_of(search, point, nearest);
   const dvec3 gradient = density_gradient(search.field, result.boundary);
   const double steepness = glm::length(gradient);
   if (!(steepness > 0)) return result;
@@ -170,10 +185,7 @@ std::vector<Deviation> find_deviations(const DensityField& field,
                                        const std::vector<SurfacePoint>& points,
                                        const ConeSettings& settings) {
   ConeSearch search{field, settings};
-  search.step = field.voxel / steps_per_voxel;
-  search.threshold = float(slope_threshold(field, settings) * search.step);
-  search.reach = float(std::clamp(settings.reach, 1.0, longest_reach - 1) * steps_per_voxel);
-  search.to_step = mat3(glm::dmat3(field.to_index) * search.step);
+  search.reach = float(std::clamp(settings.reach, 1.0, longest_reach - 1) * field.voxel);
   std::vector<Deviation> results(points.size());
   const int batches = int((points.size() + lane_count - 1) / lane_count);
   parallel_ranges(batches, 8, [&](int begin, int end) {

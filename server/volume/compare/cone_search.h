@@ -23,8 +23,9 @@ struct ConeSettings {
   Boundary boundary = Boundary::any;
 };
 
-// Returns the threshold that is used: an automatic one is a tenth of what lies between the two
-// classes of densities, per voxel. Infinite for a volume of one density.
+// Returns the threshold that is used along the shortest edge of a voxel: an automatic one is a
+// tenth of what lies between the two classes of densities, per voxel. Infinite for a volume of one
+// density.
 double slope_threshold(const DensityField& field, const ConeSettings& settings);
 
 // Tells how far the volume's boundary is from a surface point.

@@ -127,16 +127,26 @@ Lanes sample_density(const DensityField& field, const Lanes3& place) {
 
 dvec3 density_gradient(const DensityField& field, dvec3 place) {
   const vec3 middle(field.to_index * glm::dvec4(place, 1));
-  Lanes3 around = all_lanes(middle);
-  for (int axis = 0; axis < 3; axis++)
-    for (int side = 0; side < 2; side++) {
-      vec3 beside = middle;
-      beside[axis] += side ? 1 : -1;
-      around.set(2 * axis + side, beside);
+  // With 1/6, 4/6, 1/6 across, each component loses as much as the others up to the third order:
+  // the direction is kept where the density bends, as it does at blurred boundaries.
+  constexpr double across[3] = {1 / 6.0, 4 / 6.0, 1 / 6.0};
+  dvec3 in_index(0);
+  for (int first = 0; first < 27; first += lane_count) {
+    Lanes3 around = all_lanes(middle);
+    auto beside = [&](int lane) {
+      const int i = std::min(first + lane, 26);
+      return glm::ivec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    };
+    for (int i = 0; i < lane_count; i++) around.set(i, middle + vec3(beside(i)));
+    const Lanes found = sample_density(field, around);
+    for (int i = 0; i < lane_count && first + i < 27; i++) {
+      const glm::ivec3 at = beside(i);
+      const dvec3 weight(across[at.x + 1], across[at.y + 1], across[at.z + 1]);
+      in_index += dvec3(at) * 0.5 * double(found[i]) *
+                  dvec3(weight.y * weight.z, weight.x * weight.z, weight.x * weight.y);
     }
-  const Lanes found = sample_density(field, around);
-  const dvec3 in_index(found[1] - found[0], found[3] - found[2], found[5] - found[4]);
-  return glm::transpose(glm::dmat3(field.to_index)) * (in_index * 0.5);
+  }
+  return glm::transpose(glm::dmat3(field.to_index)) * in_index;
 }
 
 }  // namespace wellspring::volume

@@ -26,7 +26,7 @@ DensityField make_density_field(const Volume& volume, int channel = 0);
 Lanes sample_density(const DensityField& field, const Lanes3& place);
 
 // Returns the density's gradient per metre at a place in metres, from central differences over two
-// samples.
+// samples, smoothed across.
 dvec3 density_gradient(const DensityField& field, dvec3 place);
 
 }  // namespace wellspring::volume

@@ -2,6 +2,7 @@
 #include "volume/compare/ray_lanes.h"
 
 #include <array>
+#include <limits>
 
 namespace wellspring::volume {
 
@@ -58,10 +59,21 @@ struct SampledLines {
 
 }  // namespace
 
-LineHits first_boundaries(const DensityField& field, const LineBatch& lines, float threshold,
-                          bool falling) {
+LineScale line_scale(const DensityField& field, vec3 ray, double slope) {
+  LineScale scale;
+  const dvec3 way = glm::dmat3(field.to_index) * dvec3(ray);
+  scale.metres = 1 / (steps_per_voxel * glm::length(way));
+  scale.step = vec3(way * scale.metres);
+  const double apart = field.high - field.low;
+  scale.threshold = slope > 0   ? slope * scale.metres
+                    : apart > 0 ? apart / 10 / steps_per_voxel
+                                : std::numeric_limits<double>::infinity();
+  return scale;
+}
+
+LineHits first_boundaries(const DensityField& field, const LineBatch& lines, bool falling) {
   SampledLines samples(field, lines);
-  const Lanes least = all_lanes(threshold * derivative_scale);
+  const Lanes least = lines.threshold * derivative_scale;
   LineHits hits;
   for (int i = 0; i < most_line_steps; i++) {
     const LaneMask looking = ~hits.found & (all_lanes(float(i) - 0.5f) <= lines.limit);

@@ -16,7 +16,8 @@ namespace wellspring::volume {
 
 namespace {
 
-constexpr size_t most_boundary_points = 60'000, most_surface_points = 8'000, few_points = 500;
+constexpr size_t most_boundary_points = 30'000, most_surface_points = 8'000, some_points = 2'000,
+                 few_points = 300;
 
 dvec3 moved_point(const dmat4& move, dvec3 point) { return dvec3(move * glm::dvec4(point, 1)); }
 
@@ -171,6 +172,7 @@ Registration register_surface(const SurfaceMesh& mesh, const DensityField& field
                               const RegistrationSettings& settings) {
   const std::vector<SurfacePoint> points = drawn_points(mesh);
   if (points.empty()) throw std::invalid_argument("the mesh has no triangle with an area");
+  const size_t some = std::min(points.size(), some_points), few = std::min(some, few_points);
   const PointTree tree(boundary_points(field, most_boundary_points));
   if (tree.points().empty()) throw std::invalid_argument("the volume has one density: no boundary");
   Registration result;
@@ -181,11 +183,10 @@ Registration register_surface(const SurfaceMesh& mesh, const DensityField& field
     fits.push_back({});  // as they are
     for (const dmat4& move : axis_moves(principal_axes(places), principal_axes(tree.points())))
       fits.push_back({move});
-    const size_t few = std::min(points.size(), few_points);
     parallel_each(int(fits.size()), [&](int i) {
-      fit_nearest(fits[size_t(i)], tree, points, few, 15, settings.kept_share);
+      fit_nearest(fits[size_t(i)], tree, points, few, 12, settings.kept_share);
     });
-    // All points choose among the starts that came near.
+    // More points choose among the starts that came near.
     std::vector<size_t> order(fits.size());
     for (size_t i = 0; i < order.size(); i++) order[i] = i;
     std::stable_sort(order.begin(), order.end(),
@@ -193,7 +194,7 @@ Registration register_surface(const SurfaceMesh& mesh, const DensityField& field
     std::vector<Fit> nearest;
     for (size_t i = 0; i < 4; i++) nearest.push_back(fits[order[i]]);
     parallel_each(4, [&](int i) {
-      fit_nearest(nearest[size_t(i)], tree, points, points.size(), 10, settings.kept_share);
+      fit_nearest(nearest[size_t(i)], tree, points, some, 12, settings.kept_share);
     });
     const auto best =
         std::min_element(nearest.begin(), nearest.end(),
@@ -204,8 +205,7 @@ Registration register_surface(const SurfaceMesh& mesh, const DensityField& field
     std::vector<dvec3> from, to;
     for (const ControlPair& pair : pairs) from.push_back(pair.surface), to.push_back(pair.volume);
     fits.push_back({fit_points(from, to)});
-    fit_nearest(fits[0], tree, points, points.size(), settings.most_iterations,
-                settings.kept_share);
+    fit_nearest(fits[0], tree, points, some, settings.most_iterations, settings.kept_share);
     result.start = "control points";
   }
   fit_finely(fits[0], result, field, points, settings);

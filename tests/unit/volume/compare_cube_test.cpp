@@ -100,7 +100,9 @@ TEST(CompareCube, UncertaintyIsZeroOnPlanesAndMoreAtEdges) {
     const dvec3 inside = glm::min(place - cube_low, cube_high - place);
     double sides[3] = {inside.x, inside.y, inside.z};
     std::sort(sides, sides + 3);
-    if (sides[1] > 20) EXPECT_LT(found[i].uncertainty / solid_voxel, 0.01);
+    if (sides[1] > 20) {
+      EXPECT_LT(found[i].uncertainty / solid_voxel, 0.01);
+    }
     if (sides[1] < 1) edge_sum += found[i].uncertainty / solid_voxel, edges++;
   }
   ASSERT_GT(edges, 100);

@@ -76,7 +76,7 @@ TEST(CompareLens, NeighbourhoodsOfTheLensHaveAPlotAndAGlyphEach) {
       points.push_back({dvec3(x, y, 0) / 1000.0, vec3(0, 0, 1), 0, 1});
       found.push_back(deviation_of(x < 0 ? -1 : x == 0 ? 0.01 : 1));
     }
-  const LensArea lens{dvec3(0), 0.0101};
+  const LensArea lens{dvec3(0), 0.01001};
   const auto plots = lens_plots(points, found, lens, 0.005);
   size_t count = 0;
   for (const BoxPlot& plot : plots) count += plot.count;
@@ -90,7 +90,9 @@ TEST(CompareLens, NeighbourhoodsOfTheLensHaveAPlotAndAGlyphEach) {
                           : x > 1e-9 ? FoundSide::inside
                                      : FoundSide::none);
     EXPECT_NEAR(glyph.arrow, x < -1e-9 ? 0.001 : x > 1e-9 ? -0.001 : 0, 1e-9);
-    if (glyph.side == FoundSide::none) EXPECT_EQ(glyph.disc_color, vec3(1));
+    if (glyph.side == FoundSide::none) {
+      EXPECT_EQ(glyph.disc_color, vec3(1));
+    }
   }
   EXPECT_TRUE(lens_plots(points, found, {dvec3(5), 1}, 0.1).empty());
 }
