@@ -30,7 +30,7 @@ struct DistanceGlyph {
 DistanceGlyph distance_glyph(const SurfacePoint& point, const Deviation& deviation,
                              double tolerance);
 
-// What a box plot shows of the points of one neighbourhood; distances in metres.
+// Sums up the points of one neighbourhood for a box plot; distances are in metres.
 struct BoxPlot {
   dvec3 position{0};  // mean of the points
   vec3 normal{0};  // mean of the normals, unit: the axis of a plot in 3D; one in 2D faces the eye

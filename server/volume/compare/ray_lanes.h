@@ -21,7 +21,7 @@ struct LineBatch {
 // Says how long a line's step is, and what counts along it.
 struct LineScale {
   vec3 step{0};          // in index
-  double metres = 0;     // of a step
+  double metres = 0;     // a step is worth so much
   double threshold = 0;  // slope per step
 };
 // `ray` is unit, in metres; `slope` is per metre, 0: a tenth of what lies between the two classes

@@ -12,7 +12,7 @@ struct RayProfile {
   // Places along the ray in metres: 0 is the surface, positive ones are outside; and the density's
   // first derivative there, per metre.
   std::vector<double> places, slopes;
-  double threshold = 0;  // of the slope
+  double threshold = 0;  // the slope of a boundary exceeds it
   bool found = false;
   double boundary = 0;  // place of the boundary in metres
   double distance = 0;  // signed, as Deviation has it

@@ -92,6 +92,8 @@ std::vector<size_t> smallest_share(const std::vector<double>& sizes, double shar
   return order;
 }
 
+constexpr double endless = 1e300;
+
 struct Fit {
   dmat4 move{1};
   double error = std::numeric_limits<double>::infinity();  // mean square of what is kept
@@ -109,6 +111,7 @@ void fit_nearest(Fit& fit, const PointTree& tree, const std::vector<SurfacePoint
       at[k] = moved_point(fit.move, points[k].position);
       nearest[k] = tree.points()[tree.nearest(at[k])];
       squares[k] = glm::dot(at[k] - nearest[k], at[k] - nearest[k]);
+      if (!(squares[k] < endless)) squares[k] = endless;  // what is compared must be a number
     }
     std::vector<dvec3> from, to;
     double error = 0;

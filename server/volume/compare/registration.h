@@ -20,7 +20,7 @@ struct ControlPair {
 std::vector<ControlPair> read_control_pairs(const std::string& file);
 
 struct RegistrationSettings {
-  double kept_share = 0.8;  // of the points, the nearest ones; the others pull at nothing
+  double kept_share = 0.8;  // the nearest points pull; the others do not
   int most_iterations = 60;
   double threshold = 0;  // density per metre, as ConeSettings has it
   double reach = 16;     // voxels, as ConeSettings has it
@@ -29,8 +29,8 @@ struct RegistrationSettings {
 struct Registration {
   dmat4 to_volume{1};            // from the mesh's metres to the volume's
   double mean_square_error = 0;  // square metres, of the points that are kept
-  int iterations = 0;            // of the best start, near and fine ones
-  double found_share = 0;        // of the points, those that have a boundary within reach
+  int iterations = 0;            // coarse and fine ones, from the best start
+  double found_share = 0;        // share of points with a boundary within reach
   std::string start;             // "control points", "as they are" or "principal axes"
 };
 

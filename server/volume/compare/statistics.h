@@ -11,7 +11,7 @@ namespace wellspring::volume {
 // area; the least and the greatest count all points.
 struct DeviationSummary {
   size_t points = 0, found = 0;
-  double not_found_share = 0;  // of the area
+  double not_found_share = 0;  // a share of the area
   double least = 0, greatest = 0, mean = 0, mean_absolute = 0, root_mean_square = 0, deviation = 0;
   double mean_uncertainty = 0, greatest_uncertainty = 0;
   double mean_normal_angle = 0;  // radians

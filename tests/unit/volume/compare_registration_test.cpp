@@ -107,6 +107,19 @@ TEST(CompareRegistration, NothingToGoByIsSaid) {
   EXPECT_THROW(register_surface(degenerate, body_field(), {}, {}), std::invalid_argument);
 }
 
+TEST(CompareRegistration, CoordinatesBeyondAllMeasureFindNothing) {
+  for (double size : {1e9, 1e160, 1e305}) {
+    SurfaceMesh mesh = body_mesh();
+    for (dvec3& position : mesh.positions) position *= size;
+    weld(mesh);
+    try {
+      EXPECT_EQ(register_surface(mesh, body_field(), {}, {}).found_share, 0) << size;
+    } catch (const std::invalid_argument&) {
+      EXPECT_GT(size, 1e100);  // areas that are not finite are none
+    }
+  }
+}
+
 TEST(CompareRegistration, HornsMoveLeadsPointsToPoints) {
   const std::vector<dvec3> from{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
   for (double degrees : {0.0, 1.0, 90.0, 179.9, 180.0}) {

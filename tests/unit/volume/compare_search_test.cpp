@@ -45,7 +45,7 @@ TEST(CompareSearch, ASphereAgainstALargerOneDiffersEverywhereByTheirRadii) {
 }
 
 TEST(CompareSearch, NoiseMovesTheBoundaryLittle) {
-  const DensityField field = ball_field(30, 60);  // of 1000
+  const DensityField field = ball_field(30, 60);  // densities are 0 to 1000
   const auto points = vertex_points(sphere_mesh(ball_middle, 31, 24));
   const auto found = find_deviations(field, points, {});
   double squares = 0;
