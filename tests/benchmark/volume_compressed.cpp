@@ -17,7 +17,7 @@
 #include "volume/compressed/compress.h"
 #include "volume/compressed/compressed_file.h"
 #include "volume/compressed/decode.h"
-#include "volume/compressed/deviation.h"
+#include "volume/compressed/coding_loss.h"
 #include "volume/compressed/fetch.h"
 #include "volume/compressed/opacity.h"
 
@@ -125,7 +125,7 @@ void bench_volume_compressed(BenchReport& report, const BenchOptions& options) {
   const std::string file = folder.path() + "/volume.rvq";
   write_compressed(file, made);
   const CompressedVolume compressed = read_compressed(file);
-  const Deviation deviation = compare_compressed(volume, compressed);
+  const CodingLoss deviation = compare_compressed(volume, compressed);
 
   const auto name = [&](const char* technique) {
     return nlohmann::json{{"technique", technique},

@@ -11,7 +11,7 @@
 #include "compressed_made.h"
 #include "volume/compressed/block_source.h"
 #include "volume/compressed/compressed_volume.h"
-#include "volume/compressed/deviation.h"
+#include "volume/compressed/coding_loss.h"
 #include "volume/compressed/rgb_word.h"
 
 namespace wellspring::test {
@@ -129,7 +129,7 @@ TEST(Compress, SixteenBitsKeepTheirExtremes) {
   Rng random(8);
   const Volume noise = made_volume<uint16_t>(
       {24, 24, 24}, 1, [&](int, int, int, int) { return random.next() & 1 ? 65535 : 0; });
-  const Deviation deviation = compare_compressed(noise, compress_volume(noise, few_codevectors(8)));
+  const CodingLoss deviation = compare_compressed(noise, compress_volume(noise, few_codevectors(8)));
   EXPECT_LT(deviation.mean_square, 32768.0 * 32768.0);
 }
 
@@ -157,7 +157,7 @@ TEST(Compress, BackgroundIsLeftOutAndBecomesFlat) {
   CompressionSettings settings = few_codevectors(256);
   settings.background = -900;
   const CompressedVolume compressed = compress_volume(volume, settings);
-  const Deviation deviation = compare_compressed(volume, compressed, settings.background);
+  const CodingLoss deviation = compare_compressed(volume, compressed, settings.background);
   EXPECT_EQ(deviation.background, 4u * 4 * 4);
   EXPECT_EQ(deviation.foreground, 4u * 4 * 4);
   EXPECT_EQ(deviation.mean_square, 0);

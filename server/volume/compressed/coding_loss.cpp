@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volume/compressed/deviation.h"
+#include "volume/compressed/coding_loss.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ SliceDeviation compare_slice(const BlockSource& source, const CompressedVolume& 
 
 }  // namespace
 
-Deviation compare_compressed(const Volume& volume, const CompressedVolume& compressed,
+CodingLoss compare_compressed(const Volume& volume, const CompressedVolume& compressed,
                              std::optional<double> background) {
   const BlockSource source = make_block_source(volume);
   if (volume.size != compressed.size || volume.channels != compressed.channels ||
@@ -69,7 +69,7 @@ Deviation compare_compressed(const Volume& volume, const CompressedVolume& compr
       default: slice = compare_slice<int16_t>(source, compressed, background, z);
     }
   });
-  Deviation all;
+  CodingLoss all;
   double squares = 0;
   uint64_t samples = 0;
   for (const SliceDeviation& slice : slices) {

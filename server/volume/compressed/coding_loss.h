@@ -10,7 +10,7 @@
 
 namespace wellspring::volume {
 
-struct Deviation {
+struct CodingLoss {
   double mean_square = 0;                   // coded samples are 0 to 255 or 65535
   double decibel = 0;                       // peak signal to noise; infinite if nothing was lost
   double bits_a_voxel = 0;                  // counts header, codes, codebooks, ranges
@@ -19,7 +19,7 @@ struct Deviation {
 
 // Compares all blocks that are no background (see CompressionSettings::background), as the paper
 // does (section 3.1.1). Throws std::invalid_argument if the sizes or channels differ.
-Deviation compare_compressed(const Volume& volume, const CompressedVolume& compressed,
+CodingLoss compare_compressed(const Volume& volume, const CompressedVolume& compressed,
                              std::optional<double> background = std::nullopt);
 
 }  // namespace wellspring::volume
