@@ -16,6 +16,7 @@
 #include "base/load_error.h"
 #include "base/parallel.h"
 #include "json/text.h"
+#include "main_import_preview.h"
 #include "volume/format/byte_stream.h"
 #include "volume/format/open_volume.h"
 #include "volume/format/patient_frame.h"
@@ -250,6 +251,7 @@ void import_volume(const VolumeImport& import) {
     if (made.empty()) made = to;
   }
   tell(made.string(), stored, volume);
+  if (!import.preview.empty()) write_preview(volume, import.preview);
   nlohmann::ordered_json piece;
   piece["id"] = id, piece["kind"] = "volume";
   piece["source"] = made.lexically_relative(import.out).string();

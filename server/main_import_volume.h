@@ -13,6 +13,7 @@ struct VolumeImport {
   std::string out = ".";   // folder for the volume
   int series = 0;          // the number in the list of DICOM, from 1; 0: that with most samples
   int64_t time = 0;        // which is checked, of a file that has several
+  std::string preview;     // PNG of the volume in proposed presets; empty: none
   bool overwrite = false;  // replaces files that are there
 };
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shows a curator what is in a scanned volume.
+#pragma once
+#include <string>
+
+#include "volume/volume.h"
+
+namespace wellspring::program {
+
+// Writes a PNG with the volume in each of the presets that its values propose, side by side, and
+// tells of each on stderr. Throws LoadError.
+void write_preview(const volume::Volume& volume, const std::string& file);
+
+}  // namespace wellspring::program
