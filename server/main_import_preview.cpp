@@ -16,7 +16,7 @@ namespace wellspring::program {
 namespace {
 
 constexpr int side = 480;              // pixels of one picture
-constexpr vec3 wall(0.03f, 0.028f, 0.026f);  // what is seen beside and through the volume
+constexpr vec3 wall(0.03f, 0.028f, 0.026f);  // linear, beside and behind the volume
 
 // Puts a picture beside those that are there.
 void put(const volume::VolumePicture& picture, int column, Frame& sheet) {

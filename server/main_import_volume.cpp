@@ -17,6 +17,10 @@
 #include "base/parallel.h"
 #include "json/text.h"
 #include "main_import_preview.h"
+#include "volume/compressed/coding_loss.h"
+#include "volume/compressed/compress.h"
+#include "volume/compressed/compressed_file.h"
+#include "volume/compressed/to_volume.h"
 #include "volume/format/byte_stream.h"
 #include "volume/format/open_volume.h"
 #include "volume/format/patient_frame.h"
@@ -210,6 +214,20 @@ std::string id_of(const std::string& path) {
   return id.empty() || id.find_first_not_of("-_") == std::string::npos ? "volume" : id;
 }
 
+// Compresses the volume into `to`, and returns what is then shown.
+Volume compress_to(const fs::path& to, const Volume& volume, bool overwrite) {
+  if (fs::exists(to) && !overwrite)
+    throw LoadError(to.string(), "", "is there already; --overwrite replaces it");
+  fs::create_directories(to.parent_path());
+  Progress progress("import");
+  const CompressedVolume compressed =
+      compress_volume(volume, {}, [&](double done) { progress.tell(done); });
+  write_compressed(to.string(), compressed);
+  const CodingLoss loss = compare_compressed(volume, compressed);
+  std::cerr << fmt::format("  {:.3f} bits a voxel, {:.1f} dB\n", loss.bits_a_voxel, loss.decibel);
+  return to_volume(compressed);
+}
+
 void tell(const std::string& file, const StoredVolume& stored, const Volume& volume) {
   glm::dvec3 spacing;
   for (int i = 0; i < 3; i++) spacing[i] = 1000 * glm::length(glm::dvec3(volume.to_metres[i]));
@@ -239,11 +257,14 @@ void import_volume(const VolumeImport& import) {
   // All of it is read before anything is put anywhere.
   const VolumeChoice choice{.time = import.time};
   const StoredVolume stored = describe_volume(from, choice);
-  const Volume volume = open_volume(from, choice);
+  Volume volume = open_volume(from, choice);
   const std::string id = id_of(converts ? import.path : stored.file);
   const fs::path home = fs::path(stored.file).parent_path();
   fs::path made;
-  for (const std::string& file : files_of(stored)) {
+  if (import.compress) {
+    made = fs::path(import.out) / (id + ".rvq");
+    volume = compress_to(made, volume, import.overwrite);
+  } else for (const std::string& file : files_of(stored)) {
     const fs::path name =
         converts ? fs::path(id + ".nii.gz") : fs::path(file).lexically_relative(home);
     const fs::path to = fs::path(import.out) / (name.empty() ? fs::path(file).filename() : name);

@@ -14,6 +14,7 @@ struct VolumeImport {
   int series = 0;          // the number in the list of DICOM, from 1; 0: that with most samples
   int64_t time = 0;        // which is checked, of a file that has several
   std::string preview;     // PNG of the volume in proposed presets; empty: none
+  bool compress = false;   // as volume/compressed/compressed_volume.h has it
   bool overwrite = false;  // replaces files that are there
 };
 

@@ -94,7 +94,7 @@ struct VisitorPlace {
   uint32_t camera_cuts = 0;  // number of cuts to other places, so that nothing seen before helps
   Heading heading;
   double moved_at = 0;  // show time of the last change of view
-  bool leapt = false;   // that change was a leap to another place
+  bool leapt = false;   // the change was a leap to another place
 };
 
 // Moves a visitor by `dt` seconds: by its tour, whose narrator's voice that is, or walking by its

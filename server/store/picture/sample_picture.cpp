@@ -160,7 +160,7 @@ vec3 PictureSampler::look(const LargePicture& picture, const PictureFootprint& f
                          std::min(y, int(l.height) - 1)).key);
   };
   looked_++;
-  // Of the two levels of a pixel the finer one has at least the texels that are wanted.
+  // The finer one of a pixel's two levels has at least the texels that are wanted.
   if (picture.scale[size_t(got)] > std::max(wanted, 0.0f) + 1) looked_coarse_++;
   note(fine);
   if (blend > 0) note(coarse);

@@ -108,7 +108,7 @@ class March {
                       stored.x * normal_[1].x + stored.y * normal_[1].y + stored.z * normal_[1].z,
                       stored.x * normal_[2].x + stored.y * normal_[2].y + stored.z * normal_[2].z};
     const Lanes length2 = dot(n, n);
-    // Where neighbours disagree there is no surface: light goes all ways.
+    // There is no surface where neighbours disagree: light goes all ways.
     const Lanes surface = lanes_min(dot(stored, stored) * 2.0f, all_lanes(1));
     const Lanes unit = 1.0f / lanes_sqrt(lanes_max(length2, all_lanes(1e-20f)));
     const Lanes facing = dot(n, all_lanes(light.to_lamp)) * unit;
@@ -186,7 +186,6 @@ class March {
         place_ = full ? place_ + step_ : place_;
       }
       active = (place_ < far_) & (found.clear > 0.5f);
-      // What was leapt over lies below the threshold.
     }
   }
 

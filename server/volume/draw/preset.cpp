@@ -49,7 +49,7 @@ bool TransferTable::is_empty(const CodeRange& range) const {
 namespace {
 
 constexpr int bins = 128, most_classes = 4;
-constexpr double least_share = 1e-5;  // of the samples: a class of fewer is noise
+constexpr double least_share = 1e-5;  // a class with fewer of the samples is noise
 
 struct Histogram {
   std::vector<double> count = std::vector<double>(bins);

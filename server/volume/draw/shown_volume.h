@@ -32,7 +32,7 @@ struct VolumeLevel {
 
 struct ShownVolume {
   std::vector<VolumeLevel> levels;  // the finest first; never empty
-  double low = 0, high = 1;         // what code 0 and code 65535 measure; low < high
+  double low = 0, high = 1;         // measured by code 0 and by code 65535; low < high
   glm::dmat4 to_metres{1};          // as Volume's, of the finest level
   double voxel = 1;                 // the smallest distance of samples, metres
 

@@ -129,7 +129,8 @@ TEST(Compress, SixteenBitsKeepTheirExtremes) {
   Rng random(8);
   const Volume noise = made_volume<uint16_t>(
       {24, 24, 24}, 1, [&](int, int, int, int) { return random.next() & 1 ? 65535 : 0; });
-  const CodingLoss deviation = compare_compressed(noise, compress_volume(noise, few_codevectors(8)));
+  const CompressedVolume coded = compress_volume(noise, few_codevectors(8));
+  const CodingLoss deviation = compare_compressed(noise, coded);
   EXPECT_LT(deviation.mean_square, 32768.0 * 32768.0);
 }
 
