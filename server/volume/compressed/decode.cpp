@@ -256,39 +256,40 @@ void decode_box(std::span<Sample> samples, const CompressedVolume& volume, int d
   const glm::ivec3 first_block = inside.first / side, end_block = (last + side - 1) / side;
   const bool ahead = volume.channels == 3 && detail == 0;
   const EntryReader reader(volume);
+  const size_t row = size_t(side) * channels;
   Sample whole[3 * block_voxels];
   for (int z = first_block.z; z < end_block.z; z++)
     for (int y = first_block.y; y < end_block.y; y++) {
       size_t block =
           (size_t(z) * size_t(blocks.y) + size_t(y)) * size_t(blocks.x) + size_t(first_block.x);
-      BlockEntries next;
+      glm::ivec3 begin = glm::max(glm::ivec3(0, y, z) * side, inside.first);
+      glm::ivec3 end = glm::min(glm::ivec3(0, y + 1, z + 1) * side, last);
+      const bool whole_rows = end.y - begin.y == side && end.z - begin.z == side;
+      Sample* to = samples.data() + size_t(begin.z - box.first.z) * slice +
+                   size_t(begin.y - box.first.y) * line +
+                   size_t(inside.first.x - box.first.x) * channels;
+      BlockEntries entries, next;
       reader.read(next, block);
       for (int x = first_block.x; x < end_block.x; x++) {
-        const BlockEntries entries = next;
+        entries = next;
         if (x + 1 < end_block.x) {
           reader.read(next, ++block);
           if (ahead) prefetch(volume, next);
         }
-        const glm::ivec3 origin = glm::ivec3(x, y, z) * side;
-        const glm::ivec3 begin = glm::max(origin, inside.first);
-        const glm::ivec3 end = glm::min(origin + side, last);
-        Sample* to = samples.data() + size_t(begin.z - box.first.z) * slice +
-                     size_t(begin.y - box.first.y) * line +
-                     size_t(begin.x - box.first.x) * channels;
-        if (end - begin == glm::ivec3(side)) {
+        begin.x = std::max(x * side, inside.first.x), end.x = std::min((x + 1) * side, last.x);
+        const size_t wide = size_t(end.x - begin.x) * channels;
+        if (whole_rows && wide == row) {
           write_block(to, volume, entries, detail, line, slice);
-          continue;
+        } else {
+          write_block(whole, volume, entries, detail, row, row * size_t(side));
+          const glm::ivec3 skipped = begin - glm::ivec3(x, y, z) * side;
+          for (int k = 0; k < end.z - begin.z; k++)
+            for (int j = 0; j < end.y - begin.y; j++)
+              std::copy_n(whole + size_t((skipped.z + k) * side + skipped.y + j) * row +
+                              size_t(skipped.x) * channels,
+                          wide, to + size_t(k) * slice + size_t(j) * line);
         }
-        const size_t row = size_t(side) * channels;
-        write_block(whole, volume, entries, detail, row, row * size_t(side));
-        for (int k = begin.z; k < end.z; k++)
-          for (int j = begin.y; j < end.y; j++) {
-            const glm::ivec3 at = glm::ivec3(begin.x, j, k) - origin;
-            std::copy_n(
-                whole + (size_t(at.z * side + at.y) * size_t(side) + size_t(at.x)) * channels,
-                size_t(end.x - begin.x) * channels,
-                to + size_t(k - begin.z) * slice + size_t(j - begin.y) * line);
-          }
+        to += wide;
       }
     }
   if (inside.size != box.size) fill_outside(samples.data(), box, inside, channels);
