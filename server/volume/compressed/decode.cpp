@@ -16,6 +16,7 @@ namespace wellspring::volume {
 namespace {
 
 using ShortLanes = int16_t __attribute__((vector_size(32)));
+using LongLanes = uint64_t __attribute__((vector_size(32)));
 using ByteLanes = uint8_t __attribute__((vector_size(32)));
 
 // Finds a block's codevectors, as indices into the tables.
@@ -89,8 +90,36 @@ inline void write_colors(uint8_t* to, const CompressedVolume& volume, const Bloc
   for (int z = 0; z < block_side; z++, to += slice) {
     ByteLanes rows[2];
     rows_of_colors(rows, sum(16 * z), sum(16 * z + lane_count));
-    for (int y = 0; y < block_side; y++)
-      std::memcpy(to + size_t(y) * line, reinterpret_cast<const uint8_t*>(rows) + 16 * y, 12);
+#pragma GCC unroll 4
+    for (int y = 0; y < block_side; y++) {
+      const LongLanes pair = lanes_as<LongLanes>(rows[y / 2]);
+      store_lanes(to + size_t(y) * line, uint64_t(pair[y % 2 * 2]));
+      store_lanes(to + size_t(y) * line + 8, uint32_t(pair[y % 2 * 2 + 1]));
+    }
+  }
+}
+
+// Asks for the codevectors of colours that are needed next.
+inline void prefetch(const CompressedVolume& volume, const BlockEntries& entries) {
+  for (int level = 0; level < entries.levels; level++) {
+    const uint32_t* from = volume.words.data() + entries.entry[level] * block_voxels;
+    for (int i = 0; i < block_voxels; i += 16) __builtin_prefetch(from + i);
+  }
+}
+
+// Writes blocks of colours of 1:1 that are neighbours along x.
+template <int known_levels>
+void write_color_run(uint8_t* to, const CompressedVolume& volume, const EntryReader& reader,
+                     size_t block, int count, size_t line, size_t slice) {
+  BlockEntries entries, next;
+  reader.read(next, block);
+  for (; count > 0; count--, to += 3 * block_side) {
+    entries = next;
+    if (count > 1) {
+      reader.read(next, ++block);
+      prefetch(volume, next);
+    }
+    write_colors<known_levels>(to, volume, entries, line, slice);
   }
 }
 
@@ -131,14 +160,6 @@ inline void write_quarter_color(uint8_t* to, const CompressedVolume& volume,
   sums = sums > none ? sums : none;
   sums = sums < most ? sums : most;
   for (int channel = 0; channel < 3; channel++) to[channel] = uint8_t(int(sums[channel] + 0.5f));
-}
-
-// Asks for the codevectors of colours that are needed next.
-inline void prefetch(const CompressedVolume& volume, const BlockEntries& entries) {
-  for (int level = 0; level < entries.levels; level++) {
-    const uint32_t* from = volume.words.data() + entries.entry[level] * block_voxels;
-    for (int i = 0; i < block_voxels; i += 16) __builtin_prefetch(from + i);
-  }
 }
 
 // Writes the sums of a block: voxels x fastest, channels side by side.
@@ -254,41 +275,45 @@ void decode_box(std::span<Sample> samples, const CompressedVolume& volume, int d
   const int side = block_side >> detail;
   const glm::ivec3 last = inside.first + inside.size, blocks = volume.blocks();
   const glm::ivec3 first_block = inside.first / side, end_block = (last + side - 1) / side;
-  const bool ahead = volume.channels == 3 && detail == 0;
   const EntryReader reader(volume);
+  const size_t row = size_t(side) * channels;
   Sample whole[3 * block_voxels];
   for (int z = first_block.z; z < end_block.z; z++)
     for (int y = first_block.y; y < end_block.y; y++) {
-      size_t block =
-          (size_t(z) * size_t(blocks.y) + size_t(y)) * size_t(blocks.x) + size_t(first_block.x);
-      BlockEntries next;
-      reader.read(next, block);
+      const size_t first = (size_t(z) * size_t(blocks.y) + size_t(y)) * size_t(blocks.x);
+      glm::ivec3 begin = glm::max(glm::ivec3(0, y, z) * side, inside.first);
+      glm::ivec3 end = glm::min(glm::ivec3(0, y + 1, z + 1) * side, last);
+      const bool whole_rows = end.y - begin.y == side && end.z - begin.z == side;
+      Sample* to = samples.data() + size_t(begin.z - box.first.z) * slice +
+                   size_t(begin.y - box.first.y) * line +
+                   size_t(inside.first.x - box.first.x) * channels;
       for (int x = first_block.x; x < end_block.x; x++) {
-        const BlockEntries entries = next;
-        if (x + 1 < end_block.x) {
-          reader.read(next, ++block);
-          if (ahead) prefetch(volume, next);
-        }
-        const glm::ivec3 origin = glm::ivec3(x, y, z) * side;
-        const glm::ivec3 begin = glm::max(origin, inside.first);
-        const glm::ivec3 end = glm::min(origin + side, last);
-        Sample* to = samples.data() + size_t(begin.z - box.first.z) * slice +
-                     size_t(begin.y - box.first.y) * line +
-                     size_t(begin.x - box.first.x) * channels;
-        if (end - begin == glm::ivec3(side)) {
-          write_block(to, volume, entries, detail, line, slice);
-          continue;
-        }
-        const size_t row = size_t(side) * channels;
-        write_block(whole, volume, entries, detail, row, row * size_t(side));
-        for (int k = begin.z; k < end.z; k++)
-          for (int j = begin.y; j < end.y; j++) {
-            const glm::ivec3 at = glm::ivec3(begin.x, j, k) - origin;
-            std::copy_n(
-                whole + (size_t(at.z * side + at.y) * size_t(side) + size_t(at.x)) * channels,
-                size_t(end.x - begin.x) * channels,
-                to + size_t(k - begin.z) * slice + size_t(j - begin.y) * line);
+        const size_t block = first + size_t(x);
+        if constexpr (std::is_same_v<Sample, uint8_t>) {
+          const int run = last.x / side - x;
+          if (channels == 3 && detail == 0 && whole_rows && run > 0 && x * side >= inside.first.x) {
+            const auto write = volume.levels == 4 ? write_color_run<4> : write_color_run<0>;
+            write(to, volume, reader, block, run, line, slice);
+            to += size_t(run) * row, x += run - 1;
+            continue;
           }
+        }
+        BlockEntries entries;
+        reader.read(entries, block);
+        begin.x = std::max(x * side, inside.first.x), end.x = std::min((x + 1) * side, last.x);
+        const size_t wide = size_t(end.x - begin.x) * channels;
+        if (whole_rows && wide == row) {
+          write_block(to, volume, entries, detail, line, slice);
+        } else {
+          write_block(whole, volume, entries, detail, row, row * size_t(side));
+          const glm::ivec3 skipped = begin - glm::ivec3(x, y, z) * side;
+          for (int k = 0; k < end.z - begin.z; k++)
+            for (int j = 0; j < end.y - begin.y; j++)
+              std::copy_n(whole + size_t((skipped.z + k) * side + skipped.y + j) * row +
+                              size_t(skipped.x) * channels,
+                          wide, to + size_t(k) * slice + size_t(j) * line);
+        }
+        to += wide;
       }
     }
   if (inside.size != box.size) fill_outside(samples.data(), box, inside, channels);
