@@ -93,12 +93,29 @@ double fetch_rate(const CompressedVolume& volume, double seconds) {
   return count / (thread_seconds_now() - began);
 }
 
-// Returns the part of the bricks that need not be decoded if bones alone are seen, and all else is
-// clear.
+// Bones alone are seen, and all else is clear.
+OpacityTable bones_alone() {
+  return {32, [](glm::vec3 color) {
+            return glm::distance(color, glm::vec3(232, 222, 198)) < 30 ? 0.8f : 0.f;
+          }};
+}
+
+// Returns the part of the volume that is seen: the rest might be culled.
+double seen_share(const CompressedVolume& volume) {
+  const OpacityTable bones = bones_alone();
+  Rng random(9);
+  constexpr int looks = 100000;
+  int seen = 0;
+  for (int i = 0; i < looks; i++) {
+    const glm::vec3 at(random.uniform(), random.uniform(), random.uniform());
+    seen += bones.trilinear(fetch_between(volume, at * glm::vec3(volume.size - 1))) >= 1 / 256.f;
+  }
+  return double(seen) / looks;
+}
+
+// Returns the part of the bricks that need not be decoded.
 double culled_share(const CompressedVolume& volume, const std::vector<glm::ivec3>& bricks) {
-  const OpacityTable bones(32, [](glm::vec3 color) {
-    return glm::distance(color, glm::vec3(232, 222, 198)) < 30 ? 0.8f : 0.f;
-  });
+  const OpacityTable bones = bones_alone();
   const auto culled = std::ranges::count_if(
       bricks, [&](glm::ivec3 brick) { return opacity_bound(volume, bones, brick) < 1 / 256.f; });
   return double(culled) / double(bricks.size());
@@ -151,6 +168,7 @@ void bench_volume_compressed(BenchReport& report, const BenchOptions& options) {
     report.add("volume.compressed.decode_rate",
                decode_rate(compressed, bricks, detail, seconds) / 1e9, "Gvoxel/s", where);
   }
+  report.add("volume.compressed.seen", seen_share(compressed), "", name("rvq"));
   report.add("volume.compressed.culled", culled_share(compressed, bricks), "", name("rvq"));
   report.add("volume.compressed.fetch_rate", fetch_rate(compressed, seconds) / 1e6, "M/s",
              name("rvq"));
@@ -177,6 +195,7 @@ ReportPage volume_compressed_page() {
                         {"volume.compressed.train_s", "training"},
                         {"volume.compressed.encode_rate", "encoding"},
                         {"volume.compressed.fetch_rate", "fetching"},
+                        {"volume.compressed.seen", "voxels seen"},
                         {"volume.compressed.culled", "bricks culled"}},
             .most_rows = 3},
            {.caption = "Decoding",

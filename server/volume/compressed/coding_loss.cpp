@@ -15,17 +15,17 @@ namespace wellspring::volume {
 
 namespace {
 
-struct SliceDeviation {
+struct SliceLoss {
   double squares = 0;
   uint64_t samples = 0, foreground = 0, background = 0;
 };
 
 template <class Sample>
-SliceDeviation compare_slice(const BlockSource& source, const CompressedVolume& compressed,
+SliceLoss compare_slice(const BlockSource& source, const CompressedVolume& compressed,
                              std::optional<double> threshold, int z) {
   const glm::ivec3 blocks = compressed.blocks();
   const int channels = compressed.channels;
-  SliceDeviation all;
+  SliceLoss all;
   float block[3 * block_voxels];
   Sample decoded[3 * block_voxels];
   for (int y = 0; y < blocks.y; y++)
@@ -58,9 +58,9 @@ CodingLoss compare_compressed(const Volume& volume, const CompressedVolume& comp
   if (volume.size != compressed.size || volume.channels != compressed.channels ||
       source.kind != compressed.kind)
     throw std::invalid_argument("volumes of different sizes or kinds are compared");
-  std::vector<SliceDeviation> slices(size_t(compressed.blocks().z));
+  std::vector<SliceLoss> slices(size_t(compressed.blocks().z));
   parallel_each(int(slices.size()), [&](int z) {
-    SliceDeviation& slice = slices[size_t(z)];
+    SliceLoss& slice = slices[size_t(z)];
     switch (compressed.kind) {
       case SampleKind::u8: slice = compare_slice<uint8_t>(source, compressed, background, z); break;
       case SampleKind::u16:
@@ -72,7 +72,7 @@ CodingLoss compare_compressed(const Volume& volume, const CompressedVolume& comp
   CodingLoss all;
   double squares = 0;
   uint64_t samples = 0;
-  for (const SliceDeviation& slice : slices) {
+  for (const SliceLoss& slice : slices) {
     squares += slice.squares, samples += slice.samples;
     all.foreground += slice.foreground, all.background += slice.background;
   }
