@@ -271,8 +271,8 @@ struct Exhibit {
   std::vector<PointOfInterest> points;
   std::vector<std::string> allowed_hosts;  // servers whose pictures may hang here: HOST, HOST:PORT
   std::vector<ExhibitPiece> pieces;
-  std::vector<std::string> piece_languages;  // that pieces are spoken in, besides the first
-  std::vector<ExhibitLamp> lamps;  // one for each of the scene's, but for the day's sun
+  std::vector<std::string> piece_languages;  // pieces have words in these, besides the first
+  std::vector<ExhibitLamp> lamps;            // one for each of the scene's, but for the day's sun
   std::vector<ChangingLight> lights;
   std::optional<Day> day;
   std::vector<ExhibitAnimation> animations;

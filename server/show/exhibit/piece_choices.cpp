@@ -90,8 +90,8 @@ void show_pieces(const Exhibit& exhibit, const ShownPieces& all, World& world) {
   for (size_t i = 0; i < pieces.size(); i++) {
     const int image = pieces[i].image;
     if (image < 0 || pieces[i].layers.empty()) continue;
-    ShownPicture now = shown_picture(pieces[i], i < choices.size() ? choices[i] : PieceChoice{},
-                                     all.language);
+    ShownPicture now =
+        shown_picture(pieces[i], i < choices.size() ? choices[i] : PieceChoice{}, all.language);
     if (shown[size_t(image)] != now) world.show_picture(image, now);
   }
 }

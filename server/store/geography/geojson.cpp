@@ -93,8 +93,8 @@ class GeoReader {
     read_geometry(geometry, {&at, "geometry"}, properties, 0, is_first);
   }
 
-  void read_geometry(const GeoValue& geometry, const GeoPlace& at, const GeoValue* properties, int depth,
-                     bool& is_first) {
+  void read_geometry(const GeoValue& geometry, const GeoPlace& at, const GeoValue* properties,
+                     int depth, bool& is_first) {
     const std::string type = type_of(geometry, at);
     if (type == "GeometryCollection") {
       if (depth >= most_geo_depth) fail(at, "collections lie too deep within one another");
@@ -251,10 +251,9 @@ void add_geo_languages(const nlohmann::json* properties, const std::vector<std::
   constexpr size_t longest_tag = 12, most_languages = 100;
   if (!properties) return;
   const auto add = [&](std::string_view tag) {
-    const bool is_tag = tag.size() >= 2 && tag.size() <= longest_tag &&
-                        std::ranges::all_of(tag, [](unsigned char c) {
-                          return std::isalnum(c) || c == '-';
-                        });
+    const bool is_tag =
+        tag.size() >= 2 && tag.size() <= longest_tag &&
+        std::ranges::all_of(tag, [](unsigned char c) { return std::isalnum(c) || c == '-'; });
     if (is_tag && languages.size() < most_languages) languages.emplace(tag);
   };
   for (const std::string& name : names) {
@@ -266,7 +265,7 @@ void add_geo_languages(const nlohmann::json* properties, const std::vector<std::
       continue;
     }
     const std::string_view all(name), before = all.substr(0, at),
-                           after = all.substr(at + language_mark.size());
+                                      after = all.substr(at + language_mark.size());
     for (const auto& property : properties->items()) {
       const std::string_view key(property.key());
       if (key.size() > name.size() - language_mark.size() && key.starts_with(before) &&

@@ -15,12 +15,12 @@ namespace wellspring::store {
 
 inline constexpr size_t most_geo_bytes = size_t(32) << 20;
 inline constexpr size_t most_geo_points = 500000, most_geo_features = 50000;
-inline constexpr double farthest_geo = 1e8;  // of a coordinate, of either sign
+inline constexpr double farthest_geo = 1e8;  // bounds coordinates of either sign
 inline constexpr int most_geo_depth = 8;     // collections within one another
 
 // Holds a line, a ring without its repeated last place, or points.
 struct GeoPart {
-  size_t first = 0, count = 0;  // of GeoFile::points
+  size_t first = 0, count = 0;  // in GeoFile::points
   bool begins = true;           // a hole does not begin a polygon: it belongs to the part before
 };
 
@@ -29,7 +29,7 @@ struct GeoFeature {
   Kind kind = Kind::points;
   size_t first_part = 0, parts = 0;
   const nlohmann::json* properties = nullptr;  // an object; null: there is none
-  bool is_first = true;                        // of those that a collection of geometries becomes
+  bool is_first = true;                        // a collection of geometries becomes several
 };
 
 struct GeoFile {
@@ -37,7 +37,7 @@ struct GeoFile {
   std::vector<dvec2> points;
   std::vector<GeoPart> parts;
   std::vector<GeoFeature> features;
-  GeoBox box;                 // of all points; empty: there are none
+  GeoBox box;                  // around all points; empty: there are none
   std::optional<GeoBox> bbox;  // as the file tells it: west, south, east, north
 };
 

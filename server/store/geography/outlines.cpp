@@ -36,9 +36,7 @@ void add_cuts(dvec2 a, dvec2 b, const GeoBox& texels, std::vector<dvec2>& to) {
   to.push_back(b);
 }
 
-bool crosses_grid(dvec2 a, dvec2 b) {
-  return glm::floor(a / geo_grid) != glm::floor(b / geo_grid);
-}
+bool crosses_grid(dvec2 a, dvec2 b) { return glm::floor(a / geo_grid) != glm::floor(b / geo_grid); }
 
 GeoBox box_of(dvec2 a, dvec2 b) { return {glm::min(a, b), glm::max(a, b)}; }
 

@@ -14,7 +14,7 @@ namespace wellspring::store {
 // last point of the one before.
 struct GeoOutlines {
   struct Run {
-    size_t first = 0, count = 0;  // of `points`
+    size_t first = 0, count = 0;  // in `points`
     double before = 0;            // length of the line up to it
     GeoBox box;
   };
@@ -33,7 +33,7 @@ struct GeoOutlines {
 // x * across + y * down + at.
 struct GeoWindow {
   dvec2 across{1, 0}, down{0, 1}, at{0};
-  GeoBox texels;  // what is wanted, on the grid
+  GeoBox texels;  // these are wanted; its sides lie on the grid
   GeoBox places;  // box around the same before it is mapped
   dvec2 apply(dvec2 p) const { return p.x * across + p.y * down + at; }
 };
@@ -45,7 +45,7 @@ GeoWindow make_geo_window(dvec2 across, dvec2 down, dvec2 at, const GeoBox& texe
 
 // Holds corners of a part of a line, in texels.
 struct GeoPiece {
-  size_t first = 0, count = 0;  // of the corners
+  size_t first = 0, count = 0;  // in the corners
   double before = 0;            // length of the line up to it, before it is mapped
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "store/painting/draw_geo.h"
 
+#include <cairo.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +12,7 @@ namespace {
 
 using GeoKind = GeoFeature::Kind;
 
-constexpr double reach = 3;             // texels around the window that are drawn, too
+constexpr double reach = 3;              // texels around the window that are drawn, too
 constexpr double thinnest_stroke = 0.3;  // texels; thinner ones are drawn paler
 constexpr double least_shape = 0.06;     // texels; smaller ones are not seen
 constexpr double least_dash = 2.5;       // texels of dash and gap; finer ones are drawn paler
@@ -52,7 +54,8 @@ class GeoPainter {
                            reach + 0.5 * width * scale_);
   }
   void set_color(const PaintColor& color, double alpha = 1) {
-    cairo_set_source_rgba(cairo_, color.red, color.green, color.blue, color.alpha * alpha);
+    cairo_set_source_rgba(cairo_, double(color.red), double(color.green), double(color.blue),
+                          double(color.alpha) * alpha);
   }
   void move_to(dvec2 p) { cairo_move_to(cairo_, p.x - canvas_.origin.x, p.y - canvas_.origin.y); }
   void line_to(dvec2 p) { cairo_line_to(cairo_, p.x - canvas_.origin.x, p.y - canvas_.origin.y); }
@@ -67,8 +70,7 @@ class GeoPainter {
         box.high.y >= near.high.y)
       return true;
     GeoOutlines outline;
-    const dvec2 corners[4] = {
-        box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
+    const dvec2 corners[4] = {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
     outline.add(corners, 4, true);
     clip_ring(outline, outline.lines[0], window(0), corners_);
     cairo_new_path(cairo_);
@@ -206,8 +208,8 @@ class GeoPainter {
   const GeoCanvas& canvas_;
   double& work_;
   cairo_t* const cairo_;
-  const double scale_;  // texels of a length of 1
-  const GeoBox texels_;  // of the level, that are drawn
+  const double scale_;   // texels of a length of 1
+  const GeoBox texels_;  // these of the level are drawn
   std::vector<dvec2> corners_;
   std::vector<GeoPiece> pieces_;
 };

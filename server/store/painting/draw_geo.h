@@ -3,15 +3,15 @@
 // is looked at. Widths are those of ink on paper: what is thinner than a texel is paler there, so
 // coarse levels look like the mean of fine ones.
 #pragma once
-#include <cairo.h>
-
 #include "store/painting/geo_drawing.h"
+
+struct _cairo;  // cairo.h
 
 namespace wellspring::store {
 
 // Says which texels are drawn: Cairo's surface begins at texel `origin` of the level.
 struct GeoCanvas {
-  cairo_t* cairo = nullptr;
+  _cairo* cairo = nullptr;
   PaintPlacement to_window;  // from the drawing's places to the surface
   dvec2 origin{0};
   int width = 0, height = 0;

@@ -12,7 +12,7 @@ namespace {
 using GeoKind = GeoFeature::Kind;
 
 constexpr double farthest_longitude = 540, farthest_latitude = 90;
-constexpr double least_cosine = 0.05;  // of the middle latitude
+constexpr double least_cosine = 0.05;  // bounds that of the middle latitude
 constexpr size_t most_simple_styles = 5000;
 
 // Reads "#rgb" or "#rrggbb"; names of colours are not known.
@@ -26,7 +26,7 @@ bool read_simple_color(const nlohmann::json& properties, const char* name, Paint
   const char *begin = text.data(), *end = begin + text.size();
   if (text.size() != 6 || std::from_chars(begin, end, code, 16).ptr != end) return false;
   const auto part = [code](int shift) { return float(code >> shift & 255) / 255; };
-  color = {part(16), part(8), part(0), color.alpha > 0 ? color.alpha : 1};
+  color = {part(16), part(8), part(0), color.alpha > 0 ? color.alpha : 1.f};
   return true;
 }
 
@@ -87,8 +87,8 @@ void add_shapes(const GeoFile& file, const GeoFeature& feature, const GeoFrame& 
       places.push_back(frame.place(file.points[part.first + i]));
     if (feature.kind == GeoKind::points) {
       for (dvec2 place : places)
-        drawing.shapes.push_back(
-            {feature.kind, style, 0, 0, place, GeoBox{place, place}.grown(look.radius + half_stroke)});
+        drawing.shapes.push_back({feature.kind, style, 0, 0, place,
+                                  GeoBox{place, place}.grown(look.radius + half_stroke)});
       continue;
     }
     if (part.begins || drawing.shapes.empty())
@@ -107,8 +107,8 @@ GeoBox geo_bounds(const GeoFile& file) {
   GeoBox box = file.bbox.value_or(file.box);
   if (box.empty()) return {{-180, -90}, {180, 90}};
   const dvec2 size = box.high - box.low;
-  const double least = std::max({1e-3 * std::max(size.x, size.y), 1e-6,
-                                 1e-9 * glm::length(box.high)});
+  const double least =
+      std::max({1e-3 * std::max(size.x, size.y), 1e-6, 1e-9 * glm::length(box.high)});
   for (int i = 0; i < 2; i++)
     if (size[i] < least) box.low[i] -= least, box.high[i] += least;
   return box;

@@ -16,7 +16,7 @@ namespace wellspring::store {
 
 // Says how names are written. `size` 0: not at all.
 struct GeoLettering {
-  double size = 0;  // of an em
+  double size = 0;  // length of an em
   std::string family = "serif";
   bool bold = false, slanted = false;
   PaintColor fill{0.13f, 0.12f, 0.1f, 1}, halo{1, 1, 1, 0};
@@ -30,7 +30,7 @@ struct GeoStyle {
   PaintColor fill, stroke, casing;  // alpha 0: none
   double width = 0, casing_width = 0;
   std::array<double, 2> dash{0, 0};  // on, off; 0: it is whole
-  double radius = 0;                 // of a point
+  double radius = 0;                 // a point's
   GeoLettering label;
 };
 
@@ -45,9 +45,9 @@ struct GeoShape {
 
 struct GeoName {
   PaintPath letters;
-  GeoBox box;                           // with its halo
-  std::array<dvec2, 4> corners;         // of a turned box around the letters
-  double size = 0, halo_width = 0;      // of an em; around the letters
+  GeoBox box;                       // with its halo
+  std::array<dvec2, 4> corners;     // they make a turned box around the letters
+  double size = 0, halo_width = 0;  // length of an em; width around the letters
   PaintColor fill, halo;
   float letters_cover = 0, halo_cover = 0;  // shares of the turned box
 };
@@ -58,8 +58,8 @@ struct GeoDrawing {
   std::vector<GeoShape> shapes;
   std::vector<GeoName> names;
   GeoBoxTree shape_tree, name_tree;
-  PaintBox frame;  // nothing is drawn beyond it
-  std::set<std::string, std::less<>> languages;  // that it has names in
+  PaintBox frame;                                // nothing is drawn beyond it
+  std::set<std::string, std::less<>> languages;  // it has names in these
 };
 
 // Says how coordinates become places: west, south, east and north of `bounds` are the sides of

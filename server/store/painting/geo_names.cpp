@@ -10,7 +10,7 @@ namespace wellspring::store {
 namespace {
 
 constexpr double x_height = 0.35;  // half of it lies so far above a line of letters, in ems
-constexpr double ascent = 0.8, descent = 0.25;  // of letters, in ems
+constexpr double ascent = 0.8, descent = 0.25;  // reach of letters, in ems
 
 // Says where the middle of a name's line of letters stands.
 struct GeoStand {

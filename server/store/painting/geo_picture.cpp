@@ -11,8 +11,8 @@ namespace wellspring::store {
 
 namespace {
 
-constexpr double longest_map = 32768;    // texels of the longer side
-constexpr double most_map_aspect = 64;   // of the longer side by the shorter one
+constexpr double longest_map = 32768;      // texels of the longer side
+constexpr double most_map_aspect = 64;     // longer side by the shorter one
 constexpr double border_of_points = 0.04;  // around what has no bbox, of its larger side
 constexpr double paper_millimetre = 0.001, simple_pixel = 0.0003;  // shares of the width
 
@@ -29,8 +29,7 @@ std::shared_ptr<const PaintedPicture> open_geojson(const std::string& path,
   }
   if (!is_geographic(file.box.empty() ? frame.bounds : file.box))
     throw LoadError(path, "", "has no longitudes and latitudes; a painting can give their bounds");
-  const double aspect =
-      std::clamp(geo_aspect(frame.bounds), 1 / most_map_aspect, most_map_aspect);
+  const double aspect = std::clamp(geo_aspect(frame.bounds), 1 / most_map_aspect, most_map_aspect);
   Painting painting;
   painting.width = int64_t(std::lround(longest_map * std::min(aspect, 1.0)));
   painting.height = int64_t(std::lround(longest_map * std::min(1 / aspect, 1.0)));

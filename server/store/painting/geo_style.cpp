@@ -16,7 +16,7 @@ namespace {
 
 constexpr double most_millimetres = 1000;
 constexpr size_t most_geo_styles = 100, most_label_properties = 16;
-constexpr int most_geo_items = 8;  // of a painting
+constexpr int most_geo_items = 8;  // in a painting
 
 // Reads a length in millimetres as a share of the picture's width.
 void read_length(FieldReader& fields, const char* name, const char* about, double millimetre,
@@ -32,8 +32,7 @@ void read_geo_label(FieldReader& fields, double millimetre, GeoLettering& label)
   fields.boolean("slanted", label.slanted);
   read_color(fields, "fill", label.fill);
   read_color(fields, "halo", label.halo);
-  read_length(fields, "halo_mm", "how far it reaches around letters", millimetre,
-              label.halo_width);
+  read_length(fields, "halo_mm", "how far it reaches around letters", millimetre, label.halo_width);
   dvec2 shift(0);
   if (fields.vector("shift_mm", most_millimetres, shift, "to the right and down"))
     label.shift = shift * millimetre;
@@ -81,8 +80,8 @@ std::string geo_path(FieldReader& fields, const PaintingReading& reading) {
 // Puts a map of this aspect into the middle of a box.
 PaintBox fit_into(const PaintBox& box, double aspect) {
   const dvec2 size = box.high - box.low, middle = 0.5 * (box.low + box.high);
-  const dvec2 half = 0.5 * dvec2(std::min(size.x, size.y * aspect),
-                                 std::min(size.y, size.x / aspect));
+  const dvec2 half =
+      0.5 * dvec2(std::min(size.x, size.y * aspect), std::min(size.y, size.x / aspect));
   return {middle - half, middle + half};
 }
 
@@ -125,9 +124,8 @@ PaintItem read_geo_item(FieldReader& fields, PaintingReading& reading) {
                                frame.frame.high);
   GeoStyles styles;
   fields.text("style_by", styles.by, "property that names a feature's style");
-  fields.part("style", "how features are drawn", [&](FieldReader& part) {
-    read_geo_style(part, millimetre, styles.styles[0]);
-  });
+  fields.part("style", "how features are drawn",
+              [&](FieldReader& part) { read_geo_style(part, millimetre, styles.styles[0]); });
   fields.members("styles", "of kinds of features, each with what differs from style",
                  [&](const std::string& kind, FieldReader& one) {
                    if (styles.styles.size() > most_geo_styles) return;

@@ -81,10 +81,10 @@ struct PaintItem {
   double width = 0;          // a stroke's
   PaintPlacement placement;  // a group's
   std::vector<PaintItem> children;
-  int symbol = -1;   // draws one of the painting's symbols as its only child
-  int brush = -1;    // -1: the brush of what lies below
-  double shade = 0;  // how far the lightness of repeated symbols varies
-  std::shared_ptr<const GeoDrawing> geo;  // what a geo item draws
+  int symbol = -1;                        // draws one of the painting's symbols as its only child
+  int brush = -1;                         // -1: the brush of what lies below
+  double shade = 0;                       // how far the lightness of repeated symbols varies
+  std::shared_ptr<const GeoDrawing> geo;  // a geo item draws it
   // Says how a repeat sows, and a hatch lies.
   double cell = 0, jitter = 0, density = 1;
   double least_scale = 1, most_scale = 1;  // a symbol's
@@ -139,7 +139,7 @@ struct Painting {
   std::vector<PaintBrush> brushes;
   std::vector<PaintItem> symbols;  // groups; each includes only earlier ones
   std::vector<PaintLayer> layers;
-  std::vector<std::string> languages;  // that it has labels in, each once
+  std::vector<std::string> languages;  // it has labels in these, each once
 };
 
 inline constexpr int64_t least_painting = 64, longest_painting = 262144;  // texels a side

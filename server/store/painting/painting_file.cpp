@@ -20,7 +20,7 @@ constexpr double painting_degree = double(pi) / 180;
 constexpr double farthest_gradient = 100;  // widths of the picture
 constexpr double longest_brush = 0.5;      // bounds a brush's stroke
 constexpr size_t most_paint_languages = 100;
-constexpr double most_slender = 20;        // length of a brush's stroke by its width
+constexpr double most_slender = 20;  // length of a brush's stroke by its width
 
 void read_paint_gradient(const std::string& name, FieldReader& fields, PaintingReading& reading) {
   PaintGradient gradient;

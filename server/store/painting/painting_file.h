@@ -20,11 +20,11 @@ Painting read_painting(const std::string& path, const std::string& language);
 struct PaintingReading {
   Painting painting;
   std::string language;
-  std::string folder;  // of the file
+  std::string folder;  // has the file
   std::map<std::string, int, std::less<>> gradients, brushes, symbols;
   int items = 0, points = 0, groups = 0, repeats = 0, geo_items = 0;
   int depth = 0;
-  std::set<std::string, std::less<>> languages;  // that labels are in
+  std::set<std::string, std::less<>> languages;  // labels are in these
   uint64_t next_seed() { return painting.seed * 1000003 + uint64_t(++seeds_); }
 
  private:

@@ -107,10 +107,10 @@ TEST_F(GeoJsonTest, NamesThePlaceOfAFault) {
   names(fault_of("LineString", "[[1, 2], [3]]"), "/coordinates/1: ", "no position");
   names(fault_of("LineString", "[[1, 2]]"), "/coordinates: ", "two positions");
   names(fault_of("Polygon", "[[[0, 0], [1, 0], [0, 0]]]"), "/coordinates/0: ", "four positions");
-  names(fault_of("Polygon", "[[[0, 0], [1, 0], [1, 1], [0, 1]]]"), "/coordinates/0: ",
-        "where it begins");
-  names(fault_of("MultiPolygon", "[[[[0, 0], [1, 0], [1, 1], [0, 1]]]]"), "/coordinates/0/0: ",
-        "where it begins");
+  names(fault_of("Polygon", "[[[0, 0], [1, 0], [1, 1], [0, 1]]]"),
+        "/coordinates/0: ", "where it begins");
+  names(fault_of("MultiPolygon", "[[[[0, 0], [1, 0], [1, 1], [0, 1]]]]"),
+        "/coordinates/0/0: ", "where it begins");
   names(fault_of("Polygon", "{}"), "/coordinates: ", "no list");
   EXPECT_NE(fault_of("Point", "[1e999, 2]").find("out of range"), std::string::npos);
   EXPECT_NE(fault_of("Point", "[NaN, 2]").find("not JSON"), std::string::npos);
@@ -130,13 +130,11 @@ TEST_F(GeoJsonTest, BoundsNestingAndPositions) {
 }
 
 TEST_F(GeoJsonTest, FindsTextsByLanguage) {
-  const nlohmann::json properties = {{"name", "Wien"},
-                                     {"name:en", "Vienna"},
-                                     {"name_sk", "Viedeň"},
-                                     {"label", {{"en", "City"}, {"de", "Stadt"}}},
-                                     {"number", 12},
-                                     {"long", std::string(198, 'x') + "ééé"},
-                                     {"odd", "a\nb"}};
+  const nlohmann::json properties = {
+      {"name", "Wien"},      {"name:en", "Vienna"},
+      {"name_sk", "Viedeň"}, {"label", {{"en", "City"}, {"de", "Stadt"}}},
+      {"number", 12},        {"long", std::string(198, 'x') + "ééé"},
+      {"odd", "a\nb"}};
   const std::vector<std::string> names{"name:{language}", "name_{language}", "name"};
   EXPECT_EQ(store::geo_text(&properties, names, "en"), "Vienna");
   EXPECT_EQ(store::geo_text(&properties, names, "en-GB"), "Vienna");

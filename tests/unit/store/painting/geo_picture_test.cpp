@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Maps of GeoJSON: outlines lie on the right texels, tiles meet, levels agree, names are in the
 // language that was asked for, and much data is drawn quickly.
+#include <cairo.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,11 +78,12 @@ const char* const black = R"("bounds": [0, 0, 4096, 4096], "frame": [0, 0, 1, 1]
 
 TEST_F(GeoPictureTest, AnAreaCoversTheTexelsOfItsPlaces) {
   // A coordinate is a texel here, north is up: y of texels is 4096 - y.
-  const Picture picture = paint(
-      collection(feature("Polygon", "[[[1000, 3096], [2000, 3096], [2000, 2096], [1000, 2096], "
-                                    "[1000, 3096]], [[1400, 2696], [1500, 2696], [1500, 2596], "
-                                    "[1400, 2596], [1400, 2696]]]")),
-      black);
+  const Picture picture =
+      paint(collection(feature("Polygon",
+                               "[[[1000, 3096], [2000, 3096], [2000, 2096], [1000, 2096], "
+                               "[1000, 3096]], [[1400, 2696], [1500, 2696], [1500, 2596], "
+                               "[1400, 2596], [1400, 2696]]]")),
+            black);
   const Piece part = picture->paint(0, 900, 900, 1200, 1200);
   int wrong = 0;
   for (int y = 0; y < 1200; y++)
@@ -96,11 +98,12 @@ TEST_F(GeoPictureTest, AnAreaCoversTheTexelsOfItsPlaces) {
 }
 
 TEST_F(GeoPictureTest, PolygonsOfOneFeatureDoNotCutHolesIntoEachOther) {
-  const Picture picture = paint(
-      collection(feature("MultiPolygon", "[[[[1000, 3096], [2000, 3096], [2000, 2096], [1000, "
-                                         "2096], [1000, 3096]]], [[[1500, 3096], [2500, 3096], "
-                                         "[2500, 2096], [1500, 2096], [1500, 3096]]]]")),
-      black);
+  const Picture picture =
+      paint(collection(feature("MultiPolygon",
+                               "[[[[1000, 3096], [2000, 3096], [2000, 2096], [1000, "
+                               "2096], [1000, 3096]]], [[[1500, 3096], [2500, 3096], "
+                               "[2500, 2096], [1500, 2096], [1500, 3096]]]]")),
+            black);
   for (int64_t x : {1200, 1800, 2300}) EXPECT_EQ(red_at(picture, x, 1500), 0) << x;
   EXPECT_EQ(red_at(picture, 2600, 1500), 255);
 }
@@ -126,7 +129,7 @@ TEST_F(GeoPictureTest, AreasCloseAsTheyAreOnTheGround) {
   const auto& level = picture->levels()[0];
   EXPECT_EQ(level.width, 32768);
   EXPECT_NEAR(double(level.height), 32768, 2);
-  // What has no bbox has a border.
+  // A file without a bbox has a border.
   const Picture bare = open(collection(square));
   EXPECT_EQ(bare->paint(5, 2, 2, 1, 1).bytes[0], 255);
   EXPECT_LT(bare->paint(5, 512, 512, 1, 1).bytes[0], 250);
@@ -155,10 +158,12 @@ std::string rough_ring(int count, double x, double y, double radius) {
 
 std::string valley() {
   return collection(
-      feature("Polygon", "[" + rough_ring(4000, 20, 48, 3) + ", " + rough_ring(800, 20, 48, 1) + "]",
+      feature("Polygon",
+              "[" + rough_ring(4000, 20, 48, 3) + ", " + rough_ring(800, 20, 48, 1) + "]",
               R"({"name": "Valley", "name_de": "Tal", "fill": "#3080c0"})") +
-      "," + feature("LineString", "[[14, 45], [26, 51.37], [15, 50], [15.01, 44]]",
-                    R"({"name": "The long river", "stroke": "#c02020", "stroke-width": 4})") +
+      "," +
+      feature("LineString", "[[14, 45], [26, 51.37], [15, 50], [15.01, 44]]",
+              R"({"name": "The long river", "stroke": "#c02020", "stroke-width": 4})") +
       "," + feature("Point", "[21, 49]", R"({"name": "Town"})"));
 }
 
@@ -179,7 +184,8 @@ TEST_F(GeoPictureTest, TilesMeetAsOneDrawing) {
       for (int y = 0; y < tile->height; y++)
         for (int x = 0; x < 4 * tile->width; x++) {
           const int whole = both.bytes[size_t(4 * width * (256 * below + y) + 4 * 256 * right + x)];
-          most = std::max(most, std::abs(whole - int(tile->bytes[size_t(4 * tile->width * y + x)])));
+          most =
+              std::max(most, std::abs(whole - int(tile->bytes[size_t(4 * tile->width * y + x)])));
         }
     }
     EXPECT_LE(most, 1) << "level " << level;
@@ -213,8 +219,8 @@ TEST_F(GeoPictureTest, CoarseLevelsAreTheMeanOfFineOnes) {
 }
 
 TEST_F(GeoPictureTest, NamesAreWholeAcrossTilesAndInTheLanguageAskedFor) {
-  const std::string text = collection(
-      feature("Point", "[2048, 2148]", R"({"name": "Nothing", "name:en": "Falconwell",
+  const std::string text =
+      collection(feature("Point", "[2048, 2148]", R"({"name": "Nothing", "name:en": "Falconwell",
         "name_de": "Falkenbrunn"})"));
   const char* const item = R"("bounds": [0, 0, 4096, 4096], "frame": [0, 0, 1, 1],
     "style": {"label": {"size_mm": 40, "fill": "#000000"}})";
@@ -224,8 +230,9 @@ TEST_F(GeoPictureTest, NamesAreWholeAcrossTilesAndInTheLanguageAskedFor) {
     for (int64_t top : {1792, 2048}) {
       const Picture picture = paint(text, item, language);
       for (int64_t x = left; x < left + 1024; x += 256)
-        sum += 255 - mean_of(*picture->fetch(PieceKey(1, 0, uint32_t(x / 256), uint32_t(top / 256)))
-                                  .piece);
+        sum +=
+            255 -
+            mean_of(*picture->fetch(PieceKey(1, 0, uint32_t(x / 256), uint32_t(top / 256))).piece);
     }
     return sum;
   };
@@ -250,13 +257,15 @@ TEST_F(GeoPictureTest, NamesStandWhereTheyAreRead) {
       "one.geojson",
       collection(
           // The letter U: the middle of its box is outside.
-          feature("Polygon", "[[[0, 0], [90, 0], [90, 80], [70, 80], [70, 10], [20, 10], [20, 80], "
-                             "[0, 80], [0, 0]]]",
+          feature("Polygon",
+                  "[[[0, 0], [90, 0], [90, 80], [70, 80], [70, 10], [20, 10], [20, 80], "
+                  "[0, 80], [0, 0]]]",
                   R"({"name": "U"})") +
-          "," + feature("LineString", "[[0, -10], [10, -20], [60, -70], [61, -80]]",
-                        R"({"name": "slope"})") +
-          "," + feature("Point", "[-50, -50]", R"({"name": "one"})") +
-          "," + feature("Point", "[-50, -50.5]", R"({"name": "two"})"))));
+          "," +
+          feature("LineString", "[[0, -10], [10, -20], [60, -70], [61, -80]]",
+                  R"({"name": "slope"})") +
+          "," + feature("Point", "[-50, -50]", R"({"name": "one"})") + "," +
+          feature("Point", "[-50, -50.5]", R"({"name": "two"})"))));
   store::GeoFrame frame;
   frame.bounds = {{-100, -100}, {100, 100}}, frame.frame = {{0, 0}, {1, 1}};
   store::GeoStyles styles;
@@ -267,7 +276,7 @@ TEST_F(GeoPictureTest, NamesStandWhereTheyAreRead) {
     return 0.5 * (drawing.names[i].box.low + drawing.names[i].box.high) * 200.0 - 100.0;
   };
   const dvec2 u = middle(0);
-  const bool in_leg = u.x > 0 && u.x < 20, in_base = -u.y > 0 && -u.y < 10;
+  const bool in_leg = u.x > 0 && u.x<20, in_base = -u.y> 0 && -u.y < 10;
   EXPECT_TRUE(in_leg || (u.x > 70 && u.x < 90) || in_base) << u.x << " " << u.y;
   const auto& slope = drawing.names[1].corners;
   const dvec2 along = slope[1] - slope[0];
@@ -288,9 +297,8 @@ TEST_F(GeoPictureTest, KindsHaveStylesOfTheirOwn) {
 }
 
 TEST_F(GeoPictureTest, DashesGoOnFromTileToTile) {
-  const Picture picture =
-      paint(collection(feature("LineString", "[[0, 2148], [4096, 2148]]")),
-            R"("bounds": [0, 0, 4096, 4096], "frame": [0, 0, 1, 1],
+  const Picture picture = paint(collection(feature("LineString", "[[0, 2148], [4096, 2148]]")),
+                                R"("bounds": [0, 0, 4096, 4096], "frame": [0, 0, 1, 1],
     "style": {"stroke": "#000000", "width_mm": 4, "dash_mm": [20, 10]})");
   // A period is 122.9 texels, of which the first 81.9 are ink.
   for (int64_t x = 5; x < 4090; x += 7) {
