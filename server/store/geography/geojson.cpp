@@ -104,6 +104,10 @@ class GeoReader {
         read_geometry(one, {&list, nullptr, index++}, properties, depth + 1, is_first);
       return;
     }
+    constexpr const char* types[] = {"Point",           "MultiPoint", "LineString",
+                                     "MultiLineString", "Polygon",    "MultiPolygon"};
+    if (std::ranges::find(types, type) == std::end(types))
+      fail({&at, "type"}, "'" + type.substr(0, 40) + "' is no geometry of GeoJSON");
     if (to_.features.size() >= most_geo_features)
       fail(at, "there are more than " + std::to_string(most_geo_features) + " features");
     GeoFeature feature;
@@ -127,12 +131,10 @@ class GeoReader {
         read_line(coordinates[i], {&place, nullptr, i}, 2);
     } else if (type == "Polygon") {
       feature.kind = areas, read_polygon(coordinates, place);
-    } else if (type == "MultiPolygon") {
+    } else {
       feature.kind = areas;
       for (size_t i = 0; i < coordinates.size(); i++)
         read_polygon(coordinates[i], {&place, nullptr, i});
-    } else {
-      fail({&at, "type"}, "'" + type.substr(0, 40) + "' is no geometry of GeoJSON");
     }
     feature.parts = to_.parts.size() - feature.first_part;
     if (feature.parts == 0) return;  // empty coordinates are allowed, and nowhere

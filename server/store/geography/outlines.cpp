@@ -138,7 +138,7 @@ void cut_line(const GeoOutlines& outlines, const GeoOutlines::Line& line, const 
       dvec2 from = begin;
       const double whole = glm::length(b - begin);
       for (dvec2 to : parts) {
-        if (!overlaps(box_of(from, to).grown(1e-9), window.texels)) {
+        if (!overlaps(box_of(from, to), window.texels)) {
           open = false;
         } else {
           if (!open) {

@@ -105,7 +105,7 @@ TEST(Outlines, WindowsAgreeAboutALineThatCrossesBoth) {
   // Within both windows the corners are the same numbers.
   for (const auto* part : {&left, &right})
     for (dvec2 p : *part)
-      if (p.x >= 64 && p.x <= 448) EXPECT_TRUE(std::ranges::count(both, p)) << p.x;
+      EXPECT_TRUE(p.x < 64 || p.x > 448 || std::ranges::count(both, p) > 0) << p.x;
 }
 
 TEST(Outlines, PointsThatCannotBeToldApartAreLeftOut) {
@@ -115,7 +115,7 @@ TEST(Outlines, PointsThatCannotBeToldApartAreLeftOut) {
   std::vector<dvec2> corners;
   std::vector<GeoPiece> pieces;
   store::cut_line(outlines, outlines.lines[0], window_of({dvec2(0), dvec2(256)}), corners, pieces);
-  EXPECT_LT(corners.size(), 6000u);
+  EXPECT_LT(corners.size(), 10000u);
   EXPECT_GT(corners.size(), 1000u);
 }
 
