@@ -40,7 +40,7 @@ export const parts = {
   'castle/book': { scripts: ['castle/book'], into: 'content/castle/book', files: /\.(jpg|webm)$/,
     command: (out) => ['bash', 'castle/book/make_pictures.sh', out] },
   'castle/pictures': { scripts: ['paintings.mjs', 'paintings'], into: 'content/castle/pictures',
-    files: /\.painting\.json$/, command: (out) => ['node', 'paintings.mjs', out] },
+    files: /\.(painting\.json|geojson)$/, command: (out) => ['node', 'paintings.mjs', out] },
   'castle/nebula': { scripts: ['nebula.mjs'], into: 'content/castle/pictures',
     files: /^nebula\.png$/, command: (out) => ['node', 'nebula.mjs', out] },
   'first-room/scene': { scripts: ['first-room'], into: 'content/first-room', files: /^scene\.glb$/,

@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { argv, exit } from 'node:process';
 
 import { make_maps } from './paintings/maps.mjs';
+import { make_parishes } from './paintings/parishes.mjs';
 import { make_valley } from './paintings/valley.mjs';
 
 const folder = argv[2];
@@ -16,3 +17,4 @@ if (!folder) {
 }
 for (const [name, file] of [['valley', make_valley()], ...make_maps()])
   writeFileSync(join(folder, `${name}.painting.json`), `${JSON.stringify(file)}\n`);
+writeFileSync(join(folder, 'parishes_1850.geojson'), `${JSON.stringify(make_parishes())}\n`);

@@ -2,6 +2,7 @@
 // Draws the valley's map in five years, each in the manner of its time. Places are in metres east
 // and north of a corner of the valley.
 import { make_frame, make_signs } from './map_signs.mjs';
+import { parish_item } from './parishes.mjs';
 import { box, fill, oval, random_source, round, Sheet, stroke } from './pen.mjs';
 
 const east = 4000, north = 2500;
@@ -276,7 +277,8 @@ function make_map(year) {
   const [title, subtitle] = titles[year];
   sheet.layer('paint', m.paper, { grain: { period: year < 1500 ? 0.0004 : 0.00025, depth: m.stains,
     octaves: 9 } },
-    [map, ...make_frame({ ...m, ...frame, title, subtitle, metres: east,
+    [map, ...(year === 1850 ? [parish_item(frame)] : []),
+    ...make_frame({ ...m, ...frame, title, subtitle, metres: east,
       measure: { en: '500 metres', de: '500 Meter', sk: '500 metrov' } }), ...folds, ...stains]);
   return sheet.file;
 }

@@ -26,7 +26,8 @@ const may_enter = {
     picture: [''],
     remote: [],
     format: ['remote', 'picture', ''],
-    painting: ['picture', ''],
+    geography: [],
+    painting: ['geography', 'picture', ''],
     open: ['format', 'painting', 'remote', 'picture', ''],
   },
   volume: {

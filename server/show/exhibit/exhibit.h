@@ -141,6 +141,8 @@ struct PieceLayer {
   LocalText label, text;
   std::optional<int> year;  // year of a map
   PictureLayer shown;
+  // The same with words in another language, by its tag.
+  std::map<std::string, std::shared_ptr<const LargePicture>, std::less<>> spoken;
 };
 inline constexpr size_t most_piece_layers = 32;
 
@@ -269,7 +271,8 @@ struct Exhibit {
   std::vector<PointOfInterest> points;
   std::vector<std::string> allowed_hosts;  // servers whose pictures may hang here: HOST, HOST:PORT
   std::vector<ExhibitPiece> pieces;
-  std::vector<ExhibitLamp> lamps;  // one for each of the scene's, but for the day's sun
+  std::vector<std::string> piece_languages;  // pieces have words in these, besides the first
+  std::vector<ExhibitLamp> lamps;            // one for each of the scene's, but for the day's sun
   std::vector<ChangingLight> lights;
   std::optional<Day> day;
   std::vector<ExhibitAnimation> animations;

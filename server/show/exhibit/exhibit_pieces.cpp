@@ -12,6 +12,7 @@
 #include "show/exhibit/exhibit_objects.h"
 #include "show/exhibit/exhibit_sources.h"
 #include "store/open/open_picture.h"
+#include "store/open/spoken_picture.h"
 #include "store/picture/sample_picture.h"
 #include "store/picture/texels.h"
 
@@ -258,13 +259,25 @@ void read_corners(FieldReader& fields, PieceLayer& layer) {
   else fields.fail("corners", "are no quadrangle: three of them lie on a line");
 }
 
+// Adds the same picture in the exhibit's other languages, as far as it has words in them.
+void add_spoken(const Exhibit& exhibit, const std::string& path, const std::string& name,
+                PieceLayer& layer) {
+  const LargePicture& first = *layer.shown.picture;
+  for (const std::string& language : exhibit.languages) {
+    const std::vector<std::string>& known = first.pyramid->languages();
+    if (language == exhibit.languages.front() || std::ranges::count(known, language) == 0) continue;
+    layer.spoken[language] = std::make_shared<LargePicture>(
+        first, std::make_shared<SpokenPicture>(*first.pyramid, path, name, language));
+  }
+}
+
 // Opens the picture of a layer; without a source of its own it is in that of the piece.
 void read_source(const Exhibit& exhibit, FieldReader& fields, const std::string& otherwise,
                  Need need, PieceLayer& layer, std::vector<Problem>& problems) {
   layer.source = otherwise;
   fields.text("source", layer.source,
-              "a tiled TIFF, a Deep Zoom file, a folder of Zoomify or IIIF, a JPEG or PNG, or the "
-              "address of an IIIF image service",
+              "a tiled TIFF, a Deep Zoom file, a folder of Zoomify or IIIF, a JPEG or PNG, a "
+              ".geojson or .painting.json, or the address of an IIIF image service",
               need, most_address_bytes);
   std::string name;
   fields.text("layer", name, "of a painting that is described in words; its first");
@@ -273,6 +286,7 @@ void read_source(const Exhibit& exhibit, FieldReader& fields, const std::string&
   try {
     layer.shown.picture = std::make_shared<LargePicture>(
         shared_store(), open_picture(path, name, exhibit.languages.front(), exhibit.allowed_hosts));
+    add_spoken(exhibit, path, name, layer);
   } catch (const LoadError& error) {
     problems.push_back({error.file, error.where, error.what_});
   } catch (const std::length_error& error) {
@@ -402,6 +416,11 @@ void read_pieces(Exhibit& exhibit, FieldReader& root, std::vector<Problem>& prob
   read_allowed_hosts(exhibit, root);
   root.parts("pieces", most_exhibit_pieces, "what hangs in the scene and is no part of its files",
              [&](FieldReader& fields) { read_piece(exhibit, fields, problems); });
+  std::vector<std::string>& spoken = exhibit.piece_languages;
+  for (const ExhibitPiece& piece : exhibit.pieces)
+    for (const PieceLayer& layer : piece.layers)
+      for (const auto& [language, picture] : layer.spoken)
+        if (std::ranges::count(spoken, language) == 0) spoken.push_back(language);
 }
 
 }  // namespace wellspring::show

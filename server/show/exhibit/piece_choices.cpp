@@ -24,11 +24,16 @@ std::string no_layer(const std::string& piece, const std::string& id) {
   return "the piece '" + piece + "' has no layer '" + id + "'";
 }
 
-ShownPicture shown_picture(const ExhibitPiece& piece, const PieceChoice& choice) {
+PictureLayer layer_in(const PieceLayer& layer, const std::string& language) {
+  return {picture_in(layer, language), layer.shown.placing};
+}
+
+ShownPicture shown_picture(const ExhibitPiece& piece, const PieceChoice& choice,
+                           const std::string& language) {
   ShownPicture shown;
-  shown.base = piece.layers[size_t(choice.layer)].shown;
+  shown.base = layer_in(piece.layers[size_t(choice.layer)], language);
   if (choice.by == Blend::none) return shown;
-  shown.over = piece.layers[size_t(choice.over)].shown;
+  shown.over = layer_in(piece.layers[size_t(choice.over)], language);
   shown.blend = choice.by, shown.share = choice.share;
   return shown;
 }
@@ -63,13 +68,30 @@ std::string look_through(const Exhibit& exhibit, const LensOrder& order, PieceCh
   return {};
 }
 
-void show_pieces(const Exhibit& exhibit, const PieceChoices& choices, World& world) {
+std::string piece_language(const Exhibit& exhibit, const std::string& language) {
+  const auto& known = exhibit.piece_languages;
+  for (const std::string& tag : {language, language.substr(0, language.find('-'))}) {
+    if (tag == exhibit.languages.front()) return "";
+    if (std::ranges::find(known, tag) != known.end()) return tag;
+  }
+  return "";
+}
+
+const std::shared_ptr<const LargePicture>& picture_in(const PieceLayer& layer,
+                                                      const std::string& language) {
+  const auto found = layer.spoken.find(language);
+  return found == layer.spoken.end() ? layer.shown.picture : found->second;
+}
+
+void show_pieces(const Exhibit& exhibit, const ShownPieces& all, World& world) {
+  const PieceChoices& choices = all.choices;
   const std::vector<ExhibitPiece>& pieces = exhibit.pieces;
   const std::span<const ShownPicture> shown = world.pictures();
   for (size_t i = 0; i < pieces.size(); i++) {
     const int image = pieces[i].image;
     if (image < 0 || pieces[i].layers.empty()) continue;
-    ShownPicture now = shown_picture(pieces[i], i < choices.size() ? choices[i] : PieceChoice{});
+    ShownPicture now =
+        shown_picture(pieces[i], i < choices.size() ? choices[i] : PieceChoice{}, all.language);
     if (shown[size_t(image)] != now) world.show_picture(image, now);
   }
 }

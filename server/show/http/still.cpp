@@ -188,7 +188,7 @@ bool StillRoom::Scenery::add_glass(StillJob order, const std::function<bool()>& 
                                    Image8& image) const {
   const View whole = view_of(order);
   if (!look_through(exhibit, order.lens, order.pieces).empty()) return true;
-  show_pieces(exhibit, order.pieces, *world);
+  show_pieces(exhibit, {order.pieces, ""}, *world);
   const View view = lens_view(whole, order.lens, zoom_of(*world, whole, order.lens), 2);
   const double share = double(view.width) * view.height / order.pixels();
   order.seconds *= share;
@@ -247,7 +247,7 @@ StillPicture StillRoom::make(const StillJob& order, const std::function<bool()>&
   std::shared_lock together(scenery_->looks, std::defer_lock);
   if (others) alone.lock();
   else together.lock();
-  if (others) show_pieces(exhibit, order.pieces, *scenery_->world);
+  if (others) show_pieces(exhibit, {order.pieces, ""}, *scenery_->world);
   arena.execute([&] {
     const std::optional<Frame> frame = scenery_->render(order, scenery_->view_of(order), given_up,
                                                         denoise_seconds, spent, picture);

@@ -22,10 +22,10 @@ constexpr double least_interval = 1 / 30.0;  // seconds from one picture to the 
 constexpr double moving_interval = 0.2;      // while something moves in the visitor's picture
 constexpr double most_share = 0.5;  // share of the renderer's time for all glasses together
 
-PieceChoices choices_of(const Show& show, const Visitor& visitor) {
-  PieceChoices choices = visitor.pieces.shown;
-  look_through(show.stage.exhibit, visitor.lens, choices);
-  return choices;
+ShownPieces choices_of(const Show& show, const Visitor& visitor) {
+  ShownPieces shown = visitor.pieces.shown;
+  look_through(show.stage.exhibit, visitor.lens, shown.choices);
+  return shown;
 }
 
 }  // namespace

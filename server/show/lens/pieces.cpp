@@ -10,7 +10,7 @@ namespace {
 
 // Adds the same pieces of the years before and after the one shown, as far as they lie alike.
 void add_neighbours(const ExhibitPiece& piece, const PieceChoice& choice,
-                    std::vector<Wish>& wishes) {
+                    const std::string& language, std::vector<Wish>& wishes) {
   const PieceLayer& shown = piece.layers[size_t(choice.layer)];
   if (!shown.year) return;
   const PieceLayer *before = nullptr, *after = nullptr;
@@ -27,24 +27,26 @@ void add_neighbours(const ExhibitPiece& piece, const PieceChoice& choice,
   const size_t count = wishes.size();
   for (size_t i = 0; i < count; i++) {
     const PieceKey key = wishes[i].key;
-    if (key.source() != shown.shown.picture->source || wishes[i].urgency != Urgency::shown)
+    if (key.source() != picture_in(shown, language)->source || wishes[i].urgency != Urgency::shown)
       continue;
     for (const PieceLayer* layer : {before, after})
       if (layer)
-        wishes.push_back({{layer->shown.picture->source, key.level(), key.column(), key.row()},
-                          Urgency::wished});
+        wishes.push_back(
+            {{picture_in(*layer, language)->source, key.level(), key.column(), key.row()},
+             Urgency::wished});
   }
 }
 
 }  // namespace
 
-void want_pieces(const ExhibitStage& stage, const PieceChoices& shown, PieceWatch& watch) {
+void want_pieces(const ExhibitStage& stage, const ShownPieces& shown, PieceWatch& watch) {
   std::vector<Wish> wishes = take_wishes(*stage.world, watch.motions);
   if (wishes.empty() && !watch.client) return;
   const std::vector<ExhibitPiece>& pieces = stage.exhibit.pieces;
   for (size_t i = 0; i < pieces.size(); i++)
     if (!pieces[i].layers.empty())
-      add_neighbours(pieces[i], i < shown.size() ? shown[i] : PieceChoice{}, wishes);
+      add_neighbours(pieces[i], i < shown.choices.size() ? shown.choices[i] : PieceChoice{},
+                     shown.language, wishes);
   if (!watch.client) watch.client = std::make_unique<PieceClient>(shared_store());
   watch.client->want(std::move(wishes));
 }
@@ -58,7 +60,7 @@ bool is_wanted_at_once(const VisitorPicture& picture, const View& now) {
   return !is_still(picture.job) || picture.job.view != now || has_new_pieces(picture.pieces);
 }
 
-void follow_pieces(const PieceChoices& shown, VisitorPicture& picture) {
+void follow_pieces(const ShownPieces& shown, VisitorPicture& picture) {
   if (!has_new_pieces(picture.pieces) && picture.shown_pieces == shown) return;
   picture.shown_pieces = shown;
   if (picture.pieces.client) picture.pieces.arrivals = picture.pieces.client->arrivals();

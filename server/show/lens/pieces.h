@@ -9,7 +9,7 @@ namespace wellspring::show {
 
 // Asks for the pieces that a picture, which was just drawn, would have liked to show, and last of
 // all for the same pieces of a map's neighbouring years.
-void want_pieces(const ExhibitStage& stage, const PieceChoices& shown, PieceWatch& watch);
+void want_pieces(const ExhibitStage& stage, const ShownPieces& shown, PieceWatch& watch);
 // Returns whether pieces have come that the last picture did not show.
 bool has_new_pieces(const PieceWatch& watch);
 // Returns whether a picture at rest is to be there at once, and samples make it better later: the
@@ -17,6 +17,6 @@ bool has_new_pieces(const PieceWatch& watch);
 bool is_wanted_at_once(const VisitorPicture& picture, const View& now);
 // Begins anew what is kept of a view at rest, if pieces have come or others are shown; before it is
 // drawn again.
-void follow_pieces(const PieceChoices& shown, VisitorPicture& picture);
+void follow_pieces(const ShownPieces& shown, VisitorPicture& picture);
 
 }  // namespace wellspring::show

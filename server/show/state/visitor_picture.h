@@ -59,7 +59,7 @@ struct LensPicture {
   LensOrder order;  // order that the last picture shows
   float zoom = 1;   // zoom of the last picture
   View seen;        // view through which the visitor looked then
-  PieceChoices shown;
+  ShownPieces shown;
   LampLevels lamps;
   double drawn_at = -1e9;  // show time
   float took = 0;          // seconds of the last picture
@@ -100,7 +100,7 @@ struct VisitorPicture {
   BackdropSurfaces surfaces;  // surfaces of the keyframe, while lights that move shine on it
   SettledBounce settled;      // light of those lights that stay as they are
   PieceWatch pieces;
-  PieceChoices shown_pieces;  // choice of which it shows pieces
+  ShownPieces shown_pieces;  // choice of which it shows pieces
   LensPicture lens;
   bool unshown = false;  // nothing of the newest picture has been sent yet
   // bytes of its cache; bytes of all that is kept for its pictures

@@ -38,10 +38,10 @@ const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor) 
   return (leader ? *leader : visitor).pieces.wish;
 }
 
-void follow_wish(const ShowVisits& visits, Visitor& visitor) {
-  const PieceChoices& wish = pieces_of(visits, visitor);
+void follow_wish(const Exhibit& exhibit, const ShowVisits& visits, Visitor& visitor) {
+  ShownPieces wish{pieces_of(visits, visitor), piece_language(exhibit, visitor.lang)};
   if (visitor.pieces.shown == wish) return;
-  visitor.pieces.shown = wish;
+  visitor.pieces.shown = std::move(wish);
   visitor.picture->around = {}, visitor.picture->fade = {};  // both show something else
   look_anew(*visitor.picture);
 }

@@ -66,6 +66,7 @@ std::shared_ptr<const PicturePyramid> open_picture(const std::string& path,
   if (!fs::is_regular_file(path, error)) throw LoadError(path, "", "is no regular file");
   if (path.ends_with(".painting.json")) return open_painting(path, layer, language);
   if (!layer.empty()) throw LoadError(path, "", "has no layers: only a .painting.json has");
+  if (path.ends_with(".geojson")) return open_geojson(path, language);
   const std::string bytes = first_bytes(path);
   if (bytes.empty()) throw LoadError(path, "", "is empty");
   for (const std::string_view magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
@@ -82,7 +83,7 @@ std::shared_ptr<const PicturePyramid> open_picture(const std::string& path,
                     std::string(format) + " is not read; turn it into a TIFF, JPEG or PNG first");
   throw LoadError(path, "",
                   "is no picture that is known: Deep Zoom, Zoomify, IIIF, TIFF, JPEG, "
-                  "PNG or WebP");
+                  "PNG, WebP, .geojson or .painting.json");
 }
 
 }  // namespace wellspring::store

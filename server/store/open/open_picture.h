@@ -11,10 +11,10 @@ namespace wellspring::store {
 
 // Opens a picture by what is found at `path`: a Deep Zoom .dzi or .xml, a folder of Zoomify
 // (ImageProperties.xml) or of IIIF level 0 (info.json), or these files themselves, a TIFF, a plain
-// JPEG, PNG or WebP, a .painting.json, of which `layer` is shown (empty: the first) with labels in
-// `language`. Or `path` is the http or https address of an IIIF image service, whose host is one of
-// `allowed_hosts` (store/remote/http_get.h). Throws LoadError, which names the file and the place
-// in it.
+// JPEG, PNG or WebP, a .geojson with labels in `language`, a .painting.json, of which `layer` is
+// shown (empty: the first) with labels in it, too. Or `path` is the http or https address of an
+// IIIF image service, whose host is one of `allowed_hosts` (store/remote/http_get.h). Throws
+// LoadError, which names the file and the place in it.
 std::shared_ptr<const PicturePyramid> open_picture(
     const std::string& path, const std::string& layer = "", const std::string& language = "en",
     const std::vector<std::string>& allowed_hosts = {});

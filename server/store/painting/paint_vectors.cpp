@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "store/painting/draw_geo.h"
 #include "store/painting/painting_path.h"
 
 namespace wellspring::store {
@@ -43,8 +44,8 @@ struct PaintState {
 
 class VectorPainter {
  public:
-  VectorPainter(const Painting& painting, PaintedVectors& to, double work)
-      : painting_(painting), to_(to), work_(work) {
+  VectorPainter(const Painting& painting, PaintedVectors& to, dvec2 origin, double work)
+      : painting_(painting), to_(to), origin_(origin), work_(work) {
     view_ = {dvec2(-1), dvec2(to.width + 1, to.height + 1)};
     colors_ = open(CAIRO_FORMAT_ARGB32, to.colors.data(), 4 * to.width);
     brushes_ = open(CAIRO_FORMAT_A8, to.brushes.data(), to.width);
@@ -74,6 +75,9 @@ class VectorPainter {
       case PaintItem::Kind::group: return draw_group(item, state, box);
       case PaintItem::Kind::repeat: return draw_repeat(item, state);
       case PaintItem::Kind::hatch: return draw_hatch(item, state);
+      case PaintItem::Kind::geo:
+        return draw_geo(*item.geo, {colors_.get(), state.to_window, origin_, to_.width, to_.height},
+                        work_);
     }
   }
 
@@ -108,6 +112,7 @@ class VectorPainter {
 
   const Painting& painting_;
   PaintedVectors& to_;
+  const dvec2 origin_;  // texel of the level at which the window begins
   double work_;
   PaintBox view_;
   std::unique_ptr<cairo_t, CairoEnd> colors_, brushes_;
@@ -417,7 +422,7 @@ PaintedVectors draw_vectors(const Painting& painting, const PaintLayer& layer,
       make_vectors(std::max(window.width, window.height),
                    255u << 24 | code(c.red) << 16 | code(c.green) << 8 | code(c.blue));
   const double tiles = std::max(double(to.width) * to.height / (256 * 256), 1.0);
-  VectorPainter painter(painting, to, most_work * tiles);
+  VectorPainter painter(painting, to, {window.left, window.top}, most_work * tiles);
   PaintState state;
   state.to_window = {dvec2(window.scale, 0), dvec2(0, window.scale),
                      dvec2(-window.left, -window.top)};
@@ -434,7 +439,7 @@ PaintColor mean_color(const Painting& painting, const PaintItem& item, const Pai
   state.to_window = {dvec2(side / size.x, 0), dvec2(0, side / size.y),
                      -double(side) * box.low / size};
   {
-    VectorPainter painter(painting, to, most_mean_work);
+    VectorPainter painter(painting, to, dvec2(0), most_mean_work);
     painter.draw(item, state);
   }
   double sums[4] = {};

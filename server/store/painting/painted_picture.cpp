@@ -57,6 +57,7 @@ float relief_at(const StrokeField& field, size_t at) {
 
 PaintedPicture::PaintedPicture(std::string file, Painting painting, size_t layer)
     : file_(std::move(file)), painting_(std::move(painting)), layer_(layer) {
+  languages_ = painting_.languages;
   int64_t width = painting_.width, height = painting_.height;
   for (;; width = (width + 1) / 2, height = (height + 1) / 2) {
     levels_.push_back({width, height, painted_tile, painted_tile});

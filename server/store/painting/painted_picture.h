@@ -33,4 +33,10 @@ std::shared_ptr<const PaintedPicture> open_painting(const std::string& path,
                                                     const std::string& layer = "",
                                                     const std::string& language = "en");
 
+// Opens outlines (".geojson", RFC 7946) as a map on white paper: its bbox, or the bounds of what it
+// has with a border around. It counts as a metre wide. Features may say how they are drawn by
+// GitHub's properties ("stroke", "fill", ...). Throws LoadError as above.
+std::shared_ptr<const PaintedPicture> open_geojson(const std::string& path,
+                                                   const std::string& language = "en");
+
 }  // namespace wellspring::store

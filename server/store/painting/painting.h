@@ -3,12 +3,15 @@
 // it of a file; nothing changes it later, so all threads may paint at once. Lengths are shares of
 // the picture's width unless a name says otherwise, y goes down, colours are sRGB from 0 to 1.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/vec.h"
 
 namespace wellspring::store {
+
+struct GeoDrawing;  // store/painting/geo_drawing.h
 
 struct PaintColor {
   float red = 0, green = 0, blue = 0, alpha = 0;
@@ -71,16 +74,17 @@ struct PaintInk {
 };
 
 struct PaintItem {
-  enum class Kind : uint8_t { shape, group, repeat, hatch };
+  enum class Kind : uint8_t { shape, group, repeat, hatch, geo };
   Kind kind = Kind::shape;
   PaintPath path;  // a shape's outline, a group's clip, the region of a repeat or a hatch
   PaintInk fill, stroke;
   double width = 0;          // a stroke's
   PaintPlacement placement;  // a group's
   std::vector<PaintItem> children;
-  int symbol = -1;   // draws one of the painting's symbols as its only child
-  int brush = -1;    // -1: the brush of what lies below
-  double shade = 0;  // how far the lightness of repeated symbols varies
+  int symbol = -1;                        // draws one of the painting's symbols as its only child
+  int brush = -1;                         // -1: the brush of what lies below
+  double shade = 0;                       // how far the lightness of repeated symbols varies
+  std::shared_ptr<const GeoDrawing> geo;  // a geo item draws it
   // Says how a repeat sows, and a hatch lies.
   double cell = 0, jitter = 0, density = 1;
   double least_scale = 1, most_scale = 1;  // a symbol's
@@ -135,6 +139,7 @@ struct Painting {
   std::vector<PaintBrush> brushes;
   std::vector<PaintItem> symbols;  // groups; each includes only earlier ones
   std::vector<PaintLayer> layers;
+  std::vector<std::string> languages;  // it has labels in these, each once
 };
 
 inline constexpr int64_t least_painting = 64, longest_painting = 262144;  // texels a side

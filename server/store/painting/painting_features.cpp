@@ -286,7 +286,7 @@ void read_feature(FieldReader& fields, PaintItem& group, PaintingReading& readin
       "properties", "kind and name",
       [&](FieldReader& part) {
         part.text("kind", kind, "one of styles", Need::required);
-        label = read_label(part, "label", reading.language);
+        label = read_label(part, "label", reading);
         if (!kind.empty() && !styles.contains(kind))
           part.fail("kind", "there is no style '" + kind + "'");
       },

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 #include "base/load_error.h"
 #include "base/unicode.h"
@@ -18,7 +19,8 @@ namespace {
 constexpr double painting_degree = double(pi) / 180;
 constexpr double farthest_gradient = 100;  // widths of the picture
 constexpr double longest_brush = 0.5;      // bounds a brush's stroke
-constexpr double most_slender = 20;        // length of a brush's stroke by its width
+constexpr size_t most_paint_languages = 100;
+constexpr double most_slender = 20;  // length of a brush's stroke by its width
 
 void read_paint_gradient(const std::string& name, FieldReader& fields, PaintingReading& reading) {
   PaintGradient gradient;
@@ -197,7 +199,8 @@ int read_known(FieldReader& fields, const char* name, const char* about,
   return -1;
 }
 
-std::string read_label(FieldReader& fields, const char* name, const std::string& language) {
+std::string read_label(FieldReader& fields, const char* name, PaintingReading& reading) {
+  const std::string& language = reading.language;
   std::string text;
   const auto found = fields.value().find(name);
   if (found == fields.value().end() || !found->is_object()) {
@@ -207,6 +210,7 @@ std::string read_label(FieldReader& fields, const char* name, const std::string&
   fields.part(name, "what is written, by language", [&](FieldReader& words) {
     for (const auto& [tongue, value] : words.members()) {
       std::string word;
+      if (reading.languages.size() < most_paint_languages) reading.languages.insert(tongue);
       if (value.text(word) && (text.empty() || tongue == "en" || tongue == language)) {
         const bool better = text.empty() || tongue == language || !words.has(language.c_str());
         if (better) text = word;
@@ -238,8 +242,10 @@ Painting read_painting(const std::string& path, const std::string& language) {
   json::Faults faults(path, true, text);
   PaintingReading reading;
   reading.language = language;
+  reading.folder = std::filesystem::path(path).parent_path().string();
   const json::JsonValue root(value, faults);
   FieldReader::read_object(root, [&](FieldReader& fields) { read_painting_root(fields, reading); });
+  reading.painting.languages.assign(reading.languages.begin(), reading.languages.end());
   return std::move(reading.painting);
 }
 

@@ -3,6 +3,7 @@
 // descriptions in painting_file.cpp and painting_items.cpp.
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 
 #include "json/fields.h"
@@ -19,9 +20,11 @@ Painting read_painting(const std::string& path, const std::string& language);
 struct PaintingReading {
   Painting painting;
   std::string language;
+  std::string folder;  // has the file
   std::map<std::string, int, std::less<>> gradients, brushes, symbols;
-  int items = 0, points = 0, groups = 0, repeats = 0;
+  int items = 0, points = 0, groups = 0, repeats = 0, geo_items = 0;
   int depth = 0;
+  std::set<std::string, std::less<>> languages;  // labels are in these
   uint64_t next_seed() { return painting.seed * 1000003 + uint64_t(++seeds_); }
 
  private:
@@ -51,6 +54,6 @@ int read_known(json::FieldReader& fields, const char* name, const char* about,
                const std::map<std::string, int, std::less<>>& known,
                json::Need need = json::Need::optional);
 // Reads a text, or one of several languages.
-std::string read_label(json::FieldReader& fields, const char* name, const std::string& language);
+std::string read_label(json::FieldReader& fields, const char* name, PaintingReading& reading);
 
 }  // namespace wellspring::store

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "store/painting/geo_drawing.h"
 #include "store/painting/paint_vectors.h"
 #include "store/painting/painting_path.h"
 
@@ -113,6 +114,12 @@ void finish_item(PaintItem& item, const Painting& painting) {
       item.cost = 10;
       break;
     }
+    case PaintItem::Kind::geo:
+      if (!item.geo) break;
+      item.bounds = item.geo->frame;
+      item.mean = mean_color(painting, item, item.bounds);
+      item.cost = 10;
+      break;
     case PaintItem::Kind::hatch:
       item.mean = item.stroke.color;
       item.mean.alpha *= float(std::min(item.width / item.cell, 1.0) * item.density);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "store/painting/geo_style.h"
 #include "store/painting/painting_file.h"
 #include "store/painting/painting_finish.h"
 
@@ -34,9 +35,9 @@ PaintPlacement read_placement(FieldReader& fields) {
           scale.y * dvec2(-std::sin(turn), std::cos(turn)), move};
 }
 
-void read_letters(FieldReader& fields, PaintItem& item, const PaintingReading& reading) {
+void read_letters(FieldReader& fields, PaintItem& item, PaintingReading& reading) {
   PaintLettering lettering;
-  lettering.text = read_label(fields, "text", reading.language);
+  lettering.text = read_label(fields, "text", reading);
   fields.vector("at", farthest_item, lettering.at, "where its line begins", Need::required);
   fields.number("size", 1e-9, 10, lettering.size, "of an em", Need::required);
   fields.number("align", 0, 1, lettering.align, "0.5: centred there, 1: ends there");
@@ -132,6 +133,13 @@ bool is_whole_item(const PaintItem& item) {
 
 PaintItem read_paint_item(FieldReader& fields, PaintingReading& reading) {
   PaintItem item;
+  if (fields.has("geojson")) {
+    // It is ink on what lies below, and has no brush of its own.
+    item = read_geo_item(fields, reading);
+    if (!item.geo || !count_item(item, fields, reading)) return {};
+    finish_item(item, reading.painting);
+    return item;
+  }
   if (fields.has("features")) {
     item = read_features(fields, reading);
   } else if (fields.has("group") || fields.has("include")) {

@@ -115,9 +115,13 @@ PaintPath ellipse_path(dvec2 middle, dvec2 radii, double turn) {
            at(-k, -1), at(0, -1), at(k, -1), at(1, -k), at(1, 0)}};
 }
 
-PaintPath letter_path(const PaintLettering& lettering) {
-  constexpr double drawn_size = 256;  // at which hinting plays no part
-  const ScratchCairo cairo = make_scratch();
+namespace {
+
+constexpr double drawn_size = 256;  // at which hinting plays no part
+
+// Opens a drawing in which letters are written at that size.
+ScratchCairo open_lettering(const PaintLettering& lettering) {
+  ScratchCairo cairo = make_scratch();
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
   cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
@@ -130,6 +134,20 @@ PaintPath letter_path(const PaintLettering& lettering) {
                          lettering.slanted ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL,
                          lettering.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(cairo.get(), drawn_size);
+  return cairo;
+}
+
+}  // namespace
+
+double letter_width(const PaintLettering& lettering) {
+  const ScratchCairo cairo = open_lettering(lettering);
+  cairo_text_extents_t extents;
+  cairo_text_extents(cairo.get(), lettering.text.c_str(), &extents);
+  return extents.x_advance * lettering.size / drawn_size;
+}
+
+PaintPath letter_path(const PaintLettering& lettering) {
+  const ScratchCairo cairo = open_lettering(lettering);
   cairo_text_extents_t extents;
   cairo_text_extents(cairo.get(), lettering.text.c_str(), &extents);
   cairo_text_path(cairo.get(), lettering.text.c_str());

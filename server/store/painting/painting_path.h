@@ -26,6 +26,8 @@ struct PaintLettering {
 // Returns the letters' outlines; they come from the machine's fonts, and are the same at all
 // scales.
 PaintPath letter_path(const PaintLettering& lettering);
+// Returns how far a line of letters reaches.
+double letter_width(const PaintLettering& lettering);
 
 // Returns the path with its straight lines cut and moved by up to `amount`, as a hand draws them.
 PaintPath wobbled_path(const PaintPath& path, double amount, double period, uint64_t seed);

@@ -44,9 +44,12 @@ class PicturePyramid : public PieceSource {
   // Returns the tile as a JPEG file that shows the same texels, if it is stored as one and nothing
   // has to be decoded for that; else nothing. Throws LoadError for a file that cannot be read.
   virtual std::vector<uint8_t> stored_jpeg(PieceKey) const { return {}; }
+  // Returns the languages that it has words in; empty: it is the same in all.
+  const std::vector<std::string>& languages() const { return languages_; }
 
  protected:
   std::vector<PyramidLevel> levels_;
+  std::vector<std::string> languages_;
 };
 
 // Reads a whole level into one piece; only for levels of at most `coarsest_side` texels a side.

@@ -32,6 +32,15 @@ LargePicture::LargePicture(std::shared_ptr<PieceStore> of,
   source = store->add(pyramid);
 }
 
+LargePicture::LargePicture(const LargePicture& other, std::shared_ptr<const PicturePyramid> picture)
+    : store(other.store),
+      pyramid(std::move(picture)),
+      coarsest(other.coarsest),
+      scale(other.scale),
+      sizes(other.sizes) {
+  source = store->add(pyramid);
+}
+
 LargePicture::~LargePicture() { store->remove(source); }
 
 PictureSampler::PictureSampler(const PieceStore& store) : reader_(store), store_(store) {}

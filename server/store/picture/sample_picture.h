@@ -27,6 +27,9 @@ struct LargePicture {
 
   // Adds the source to the store, and reads its coarsest level. Throws LoadError.
   LargePicture(std::shared_ptr<PieceStore> store, std::shared_ptr<const PicturePyramid> pyramid);
+  // Adds a picture that differs from another one in small things, as words on it, and takes its
+  // coarsest level: nothing is read. The levels are of the same size.
+  LargePicture(const LargePicture& other, std::shared_ptr<const PicturePyramid> pyramid);
   ~LargePicture();
   LargePicture(const LargePicture&) = delete;
   LargePicture& operator=(const LargePicture&) = delete;

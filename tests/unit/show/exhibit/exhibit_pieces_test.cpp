@@ -5,6 +5,7 @@
 
 #include "image/image.h"
 #include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/piece_choices.h"
 #include "store/picture/sample_picture.h"
 #include "unit/show/exhibit/room_package.h"
 #include "world/surface.h"
@@ -143,6 +144,38 @@ TEST(ExhibitPieces, WhatIsWrongIsNamed) {
         "/pieces/5/id", "/pieces/5/width_m", "/pieces/5/place/yaw_deg", "leaves the package",
         "/pieces/6/place/position"})
     EXPECT_NE(all.find(part), std::string::npos) << part << " is not in\n" << all;
+}
+
+TEST(ExhibitPieces, WordsOnAMapAreInTheLanguageOfWhoLooks) {
+  Pieces p("[]");
+  p.exhibit.languages = {"en", "de", "sk"};
+  p.folder.write("a.geojson", R"({"type": "Feature", "bbox": [0, 0, 2, 2],
+    "properties": {"name": "Town", "name:de": "Stadt"},
+    "geometry": {"type": "Point", "coordinates": [1, 1]}})");
+  read_fields(json::parse(R"({"pieces": [
+      {"id": "map", "kind": "picture", "source": "a.geojson", "width_m": 2,
+       "place": {"position": [103, 1.5, 4]}, "label": {"en": "A"}},
+      {"id": "photo", "kind": "picture", "source": "a.png", "width_m": 2,
+       "place": {"position": [106, 1.5, 4]}, "label": {"en": "A"}}]})"),
+              "exhibit.json", p.problems,
+              [&](FieldReader& root) { read_pieces(p.exhibit, root, p.problems); });
+  ASSERT_TRUE(p.problems.empty()) << p.all();
+  EXPECT_EQ(p.exhibit.piece_languages, (std::vector<std::string>{"de"}));
+  EXPECT_EQ(piece_language(p.exhibit, "de-AT"), "de");
+  EXPECT_EQ(piece_language(p.exhibit, "de"), "de");
+  for (const char* other : {"en", "sk", "fr", ""}) EXPECT_EQ(piece_language(p.exhibit, other), "");
+  World world(p.exhibit.scene);
+  const size_t map = size_t(p.exhibit.pieces[0].image), photo = size_t(p.exhibit.pieces[1].image);
+  const auto shown = [&](size_t image) { return world.pictures()[image].base.picture; };
+  const auto english = shown(map), plain = shown(photo);
+  show_pieces(p.exhibit, {{}, "de"}, world);
+  EXPECT_NE(shown(map), english);
+  EXPECT_EQ(shown(map), p.exhibit.pieces[0].layers[0].spoken.at("de"));
+  EXPECT_NE(shown(map)->source, english->source);
+  EXPECT_EQ(shown(map)->coarsest.bytes, english->coarsest.bytes);
+  EXPECT_EQ(shown(photo), plain);
+  show_pieces(p.exhibit, {}, world);
+  EXPECT_EQ(shown(map), english);
 }
 
 }  // namespace
