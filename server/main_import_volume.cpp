@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/child.h"
+#include "base/clock.h"
 #include "base/load_error.h"
 #include "base/parallel.h"
 #include "json/text.h"
