@@ -111,7 +111,7 @@ void fit_nearest(Fit& fit, const PointTree& tree, const std::vector<SurfacePoint
       at[k] = moved_point(fit.move, points[k].position);
       nearest[k] = tree.points()[tree.nearest(at[k])];
       squares[k] = glm::dot(at[k] - nearest[k], at[k] - nearest[k]);
-      if (!(squares[k] < endless)) squares[k] = endless;  // what is compared must be a number
+      if (!(squares[k] < endless)) squares[k] = endless;  // comparisons need numbers
     }
     std::vector<dvec3> from, to;
     double error = 0;
