@@ -111,7 +111,7 @@ void fit_nearest(Fit& fit, const PointTree& tree, const std::vector<SurfacePoint
       at[k] = moved_point(fit.move, points[k].position);
       nearest[k] = tree.points()[tree.nearest(at[k])];
       squares[k] = glm::dot(at[k] - nearest[k], at[k] - nearest[k]);
-      if (!(squares[k] < endless)) squares[k] = endless;  // sorting needs numbers
+      if (!(squares[k] < endless)) squares[k] = endless;  // comparisons need numbers
     }
     std::vector<dvec3> from, to;
     double error = 0;
@@ -148,10 +148,16 @@ void fit_finely(Fit& fit, Registration& result, const DensityField& field,
       PlaneGap gap{there[k].position, dvec3(found[k].boundary_normal), 0};
       gap.gap = glm::dot(gap.normal, there[k].position - found[k].boundary);
       gaps.push_back(gap);
-      sizes.push_back(std::abs(gap.gap));
+      sizes.push_back(gap.gap);
     }
     result.found_share = double(gaps.size()) / double(points.size());
     if (gaps.size() < 6) return;
+    // Those nearest to the middle gap are kept: a surface that is too large everywhere would else
+    // be pushed to one side, where the gaps of the other side would be left out.
+    std::vector<double> sorted = sizes;
+    std::nth_element(sorted.begin(), sorted.begin() + ptrdiff_t(sorted.size() / 2), sorted.end());
+    const double middle = sorted[sorted.size() / 2];
+    for (double& size : sizes) size = std::abs(size - middle);
     std::vector<PlaneGap> kept;
     double error = 0;
     for (size_t k : smallest_share(sizes, settings.kept_share))

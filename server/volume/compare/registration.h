@@ -20,7 +20,7 @@ struct ControlPair {
 std::vector<ControlPair> read_control_pairs(const std::string& file);
 
 struct RegistrationSettings {
-  double kept_share = 0.8;  // the nearest points pull; the others do not
+  double kept_share = 0.8;  // the best points pull; the others do not
   int most_iterations = 60;
   double threshold = 0;  // density per metre, as ConeSettings has it
   double reach = 16;     // voxels, as ConeSettings has it
@@ -37,7 +37,8 @@ struct Registration {
 // Starts from the control pairs, if there are any; else from the best of all 24 ways to lay the
 // principal axes on one another, and of the frames as they are. First the nearest boundary points
 // of the volume pull at the surface's, by point-to-point steps; then boundaries along the normals,
-// to a fraction of a voxel, by point-to-plane steps. Throws std::invalid_argument if the mesh has
+// to a fraction of a voxel, by point-to-plane steps of those points whose gap is nearest to
+// the middle one. Throws std::invalid_argument if the mesh has
 // no triangle with an area, or the volume no boundary.
 Registration register_surface(const SurfaceMesh& mesh, const DensityField& field,
                               const std::vector<ControlPair>& pairs,
