@@ -54,20 +54,23 @@ export function make_parishes() {
     return [[...places, places[0]]];
   };
   const back = (line) => [...line].reverse();
-  // RFC 7946 wants outer rings to go round to the left.
-  const areas = [
-    [names('Parish of Saint Adela', 'Pfarre Sankt Adela', 'Farnosť svätej Adely'),
+  // RFC 7946 wants outer rings to go round to the left. Names stand where the map has room.
+  const parishes = [
+    [names('Parish of Saint Adela', 'Pfarre Sankt Adela', 'Farnosť svätej Adely'), [1150, 2010],
       ring(upper, river.slice(0, 5).reverse(), [[0, 2500]])],
-    [names('Parish of Falconwell Town', 'Stadtpfarre Falkenbrunn', 'Farnosť Sokolí Prameň'),
+    [names('Parish of Falconwell Town', 'Stadtpfarre Falkenbrunn', 'Farnosť Sokolí Prameň'), [640, 1085],
       ring(lower, river.slice(4, 10).reverse().slice(1), back(upper).slice(1))],
-    [names('Parish of Bell Wood', 'Pfarre Glockenholz', 'Farnosť Zvonový háj'),
+    [names('Parish of Bell Wood', 'Pfarre Glockenholz', 'Farnosť Zvonový háj'), [1330, 330],
       ring([[0, 0]], river.slice(9).reverse(), back(lower).slice(1))],
-    [names('Parish of the Great Wood', 'Pfarre am Großen Wald', 'Farnosť pri Veľkom lese'),
+    [names('Parish of the Great Wood', 'Pfarre am Großen Wald', 'Farnosť pri Veľkom lese'), [2200, 1990],
       ring(eastern, [[4000, 2500]], river.slice(0, 6))],
-    [names('Parish of the Castle', 'Burgpfarre', 'Hradná farnosť'),
+    [names('Parish of the Castle', 'Burgpfarre', 'Hradná farnosť'), [3520, 1290],
       ring(river.slice(6).reverse().slice(0, -1), eastern.slice(0, 1), eastern.slice(1),
         [[4000, 0]]).map((places) => [...places].reverse())],
-  ].map(([name, places]) => feature({ kind: 'parish', ...name }, 'Polygon', places));
+  ];
+  const areas = parishes.flatMap(([name, spot, places]) => [
+    feature({ kind: 'parish', ...name }, 'Polygon', places),
+    feature({ kind: 'parish_name', ...name }, 'Point', degrees(spot))]);
   const borders = [river, upper, lower, eastern].map((line, i) => feature(
     { kind: i === 0 ? 'river_border' : 'border' }, 'LineString', line.map(degrees)));
   let number = 0;
@@ -82,8 +85,8 @@ export function make_parishes() {
 export const parish_item = (frame) => ({
   geojson: 'parishes_1850.geojson', bounds,
   frame: [frame.left, frame.top, frame.right, frame.bottom], styles: {
-    parish: { label: { size_mm: 7.5, slanted: true, fill: '#8a3a4a', halo: '#eee8d8b0',
-      halo_mm: 0.7 } },
+    parish_name: { label: { size_mm: 12, slanted: true, fill: '#8a3a4a', halo: '#eee8d8b0',
+      halo_mm: 0.9 } },
     border: { stroke: '#6a2436', width_mm: 0.4, dash_mm: [3, 1.2], casing: '#c0506850',
       casing_mm: 3.2 },
     river_border: { casing: '#c0506838', casing_mm: 4.5 },

@@ -91,7 +91,7 @@ bool read_box(FieldReader& fields, const char* name, double limit, const char* s
   if (!fields.has(name)) return false;
   const std::vector<double> n = fields.numbers(name, 4, -limit, limit);
   if (n.size() != 4) return false;
-  const double least = 1e-9 * limit;
+  constexpr double least = 1e-9;
   if (n[2] - n[0] < least || n[3] - n[1] < least) {
     fields.fail(name, std::string("is ") + sides + ", the first two below the last two");
     return false;
@@ -106,9 +106,9 @@ GeoStyle plain_geo_style(double millimetre) {
   GeoStyle style;
   style.fill = {0.42f, 0.53f, 0.42f, 0.25f};
   style.stroke = {0.24f, 0.22f, 0.2f, 1};
-  style.width = 0.5 * millimetre, style.radius = 1.2 * millimetre;
-  style.label.size = 4 * millimetre, style.label.family = "sans";
-  style.label.halo = {1, 1, 1, 0.8f}, style.label.halo_width = 0.5 * millimetre;
+  style.width = 0.8 * millimetre, style.radius = 2 * millimetre;
+  style.label.size = 9 * millimetre, style.label.family = "sans";
+  style.label.halo = {1, 1, 1, 0.8f}, style.label.halo_width = 0.8 * millimetre;
   return style;
 }
 

@@ -332,6 +332,15 @@ TEST_F(GeoPictureTest, PlacesThatAreNoDegreesWantBounds) {
   EXPECT_TRUE(open(collection(feature("Point", "[10, 50]")))->fetch(PieceKey(1, 0, 1, 1)).piece);
 }
 
+TEST_F(GeoPictureTest, BoundsMayBeAsSmallAsAHouse) {
+  const std::string house = collection(feature(
+      "Polygon", "[[[13.21, 49.04], [13.2102, 49.04], [13.2102, 49.0402], [13.21, 49.04]]]"));
+  const Picture picture = paint(house, R"("bounds": [13.21, 49.04, 13.2104, 49.0404],
+    "frame": [0, 0, 1, 1], "style": {"fill": "#000000"})");
+  EXPECT_EQ(red_at(picture, 1500, 3500), 0);
+  EXPECT_EQ(red_at(picture, 500, 2500), 255);
+}
+
 TEST_F(GeoPictureTest, NamesTheFileAndPlaceOfAFault) {
   const std::string line = collection(feature("LineString", "[[0, 0], [1, 1]]"));
   EXPECT_NE(fault(collection(feature("LineString", "[[0, 0], [1]]")), R"("style": {})")
