@@ -5,7 +5,7 @@
 #pragma once
 #include "store/painting/geo_drawing.h"
 
-struct _cairo;  // cairo.h
+struct _cairo;  // of Cairo
 
 namespace wellspring::store {
 

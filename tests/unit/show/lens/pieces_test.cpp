@@ -83,6 +83,7 @@ TEST_F(PiecesTest, WhoStandsBeforeAPictureSeesItSharpAndAtRestExact) {
 
 TEST_F(PiecesTest, TheFirstPictureAtRestWaitsNeitherForItsTurnNorForSamples) {
   begin(11);
+  ASSERT_TRUE(step_until([&] { return !pictures().empty(); }));
   ASSERT_TRUE(step_until([&] { return green() > 0.8; }));
   Visitor& one = visitor();
   ASSERT_TRUE(step_until([&] { return stands(show->time, one) && !one.picture->at_work; }));
@@ -94,7 +95,8 @@ TEST_F(PiecesTest, TheFirstPictureAtRestWaitsNeitherForItsTurnNorForSamples) {
   VisitorDrawState state = draw_states(*show)[0];
   state.at_work = state.unshown = state.in_pass = state.other_light = false;
   state.stands = state.same_view = state.can_take = true;
-  state.drew_moving = state.sees_moving, state.drawn_at = show->time;
+  state.drew_moving = state.sees_moving;
+  state.drawn_at = show->time;
   EXPECT_TRUE(wants_picture(show->time, state));
   state.at_once = false;
   EXPECT_FALSE(wants_picture(show->time, state)) << "it is not due";
