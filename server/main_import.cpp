@@ -127,7 +127,8 @@ int main(int argc, char** argv) {
   volume.add_option("--time", scan.time, "of several in a file, from 0, to be looked at")
       ->check(CLI::Range(0, 1 << 20));
   volume.add_option("--preview", scan.preview, "a PNG that shows it in the presets that fit it");
-  volume.add_flag("--compress", scan.compress, "write it at 0.75 bits a voxel and 2 to 4 MB of codebooks, with losses");
+  volume.add_flag("--compress", scan.compress,
+                  "write it at 0.75 bits a voxel and 2 to 4 MB of codebooks, with losses");
   volume.add_flag("--overwrite", scan.overwrite, "replace what is there");
   volume.add_flag_callback(
       "--raw-schema",

@@ -15,7 +15,7 @@
 namespace wellspring::program {
 namespace {
 
-constexpr int side = 480;              // pixels of one picture
+constexpr int side = 480;                    // pixels of one picture
 constexpr vec3 wall(0.03f, 0.028f, 0.026f);  // linear, beside and behind the volume
 
 // Puts a picture beside those that are there.

@@ -265,13 +265,14 @@ void import_volume(const VolumeImport& import) {
   if (import.compress) {
     made = fs::path(import.out) / (id + ".rvq");
     volume = compress_to(made, volume, import.overwrite);
-  } else for (const std::string& file : files_of(stored)) {
-    const fs::path name =
-        converts ? fs::path(id + ".nii.gz") : fs::path(file).lexically_relative(home);
-    const fs::path to = fs::path(import.out) / (name.empty() ? fs::path(file).filename() : name);
-    copy_whole(file, to, import.overwrite);
-    if (made.empty()) made = to;
-  }
+  } else
+    for (const std::string& file : files_of(stored)) {
+      const fs::path name =
+          converts ? fs::path(id + ".nii.gz") : fs::path(file).lexically_relative(home);
+      const fs::path to = fs::path(import.out) / (name.empty() ? fs::path(file).filename() : name);
+      copy_whole(file, to, import.overwrite);
+      if (made.empty()) made = to;
+    }
   tell(made.string(), stored, volume);
   if (!import.preview.empty()) write_preview(volume, import.preview);
   nlohmann::ordered_json piece;

@@ -36,7 +36,7 @@ struct StoreStats {
   size_t bytes = 0, budget = 0;
   int pieces = 0, sources = 0, waiting = 0, under_way = 0;
   uint64_t fetched = 0, absent = 0, failed = 0, dropped = 0;
-  float coarser = 0;         // as PieceStore::coarser()
+  float coarser = 0;  // as PieceStore::coarser()
   // Look-ups by pixels, and those of them that were more than a level too coarse.
   uint64_t looked = 0, looked_coarse = 0;
   double fetch_seconds = 0;  // all fetches together

@@ -25,7 +25,7 @@ namespace wellspring::test {
 namespace {
 
 constexpr double sharp_share = 0.6;
-constexpr double jump_rest = 5;  // seconds
+constexpr double jump_rest = 5;                         // seconds
 constexpr double pan_distance = 0.4, pan_speed = 0.25;  // metres, metres a second
 constexpr int tile_connections = 8;
 constexpr int gazers = 32, gazer_width = 640, gazer_height = 360;

@@ -249,15 +249,17 @@ ReportPage volume_reconstruct_page() {
         .columns = {{"volume.reconstruct.one", "one at a time"},
                     {"volume.reconstruct.eight", "eight at a time"},
                     {"volume.reconstruct.times", "times as many"}},
-        .most_rows = 12},
+        .most_rows = 9},
        {.caption = "Angle of gradients, degrees",
         .rows = {{"what", "reconstruction"}},
         .columns = {{"volume.reconstruct.degrees", "angle"}},
-        .across = "samples"},
+        .across = "samples",
+        .most_rows = 7},
        {.caption = "Measured orders",
         .rows = {{"what", "scheme"}},
         .columns = {{"volume.reconstruct.order", "order"}},
-        .across = "of"}}};
+        .across = "of",
+        .most_rows = 6}}};
 }
 
 }  // namespace wellspring::test

@@ -5,7 +5,7 @@
 #pragma once
 #include "store/painting/geo_drawing.h"
 
-struct _cairo;  // of Cairo
+struct _cairo;  // from Cairo
 
 namespace wellspring::store {
 

@@ -165,8 +165,8 @@ vec3 PictureSampler::look(const LargePicture& picture, const PictureFootprint& f
     const PyramidLevel& l = levels[size_t(level)];
     const int x = int(glm::clamp(at.x, 0.0, 1.0) * double(l.width));
     const int y = int(glm::clamp(at.y, 0.0, 1.0) * double(l.height));
-    see(picture, tile_at(picture, level, std::min(x, int(l.width) - 1),
-                         std::min(y, int(l.height) - 1)).key);
+    see(picture,
+        tile_at(picture, level, std::min(x, int(l.width) - 1), std::min(y, int(l.height) - 1)).key);
   };
   looked_++;
   // The finer one of a pixel's two levels has at least the texels that are wanted.

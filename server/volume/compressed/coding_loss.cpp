@@ -22,7 +22,7 @@ struct SliceLoss {
 
 template <class Sample>
 SliceLoss compare_slice(const BlockSource& source, const CompressedVolume& compressed,
-                             std::optional<double> threshold, int z) {
+                        std::optional<double> threshold, int z) {
   const glm::ivec3 blocks = compressed.blocks();
   const int channels = compressed.channels;
   SliceLoss all;
@@ -53,7 +53,7 @@ SliceLoss compare_slice(const BlockSource& source, const CompressedVolume& compr
 }  // namespace
 
 CodingLoss compare_compressed(const Volume& volume, const CompressedVolume& compressed,
-                             std::optional<double> background) {
+                              std::optional<double> background) {
   const BlockSource source = make_block_source(volume);
   if (volume.size != compressed.size || volume.channels != compressed.channels ||
       source.kind != compressed.kind)

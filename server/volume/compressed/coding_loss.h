@@ -20,6 +20,6 @@ struct CodingLoss {
 // Compares all blocks that are no background (see CompressionSettings::background), as the paper
 // does (section 3.1.1). Throws std::invalid_argument if the sizes or channels differ.
 CodingLoss compare_compressed(const Volume& volume, const CompressedVolume& compressed,
-                             std::optional<double> background = std::nullopt);
+                              std::optional<double> background = std::nullopt);
 
 }  // namespace wellspring::volume

@@ -36,8 +36,8 @@ TEST(Volume, ColoursLieSideBySide) {
 
 TEST(Volume, AGridOfFloatsIsFinite) {
   const float infinite = std::numeric_limits<float>::infinity();
-  const Volume volume = volume_of<float>({4, 1, 1}, SampleKind::f32,
-                                         {infinite, -infinite, std::nanf(""), 1e30f});
+  const Volume volume =
+      volume_of<float>({4, 1, 1}, SampleKind::f32, {infinite, -infinite, std::nanf(""), 1e30f});
   EXPECT_EQ(to_grid(volume).values, (std::vector<float>{0, 0, 0, 1e30f}));
 }
 
