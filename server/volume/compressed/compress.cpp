@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 
 #include "base/memory.h"
@@ -318,11 +319,8 @@ CompressedVolume compress_volume(const Volume& given, const CompressionSettings&
   write_header(file.get(), volume);
   std::byte* to = file.get() + layout.codebooks;
   for (const StoredLevel& level : levels) {
-    const size_t words = level.words.size() * sizeof(uint32_t);
-    const size_t samples = level.samples.size() * sizeof(int16_t);
-    std::memcpy(to, level.words.data(), words);
-    std::memcpy(to + words, level.samples.data(), samples);
-    to += words + samples;
+    to = std::ranges::copy(std::as_bytes(std::span(level.words)), to).out;
+    to = std::ranges::copy(std::as_bytes(std::span(level.samples)), to).out;
   }
   const uint64_t code_bits = uint64_t(volume.levels * index_bits(volume.codevectors));
   const int pieces = int((blocks + blocks_a_piece - 1) / blocks_a_piece);
