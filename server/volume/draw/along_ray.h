@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rays through a volume have in common: places in samples, and the exponential.
+// Rays through a volume share this: places in samples, and the exponential.
 #pragma once
 #include <cmath>
 

@@ -129,80 +129,72 @@ class March {
     return color * (from_lamp * diffuse + all_lanes(light.around) * around) + from_lamp * shine;
   }
 
-  void add_up() {
+  // Calls read(full) at each place of the rays, for the lanes whose cell shows something, while
+  // more than `least` of the light behind comes through.
+  template <class Read>
+  void follow(float least, const Read& read) {
     found.clear = all_lanes(1), found.depth = all_lanes(INFINITY);
     LaneMask active = place_ < far_;
     while (any_lane(active)) {
       const LaneMask full = leap(active);
       if (any_lane(full)) {
-        const Lanes3 p = at(place_);
-        const LanesLit sample = linear_value_and_normal(box_, level_.normals.words.data(), p);
-        Lanes density;
-        const Lanes3 color = preset_.table.look(sample.value, density);
-        const Lanes through = fade(density * step_);
-        const LaneMask some = full & (density > 0.0f);
+        read(full);
         found.steps += std::popcount(negative_lanes(full));
-        if (any_lane(some)) {
-          const Lanes share = keep_lanes(some, found.clear * (1.0f - through));
-          found.color = found.color + lit(color, p, sample.normal) * share;
-          const Lanes after = some ? found.clear * through : found.clear;
-          found.depth = (found.clear > 0.5f) & (after <= 0.5f) ? place_ : found.depth;
-          found.clear = after;
-        }
         place_ = full ? place_ + step_ : place_;
       }
-      active = (place_ < far_) & (found.clear > nearly_opaque);
+      active = (place_ < far_) & (found.clear > least);
     }
   }
 
+  void add_up() {
+    follow(nearly_opaque, [&](const LaneMask& full) {
+      const Lanes3 p = at(place_);
+      const LanesLit sample = linear_value_and_normal(box_, level_.normals.words.data(), p);
+      Lanes density;
+      const Lanes3 color = preset_.table.look(sample.value, density);
+      const Lanes through = fade(density * step_);
+      const LaneMask some = full & (density > 0.0f);
+      if (!any_lane(some)) return;
+      const Lanes share = keep_lanes(some, found.clear * (1.0f - through));
+      found.color = found.color + lit(color, p, sample.normal) * share;
+      const Lanes after = some ? found.clear * through : found.clear;
+      found.depth = (found.clear > 0.5f) & (after <= 0.5f) ? place_ : found.depth;
+      found.clear = after;
+    });
+  }
+
   void find_surface() {
-    found.clear = all_lanes(1), found.depth = all_lanes(INFINITY);
     const float threshold = preset_.table.threshold();
     Lanes before = near_, value_before{};
     LaneMask first = LaneMask{} - 1;  // nothing was read yet
-    LaneMask active = place_ < far_;
-    while (any_lane(active)) {
-      const LaneMask full = leap(active);
-      if (any_lane(full)) {
-        const Lanes value = linear_value(box_, at(place_));
-        found.steps += std::popcount(negative_lanes(full));
-        const LaneMask hit = full & (value >= threshold) & (found.clear > 0.5f);
-        if (any_lane(hit)) {
-          const LaneMask crossed = hit & ~first & (value_before < threshold);
-          const Lanes way = (threshold - value_before) / (value - value_before);
-          const Lanes place = crossed ? before + (place_ - before) * way : place_;
-          const Lanes3 p = at(place);
-          const LanesLit there = linear_value_and_normal(box_, level_.normals.words.data(), p);
-          Lanes density;
-          const Lanes3 color =
-              preset_.table.look(lanes_max(there.value, all_lanes(threshold)), density);
-          const Lanes3 light = lit(color, p, there.normal);
-          found.color = choose(hit, light, found.color);
-          found.depth = hit ? place : found.depth;
-          found.clear = hit ? Lanes{} : found.clear;
-        }
-        before = full ? place_ : before, value_before = full ? value : value_before;
-        first &= ~full;
-        place_ = full ? place_ + step_ : place_;
+    follow(0.5f, [&](const LaneMask& full) {
+      const Lanes value = linear_value(box_, at(place_));
+      const LaneMask hit = full & (value >= threshold) & (found.clear > 0.5f);
+      if (any_lane(hit)) {
+        const LaneMask crossed = hit & ~first & (value_before < threshold);
+        const Lanes way = (threshold - value_before) / (value - value_before);
+        const Lanes place = crossed ? before + (place_ - before) * way : place_;
+        const Lanes3 p = at(place);
+        const LanesLit there = linear_value_and_normal(box_, level_.normals.words.data(), p);
+        Lanes density;
+        const Lanes3 color =
+            preset_.table.look(lanes_max(there.value, all_lanes(threshold)), density);
+        found.color = choose(hit, lit(color, p, there.normal), found.color);
+        found.depth = hit ? place : found.depth;
+        found.clear = hit ? Lanes{} : found.clear;
       }
-      active = (place_ < far_) & (found.clear > 0.5f);
-    }
+      before = full ? place_ : before, value_before = full ? value : value_before;
+      first &= ~full;
+    });
   }
 
   void follow_maximum() {
     Lanes most = all_lanes(-1), where = all_lanes(INFINITY);
-    LaneMask active = place_ < far_;
-    while (any_lane(active)) {
-      const LaneMask full = leap(active);
-      if (any_lane(full)) {
-        const Lanes value = linear_value(box_, at(place_));
-        found.steps += std::popcount(negative_lanes(full));
-        const LaneMask more = full & (value > most);
-        most = more ? value : most, where = more ? place_ : where;
-        place_ = full ? place_ + step_ : place_;
-      }
-      active = place_ < far_;
-    }
+    follow(0, [&](const LaneMask& full) {
+      const Lanes value = linear_value(box_, at(place_));
+      const LaneMask more = full & (value > most);
+      most = more ? value : most, where = more ? place_ : where;
+    });
     Lanes opacity;
     const Lanes3 color = preset_.table.look(positive_lanes(most), opacity);
     opacity = keep_lanes(most >= 0.0f, lanes_min(opacity, all_lanes(1)));

@@ -2,7 +2,6 @@
 #include "volume/draw/preview.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -43,7 +42,6 @@ VolumePicture draw_volume(const ShownVolume& volume, const DrawnPreset& preset,
   VolumePicture picture{view.side, view.side, {}, {}};
   picture.color.resize(size_t(view.side) * size_t(view.side));
   picture.clear.resize(picture.color.size());
-  std::atomic<int64_t> steps{0};
   parallel_each(view.side, [&](int y) {
     VolumeRays rays;
     rays.origin = all_lanes(eye);
@@ -55,14 +53,12 @@ VolumePicture draw_volume(const ShownVolume& volume, const DrawnPreset& preset,
       }
       rays.near = Lanes{}, rays.far = all_lanes(INFINITY);
       const MarchedLight found = march(volume, preset, rays, settings);
-      steps += found.steps;
       for (int k = 0; k < std::min(lane_count, view.side - x); k++) {
         const size_t at = size_t(y) * size_t(view.side) + size_t(x + k);
         picture.color[at] = found.color.at(k), picture.clear[at] = found.clear[k];
       }
     }
   });
-  picture.steps = steps;
   return picture;
 }
 

@@ -11,7 +11,6 @@ struct VolumePicture {
   int width = 0, height = 0;
   std::vector<vec3> color;   // linear light of the volume, rows from the top
   std::vector<float> clear;  // share of the light behind it that comes through
-  int64_t steps = 0;         // samples that were read
 };
 
 // Holds how a volume is looked at: from its front, turned around the upright axis.

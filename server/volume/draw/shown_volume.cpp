@@ -121,16 +121,4 @@ ShownVolume make_shown_volume(const Volume& volume) {
   return shown;
 }
 
-VolumeBounds bounds_of(const Volume& volume) {
-  VolumeBounds bounds{glm::dvec3(std::numeric_limits<double>::infinity()),
-                      glm::dvec3(-std::numeric_limits<double>::infinity())};
-  for (int corner = 0; corner < 8; corner++) {
-    const glm::dvec3 at =
-        glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * glm::dvec3(volume.size) - 0.5;
-    const glm::dvec3 place(volume.to_metres * glm::dvec4(at, 1));
-    bounds.low = glm::min(bounds.low, place), bounds.high = glm::max(bounds.high, place);
-  }
-  return bounds;
-}
-
 }  // namespace wellspring::volume

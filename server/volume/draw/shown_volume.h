@@ -46,11 +46,4 @@ struct ShownVolume {
 // Throws std::length_error beyond 2^31 samples.
 ShownVolume make_shown_volume(const Volume& volume);
 
-// Returns the metres of the box whose faces lie half a sample beyond the outermost ones: its
-// corners in the frame of `to_metres`.
-struct VolumeBounds {
-  glm::dvec3 low{0}, high{0};
-};
-VolumeBounds bounds_of(const Volume& volume);
-
 }  // namespace wellspring::volume

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What headers of text have in common: words, numbers, and the names of the files that hold the
-// samples.
+// Headers of text share this: words, numbers, and the names of the files that hold the samples.
 #pragma once
 #include <cstdint>
 #include <string>
