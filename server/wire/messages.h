@@ -255,6 +255,10 @@ struct PieceOrder {
   std::string name, layer, over;
   PieceBlend by = PieceBlend::none;
   float share = 0.5f;
+  double turn = 0;  // degrees
+  vec3 low{0}, high{1};
+  vec4 plane{0};
+  double tilt = 0;  // degrees; 0: as it is at first
   static void list(auto& message, auto& fields) {
     fields.text("name", message.name, "a piece's id", Need::required);
     fields.text("layer", message.layer, "id of the layer to be shown; the first without it");
@@ -263,6 +267,16 @@ struct PieceOrder {
                   "how the second layer is shown: none, curtain (to the right of share), fade (as "
                   "much as share) or difference");
     fields.number("share", 0, 1, message.share, "0..1, of the picture's width or of the mixture");
+    fields.number("turn", -720, 720, message.turn, "degrees that a volume is turned to the left");
+    fields.vector("low", 1, message.low,
+                  "[x, y, z], 0..1: a volume is cut off before these shares of its width, height "
+                  "and depth, counted from its left, bottom and back");
+    fields.vector("high", 1, message.high, "[x, y, z], 0..1: likewise, and behind these");
+    fields.vector("plane", 1000, message.plane,
+                  "[x, y, z, m]: of a volume only what lies that way of a plane is kept, m metres "
+                  "from its middle");
+    fields.number("tilt", 0, 90, message.tilt,
+                  "degrees between a nebula's axis and the eye; 0: as it was found");
   }
   bool operator==(const PieceOrder&) const = default;
 };
@@ -275,6 +289,7 @@ struct LensOrder {
   float radius = 0.15f, zoom = 1;
   std::string name, layer;
   bool difference = false;
+  float depth = 0;
   static void list(auto& message, auto& fields) {
     fields.u32("seq", message.seq, "u32, grows by one; the glass's pictures say it",
                Need::required);
@@ -288,6 +303,8 @@ struct LensOrder {
     fields.text("layer", message.layer, "id of that layer");
     fields.boolean("difference", message.difference,
                    "boolean: by how much the layer differs from what is shown");
+    fields.number("depth", 0, 1000, message.depth,
+                  "metres of a volume that are cut away in it, from the side that is seen");
   }
   bool operator==(const LensOrder&) const = default;
 };

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "world/placed_volume.h"
 #include "world/scene.h"
 
 namespace wellspring::store {
@@ -161,6 +162,11 @@ class World {
   void show_picture(int image, const ShownPicture& shown);
   // Returns what is shown of each of the scene's images; empty if it has no very large pictures.
   std::span<const ShownPicture> pictures() const;
+
+  // Volumes stand in the scene from now on, in place of those before. While no ray is being traced.
+  void place_volumes(std::vector<PlacedVolume> volumes);
+  void show_volume(int volume, VolumeLook look);  // likewise
+  std::span<const PlacedVolume> volumes() const;
 
   // Returns the nearest hit. Rays pass surfaces with alpha where their alpha says so (mask:
   // cut-off; blend: stochastically, decided by a hash of the ray and the hit, so that a replay

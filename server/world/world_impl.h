@@ -49,6 +49,7 @@ struct World::Impl {
       of_lamps;  // copies of the materials of lamps
   LampLevels lamp_levels;
   std::vector<ShownPicture> pictures;    // for each of the images; empty: none is very large
+  std::vector<PlacedVolume> volumes;
   std::vector<std::vector<Face>> faces;  // for each instance of the scene, if placed points to them
   std::vector<Tag> tags;                 // reserved up front: geometries point into it
   RTCScene still_scene = nullptr, moving_scene = nullptr;

@@ -156,6 +156,16 @@ void World::show_picture(int image, const ShownPicture& shown) {
 
 std::span<const ShownPicture> World::pictures() const { return impl_->pictures; }
 
+void World::place_volumes(std::vector<PlacedVolume> volumes) {
+  impl_->volumes = std::move(volumes);
+}
+
+void World::show_volume(int volume, VolumeLook look) {
+  impl_->volumes.at(size_t(volume)).look = std::move(look);
+}
+
+std::span<const PlacedVolume> World::volumes() const { return impl_->volumes; }
+
 void World::commit() {
   if (!impl_->moved) return;
   impl_->moved = false;
