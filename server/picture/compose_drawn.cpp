@@ -12,6 +12,7 @@
 #include "picture/drawn_run.h"
 #include "picture/pixel_light.h"
 #include "picture/soften_edges.h"
+#include "picture/volume_view.h"
 
 namespace wellspring::picture {
 namespace {
@@ -132,6 +133,7 @@ struct Composer {
   KeptLight kept = {};
   bool passing = false;  // the picture is soon replaced: maps light what they can alone
   Shade shade = {};
+  VolumeView volumes = {};
 
   // Returns the light of surfaces of which nothing is known.
   vec3 usual_light() const { return vec3(kept.maps ? kept.maps->usual : 0); }
@@ -285,8 +287,10 @@ auto taker(const Composer& composer, const Planes& planes) {
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
       int i = n * lane_count - half_cell;
       LanePart part{std::max(-i, 0), std::min(run.count - i, lane_count)};
-      planes.put(row + size_t(i + part.begin), part,
-                 composer.light_part(run, p, emitting, moving, mapped, dynamic, rows, n, part));
+      Shown shown = composer.light_part(run, p, emitting, moving, mapped, dynamic, rows, n, part);
+      if (composer.volumes.shows(run.x + i, run.y, lane_count))
+        composer.volumes.lay_over(run.x + i, run.y, composer.offset, shown);
+      planes.put(row + size_t(i + part.begin), part, shown);
     }
   };
 }
@@ -307,6 +311,7 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view,
   composer.kept = kept;
   composer.passing = true;
   composer.shade = Shade(view, visibility.moving_bounds());
+  composer.volumes = VolumeView(kept.volumes, view, false, 0);
   auto differ = [&planes](uint32_t pixel, uint32_t step, int count) {
     return planes.differ(pixel, step, count);
   };

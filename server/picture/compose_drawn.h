@@ -2,9 +2,12 @@
 // Draws a picture anew every frame (light/visible/visibility.h) in light that points remember:
 // shapes and reflectances have to be sharp, light is smoother than both.
 #pragma once
+#include <span>
+
 #include "frame/tonemap.h"
 #include "light/visible/visibility.h"
 #include "picture/keyframe.h"
+#include "world/placed_volume.h"
 
 namespace wellspring::light {
 struct DynamicImage;     // light/virtual/dynamic_image.h
@@ -21,6 +24,8 @@ struct KeptLight {
   const IlluminationMap* maps = nullptr;  // unit of the light in still surfaces' points
   // Dynamic light, computed for pictures of the view that is drawn.
   const DynamicImage* dynamic = nullptr;
+  // Volumes that a picture which is soon replaced shows; others get them later (volume_view.h).
+  std::span<const PlacedVolume> volumes;
 };
 
 // Overwrites all planes of `frame`. `light`: its planes are packed as read_surface() leaves them,

@@ -255,7 +255,7 @@ void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
 }
 
 size_t Compositor::memory_bytes() const {
-  size_t sum = bytes_of(still_.count) + samples_bytes(samples_);
+  size_t sum = bytes_of(still_.count) + samples_bytes(samples_) + volumes_.memory_bytes();
   for (const auto& plane : still_.mean) sum += bytes_of(plane);
   return sum + (shares_ ? 0 : wellspring::picture::memory_bytes(*work_));
 }

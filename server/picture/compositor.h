@@ -17,6 +17,7 @@
 #include "picture/keyframe.h"
 #include "picture/still/still_samples.h"
 #include "picture/surface_image.h"
+#include "picture/volume_view.h"
 
 namespace wellspring::picture {
 
@@ -72,6 +73,8 @@ class Compositor {
     kept_.maps = maps.get();
     maps_ = std::move(maps);
   }
+  // Shows these volumes from now on (borrowed).
+  void set_volumes(std::span<const PlacedVolume> volumes) { kept_.volumes = volumes; }
   // Adds dynamic light to pictures from now on (borrowed; null: none); `image` has to be computed
   // for each view before. Pictures at rest, which become means, are drawn without it.
   void set_dynamic(const DynamicImage* image) { kept_.dynamic = image; }
@@ -85,6 +88,10 @@ class Compositor {
   // pixels each time.
   void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                   Frame& frame, StillShows shows = StillShows::all);
+  // Lays the volumes over a picture at rest, the better the more often it is done for a view.
+  void lay_volumes_over(const View& view, Frame& frame) {
+    volumes_.lay_over(kept_.volumes, view, 1, frame);
+  }
   // Forgets the samples of pixels at which RenderCache::remember(), called before at rest, has
   // found changed light since the last picture.
   void follow_changes(const RenderCache& cache);
@@ -129,6 +136,7 @@ class Compositor {
   StillImage still_;
   StillSamples samples_;
   View sampled_;  // the view of samples_
+  VolumeLayer volumes_;
   bool reconstructed_ = false;
   uint64_t projection_ = 0;  // RenderCache::projection() of the means that are kept
   uint32_t pictures_ = 0;

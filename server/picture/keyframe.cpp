@@ -235,6 +235,26 @@ void lay_over(const MovingPicture& picture, Keyframe& keyframe) {
   }
 }
 
+namespace {
+
+PictureWindow window_of(const Extent& extent, const View& view) {
+  if (!extent.ahead()) return {};
+  PictureWindow window;
+  window.left = whole(extent.low.x - margin, view.width);
+  window.top = whole(extent.low.y - margin, view.height);
+  window.width = whole(extent.high.x + margin + 1, view.width) - window.left;
+  window.height = whole(extent.high.y + margin + 1, view.height) - window.top;
+  return window.empty() ? PictureWindow{} : window;
+}
+
+}  // namespace
+
+PictureWindow window_around(std::span<const vec3> places, const View& view) {
+  const Extent extent = extent_of(places, view);
+  if (extent.ahead() && extent.behind) return {0, 0, view.width, view.height};
+  return window_of(extent, view);
+}
+
 PictureWindow moving_window(const World& world, const View& view) {
   Extent extent;
   for (int i = 0; i < world.instance_count(); i++) {
@@ -245,13 +265,7 @@ PictureWindow moving_window(const World& world, const View& view) {
     if (of_mesh.behind) return {0, 0, view.width, view.height};
     extent.add(of_mesh);
   }
-  if (!extent.ahead()) return {};
-  PictureWindow window;
-  window.left = whole(extent.low.x - margin, view.width);
-  window.top = whole(extent.low.y - margin, view.height);
-  window.width = whole(extent.high.x + margin + 1, view.width) - window.left;
-  window.height = whole(extent.high.y + margin + 1, view.height) - window.top;
-  return window.empty() ? PictureWindow{} : window;
+  return window_of(extent, view);
 }
 
 PictureWindow whole_runs(const PictureWindow& window, const View& view) {

@@ -97,6 +97,9 @@ size_t memory_bytes(const MovingLight& light);
 // Returns the window of `view` in which visible moving meshes of the world may show, with a margin
 // that edges reach; it is empty if they show nowhere.
 PictureWindow moving_window(const World& world, const View& view);
+// Returns the window in which a shape that these corners span may show, in the same way; all of the
+// picture if it reaches behind the eye.
+PictureWindow window_around(std::span<const vec3> places, const View& view);
 // Returns the window widened to whole runs of Raster.
 PictureWindow whole_runs(const PictureWindow& window, const View& view);
 

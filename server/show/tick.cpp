@@ -357,7 +357,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     if (visitor.welcomed && !visitor.picture->at_work &&
         show.drawing->renderer.drawn != visitor.link->id) {
       if (lamps_wait(show, visitor)) light_lamps(show, visitor);
-      follow_wish(show.stage.exhibit, show.visits, visitor);
+      follow_wish(show, visitor);
     }
   if (free && !show.drawing->renderer.drawn) watch_baker(show);
   narrate(show, dt);

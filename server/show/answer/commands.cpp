@@ -18,7 +18,7 @@
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
 #include "show/state/visitor_picture.h"
-#include "show/visit/route.h"
+#include "show/visit/good_view.h"
 #include "wire/json.h"
 
 namespace wellspring::show {

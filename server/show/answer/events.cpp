@@ -7,6 +7,7 @@
 
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
+#include "show/exhibit/exhibit_volumes.h"
 #include "show/state/visitor_world.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
@@ -79,14 +80,16 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
                                 {"shared", exhibit.lamps[i].shared}});
   message["pieces"] = json::array();
   for (const ExhibitPiece& piece : exhibit.pieces) {
-    if (piece.layers.size() < 2) continue;
+    if (piece.layers.size() < 2 && !piece.volume) continue;
     json layers = json::array();
     for (const PieceLayer& layer : piece.layers) {
       json& one = layers.emplace_back(
           json{{"id", layer.id}, {"label", text(layer.label)}, {"text", text(layer.text)}});
       if (layer.year) one["year"] = *layer.year;
     }
-    message["pieces"].push_back({{"id", piece.id}, {"layers", std::move(layers)}});
+    json& told =
+        message["pieces"].emplace_back(json{{"id", piece.id}, {"layers", std::move(layers)}});
+    if (piece.volume) told["volume"] = {{"size", triple(size_of(piece))}};
   }
   message["day"] = nullptr;
   if (const std::optional<Day>& day = exhibit.day)
@@ -155,12 +158,17 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   const PieceChoices& choices = pieces_of(show.visits, visitor);
   for (size_t i = 0; i < choices.size(); i++) {
     const std::vector<PieceLayer>& layers = exhibit.pieces[i].layers;
-    if (layers.size() < 2) continue;
+    if (layers.size() < 2 && !exhibit.pieces[i].volume) continue;
     const PieceChoice& choice = choices[i];
-    message["pieces"][exhibit.pieces[i].id] = {{"layer", layers[size_t(choice.layer)].id},
-                                               {"over", layers[size_t(choice.over)].id},
-                                               {"by", piece_blends[size_t(choice.by)]},
-                                               {"share", choice.share}};
+    json& told =
+        message["pieces"][exhibit.pieces[i].id] = {{"layer", layers[size_t(choice.layer)].id},
+                                                   {"over", layers[size_t(choice.over)].id},
+                                                   {"by", piece_blends[size_t(choice.by)]},
+                                                   {"share", choice.share}};
+    if (!exhibit.pieces[i].volume) continue;
+    told["turn"] = std::round(10 * glm::degrees(choice.turn)) / 10;
+    told["low"] = triple(choice.low), told["high"] = triple(choice.high);
+    told["plane"] = {choice.plane.x, choice.plane.y, choice.plane.z, choice.plane.w};
   }
   if (exhibit.day) message["hour"] = hour_of(show, visitor).value_or(exhibit.day->settings.at);
   for (size_t i = 0; i < exhibit.animations.size(); i++)

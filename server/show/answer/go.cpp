@@ -7,6 +7,7 @@
 #include "show/answer/events.h"
 #include "show/answer/groups.h"
 #include "show/state/in_view.h"
+#include "show/visit/good_view.h"
 #include "show/visit/route.h"
 
 namespace wellspring::show {

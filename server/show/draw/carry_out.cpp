@@ -99,7 +99,10 @@ void use_cores_for_pass(Show& show) {
   show.drawing->renderer.until_moving = seconds_to_moving(show);
   pass.at_work = true;
   Visitor& visitor = visitor_of(show.visits, pass.visitor);
-  if (pass.step == StillPass::Step::finish) visitor.picture->at_work = true;
+  if (pass.step == StillPass::Step::finish) {
+    visitor.picture->at_work = true;
+    go_on_in_world_of(show, visitor);
+  }
   use_cores(*show.drawing,
             [&show, &visitor] { go_on_with_pass(*show.drawing, show.stage, visitor); });
 }

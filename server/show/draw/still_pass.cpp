@@ -48,6 +48,7 @@ void go_on_with_pass(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& v
   } else if (pass.step == StillPass::Step::finish) {
     finish_reconstruction(visitor.picture->compositor.samples(), *pass.denoiser, pass.work,
                           pass.frame);
+    visitor.picture->compositor.lay_volumes_over(pass.job.view, pass.frame);
     tonemap(pass.frame, Tonemap{stage.exhibit.exposure}, pass.picture);
     make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
     pass.step = StillPass::Step::done;

@@ -14,6 +14,7 @@
 #include "avatar/story/story_script.h"
 #include "show/lighting/day.h"
 #include "store/picture/sample_picture.h"
+#include "volume/draw/preset.h"
 #include "world/load/scene_join.h"
 #include "world/scene.h"
 
@@ -135,12 +136,14 @@ struct PointOfInterest {
   } door;                            // to another exhibit; empty exhibit: it leads nowhere
 };
 
-// One of the pictures that may be seen at the place of a piece: paint, X-ray, a map of a year.
+// One of the pictures that may be seen at the place of a piece: paint, X-ray, a map of a year, a
+// preset of a volume.
 struct PieceLayer {
   std::string id, source;  // source: of the package, as exhibit.json names it
   LocalText label, text;
-  std::optional<int> year;  // year of a map
-  PictureLayer shown;
+  std::optional<int> year;               // year of a map
+  PictureLayer shown;                    // of a volume: nothing
+  std::optional<volume::Preset> preset;  // of a volume
   // The same with words in another language, by its tag.
   std::map<std::string, std::shared_ptr<const LargePicture>, std::less<>> spoken;
 };
@@ -150,18 +153,21 @@ inline constexpr size_t most_piece_layers = 32;
 struct ExhibitPiece {
   std::string id, source;  // source: that of the first layer
   std::string material;    // material of the scene that shows it; empty: it hangs at a place
-  dvec3 position{0};       // middle of its back
+  dvec3 position{0};       // middle of its back; of a volume: of its underside
   float yaw = 0, pitch = 0, roll = 0;  // radians; as a storyteller's yaw; positive pitch looks up
   float width = 1;                     // metres
   float frame_width = 0, frame_depth = 0;  // metres; 0: it has no frame
   vec3 frame_color{0};                     // linear
   bool gilt = false;
-  bool stands = false;                          // on four legs
-  double floor = 0;                             // metres; height that they reach down to
-  vec3 stand_color{0};                          // linear
-  std::shared_ptr<const LargePicture> picture;  // the first layer, which says how it lies
-  std::vector<PieceLayer> layers;               // the first is shown at first
-  int image = -1;                               // index into Scene::images
+  bool stands = false;                                // on four legs
+  double floor = 0;                                   // metres; height that they reach down to
+  vec3 stand_color{0};                                // linear
+  std::shared_ptr<const LargePicture> picture;        // the first layer, which says how it lies
+  std::vector<PieceLayer> layers;                     // the first is shown at first
+  int image = -1;                                     // index into Scene::images
+  std::shared_ptr<const volume::ShownVolume> volume;  // null: it is no volume
+  float scale = 1;                                    // metres here to one of the volume
+  uint32_t object = 0;                                // the volume's
 };
 inline constexpr size_t most_exhibit_pieces = 500;
 

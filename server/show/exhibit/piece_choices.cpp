@@ -2,6 +2,7 @@
 #include "show/exhibit/piece_choices.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "wire/messages.h"
 
@@ -40,6 +41,10 @@ ShownPicture shown_picture(const ExhibitPiece& piece, const PieceChoice& choice,
 
 }  // namespace
 
+PieceChoice choice_of(const PieceChoices& choices, size_t piece) {
+  return piece < choices.size() ? choices[piece] : PieceChoice{};
+}
+
 std::string choose_piece(const Exhibit& exhibit, const PieceOrder& order, PieceChoices& choices) {
   const int number = find_piece(exhibit, order.name);
   if (number < 0) return "there is no piece '" + order.name + "'";
@@ -50,6 +55,13 @@ std::string choose_piece(const Exhibit& exhibit, const PieceOrder& order, PieceC
   if (choice.layer < 0) return no_layer(order.name, order.layer);
   if (choice.over < 0) return no_layer(order.name, order.over);
   if (choice.by == Blend::none) choice = {choice.layer};
+  if (piece.volume) {
+    choice.turn = float(glm::radians(order.turn));
+    choice.low = glm::clamp(order.low, 0.0f, 1.0f),
+    choice.high = glm::clamp(order.high, 0.0f, 1.0f);
+    const float length = glm::length(vec3(order.plane));
+    if (length > 0) choice.plane = vec4(vec3(order.plane) / length, order.plane.w);
+  }
   choices.resize(exhibit.pieces.size());
   choices[size_t(number)] = choice;
   return {};
@@ -63,8 +75,9 @@ std::string look_through(const Exhibit& exhibit, const LensOrder& order, PieceCh
   if (layer < 0) return no_layer(order.name, order.layer);
   choices.resize(exhibit.pieces.size());
   PieceChoice& choice = choices[size_t(number)];
-  if (order.difference) choice = {choice.layer, layer, Blend::difference};
-  else choice = {layer};
+  const int before = std::exchange(choice.layer, layer);
+  choice.over = 0, choice.by = Blend::none;
+  if (order.difference) choice.layer = before, choice.over = layer, choice.by = Blend::difference;
   return {};
 }
 
@@ -83,6 +96,12 @@ const std::shared_ptr<const LargePicture>& picture_in(const PieceLayer& layer,
   return found == layer.spoken.end() ? layer.shown.picture : found->second;
 }
 
+bool changes_volume(const Exhibit& exhibit, const PieceChoices& before, const PieceChoices& now) {
+  for (size_t i = 0; i < exhibit.pieces.size(); i++)
+    if (exhibit.pieces[i].volume && choice_of(before, i) != choice_of(now, i)) return true;
+  return false;
+}
+
 void show_pieces(const Exhibit& exhibit, const ShownPieces& all, World& world) {
   const PieceChoices& choices = all.choices;
   const std::vector<ExhibitPiece>& pieces = exhibit.pieces;
@@ -90,8 +109,7 @@ void show_pieces(const Exhibit& exhibit, const ShownPieces& all, World& world) {
   for (size_t i = 0; i < pieces.size(); i++) {
     const int image = pieces[i].image;
     if (image < 0 || pieces[i].layers.empty()) continue;
-    ShownPicture now =
-        shown_picture(pieces[i], i < choices.size() ? choices[i] : PieceChoice{}, all.language);
+    ShownPicture now = shown_picture(pieces[i], choice_of(choices, i), all.language);
     if (shown[size_t(image)] != now) world.show_picture(image, now);
   }
 }

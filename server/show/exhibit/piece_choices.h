@@ -20,9 +20,15 @@ struct PieceChoice {
   int layer = 0, over = 0;
   Blend by = Blend::none;
   float share = 0.5f;
+  // Of a volume: radians to the left; corners of the part of its box that is kept, 0 to 1; planes
+  // before which nothing is kept, as [x, y, z, metres from its middle], 0: none.
+  float turn = 0;
+  vec3 low{0}, high{1};
+  vec4 plane{0}, glass_plane{0};
   bool operator==(const PieceChoice&) const = default;
 };
 using PieceChoices = std::vector<PieceChoice>;  // for each piece; empty: each as it is at first
+PieceChoice choice_of(const PieceChoices& choices, size_t piece);
 
 // Holds what is shown, and in which language words on pictures are: one of
 // Exhibit::piece_languages, or empty for the exhibit's first.
@@ -34,7 +40,8 @@ struct ShownPieces {
 
 struct VisitorPieces {
   PieceChoices wish;
-  ShownPieces shown;  // in the pictures that are drawn from now on
+  ShownPieces shown;      // in the pictures that are drawn from now on
+  uint64_t arrivals = 0;  // LitVolumes::arrivals() of these
 };
 
 // Returns the language in which a visitor sees words on pictures.
@@ -47,7 +54,9 @@ const std::shared_ptr<const LargePicture>& picture_in(const PieceLayer& layer,
 std::string choose_piece(const Exhibit& exhibit, const PieceOrder& order, PieceChoices& choices);
 // Changes a choice to what a glass shows. Returns what is wrong with the order; empty: nothing.
 std::string look_through(const Exhibit& exhibit, const LensOrder& order, PieceChoices& choices);
-// Puts what is shown into the world, while nothing reads it.
+// Returns whether a volume is seen otherwise by one choice than by the other.
+bool changes_volume(const Exhibit& exhibit, const PieceChoices& before, const PieceChoices& now);
+// Puts the pictures that are shown into the world, while nothing reads it.
 void show_pieces(const Exhibit& exhibit, const ShownPieces& all, World& world);
 
 }  // namespace wellspring::show

@@ -15,7 +15,9 @@
 #include "image/image.h"
 #include "light/technique/technique.h"
 #include "light/visible/guides.h"
+#include "picture/volume_view.h"
 #include "show/exhibit/exhibit_lights.h"
+#include "show/exhibit/exhibit_volumes.h"
 #include "show/lens/lens.h"
 #include "show/state/show.h"
 #include "wire/limits.h"
@@ -26,7 +28,8 @@ namespace {
 constexpr size_t most_kept_bytes = size_t(16) << 20;
 constexpr int still_jpeg_quality = 90;
 constexpr NetSize still_net = NetSize::base;
-constexpr double slice = 0.02;  // seconds of the network, between looks whether it is given up
+constexpr int volume_places = 16;  // of a pixel at which volumes are looked at
+constexpr double slice = 0.02;     // seconds of the network, between looks whether it is given up
 // Ends the loops of a picture that nobody waits for any more.
 struct GivenUp {};
 
@@ -41,9 +44,15 @@ struct StillRoom::Scenery {
   std::optional<Frame> render(const StillJob& order, const View& view,
                               const std::function<bool()>& given_up, double denoise_seconds,
                               StillCosts& costs, StillPicture& picture) const;
+  // Does the same without volumes.
+  std::optional<Frame> reconstruct(const StillJob& order, const View& view,
+                                   const std::function<bool()>& given_up, double denoise_seconds,
+                                   StillCosts& costs, StillPicture& picture) const;
   bool add_glass(StillJob order, const std::function<bool()>& given_up, double denoise_seconds,
                  StillCosts& costs, StillPicture& picture, Image8& image) const;
   std::string comment(const StillPicture& picture) const;
+  // Puts what is chosen of pieces into the world; nobody else may look at it then.
+  void show_chosen(const PieceChoices& choices) const;
 
   const Exhibit& exhibit;
   const Technique* technique;
@@ -52,6 +61,7 @@ struct StillRoom::Scenery {
   std::unique_ptr<World> world;
   Lights lights;
   std::function<double()> clock;
+  mutable LitVolumes volumes;
   // Pictures that show other pieces than at first have the world alone.
   mutable std::shared_mutex looks;
 };
@@ -94,6 +104,15 @@ StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_cloc
   const bool switched = !levels.empty() && show.stage.switches.all.known;
   lights.known = switched ? relit(*show.stage.switches.all.known, levels) : show.stage.lights.known;
   if (!lights.known) transport.clamp = 0;  // it is the reference
+  volumes.begin(exhibit, lights, *technique, *world);
+}
+
+void StillRoom::Scenery::show_chosen(const PieceChoices& choices) const {
+  show_pieces(exhibit, {choices, ""}, *world);
+  const uint64_t before = volumes.arrivals();
+  volumes.show(exhibit, choices, lights, *technique, *world);
+  volumes.wait();
+  if (volumes.arrivals() != before) volumes.show(exhibit, choices, lights, *technique, *world);
 }
 
 // One sample a pixel, and as many more as there is time for by what that took.
@@ -144,6 +163,15 @@ std::optional<Frame> StillRoom::Scenery::render(const StillJob& order, const Vie
                                                 const std::function<bool()>& given_up,
                                                 double denoise_seconds, StillCosts& costs,
                                                 StillPicture& picture) const {
+  auto frame = reconstruct(order, view, given_up, denoise_seconds, costs, picture);
+  if (frame) VolumeLayer().lay_over(world->volumes(), view, volume_places, *frame);
+  return frame;
+}
+
+std::optional<Frame> StillRoom::Scenery::reconstruct(const StillJob& order, const View& view,
+                                                     const std::function<bool()>& given_up,
+                                                     double denoise_seconds, StillCosts& costs,
+                                                     StillPicture& picture) const {
   auto frame = trace(view, order, order.seconds - denoise_seconds, given_up, costs);
   if (!frame) return {};
   picture.spp = costs.spp;
@@ -188,7 +216,8 @@ bool StillRoom::Scenery::add_glass(StillJob order, const std::function<bool()>& 
                                    Image8& image) const {
   const View whole = view_of(order);
   if (!look_through(exhibit, order.lens, order.pieces).empty()) return true;
-  show_pieces(exhibit, {order.pieces, ""}, *world);
+  if (order.lens.depth > 0) cut_ahead(exhibit, order.lens, whole.position, order.pieces);
+  show_chosen(order.pieces);
   const View view = lens_view(whole, order.lens, zoom_of(*world, whole, order.lens), 2);
   const double share = double(view.width) * view.height / order.pixels();
   order.seconds *= share;
@@ -247,7 +276,7 @@ StillPicture StillRoom::make(const StillJob& order, const std::function<bool()>&
   std::shared_lock together(scenery_->looks, std::defer_lock);
   if (others) alone.lock();
   else together.lock();
-  if (others) show_pieces(exhibit, {order.pieces, ""}, *scenery_->world);
+  if (others) scenery_->show_chosen(order.pieces);
   arena.execute([&] {
     const std::optional<Frame> frame = scenery_->render(order, scenery_->view_of(order), given_up,
                                                         denoise_seconds, spent, picture);
@@ -260,7 +289,7 @@ StillPicture StillRoom::make(const StillJob& order, const std::function<bool()>&
     encode_jpeg(image, still_jpeg_quality, true, bytes);
     add_jpeg_comment(scenery_->comment(picture), bytes);
   });
-  if (others) show_pieces(exhibit, {}, *scenery_->world);
+  if (others) scenery_->show_chosen({});
   if (costs) *costs = spent;
   if (bytes.empty()) return {};
   picture.jpeg.assign(bytes.begin(), bytes.end());

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/clock.h"
+#include "show/exhibit/exhibit_volumes.h"
 #include "show/lens/pieces.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -24,7 +25,10 @@ constexpr double most_share = 0.5;  // share of the renderer's time for all glas
 
 ShownPieces choices_of(const Show& show, const Visitor& visitor) {
   ShownPieces shown = visitor.pieces.shown;
-  look_through(show.stage.exhibit, visitor.lens, shown.choices);
+  const LensOrder& order = visitor.lens;
+  look_through(show.stage.exhibit, order, shown.choices);
+  if (order.depth > 0)
+    cut_ahead(show.stage.exhibit, order, visitor.place.last_view.position, shown.choices);
   return shown;
 }
 
@@ -89,7 +93,7 @@ void begin_lens(Show& show, Visitor& visitor) {
   lens.lamps = visitor.lamps.lit;
   lens.drawn_at = show.time;
   if (lens.pieces.client) lens.pieces.arrivals = lens.pieces.client->arrivals();
-  show_pieces(show.stage.exhibit, lens.shown, *show.stage.world);
+  show_pieces_of(show.stage, lens.shown);
 }
 
 void draw_lens(Show& show, Visitor& visitor) {
@@ -108,6 +112,7 @@ void draw_lens(Show& show, Visitor& visitor) {
                           dynamic_splat_settings(), work.dynamic);
   lens.compositor->set_skin(&stage.skin, &stage.lights);
   lens.compositor->set_maps(stage.lights.maps);
+  lens.compositor->set_volumes(stage.world->volumes());
   lens.compositor->set_dynamic(lights.empty() ? nullptr : &work.dynamic);
   auto draw = [&](RenderCache& cache) {
     lens.compositor->draw(cache, view, *stage.visibility, Tonemap{stage.exhibit.exposure},

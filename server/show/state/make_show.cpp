@@ -139,6 +139,8 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   auto maps = prepare(show->stage, show->settings);
   begin_lamps(show->stage);
   begin_maps(*show, std::move(maps));
+  show->stage.volumes.begin(show->stage.exhibit, show->stage.lights, *show->stage.technique,
+                            *show->stage.world);
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->stage.exhibit.id,
             triangle_count(scene), show->stage.exhibit.viewpoints.size(), scene.materials.size());
   return show;

@@ -13,6 +13,7 @@
 #include "show/state/baker.h"
 #include "show/state/switches.h"
 #include "show/visit/tour.h"
+#include "show/volumes/lit_volumes.h"
 #include "world/world.h"
 
 namespace wellspring::light {
@@ -38,6 +39,7 @@ struct ExhibitStage {
   std::unique_ptr<Baker> baker;  // null: maps stay as they were at the start
   BakerLooks baker_looks;
   std::unique_ptr<VisibilityPass> visibility;  // draws one picture at a time
+  LitVolumes volumes;
   SkinLight skin;                              // light on moving things, for all visitors
   const Technique* technique = nullptr;        // used while anything moves
   const Technique* still_technique = nullptr;  // used while the visitor stands still

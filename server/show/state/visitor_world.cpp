@@ -38,17 +38,28 @@ const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor) 
   return (leader ? *leader : visitor).pieces.wish;
 }
 
-void follow_wish(const Exhibit& exhibit, const ShowVisits& visits, Visitor& visitor) {
-  ShownPieces wish{pieces_of(visits, visitor), piece_language(exhibit, visitor.lang)};
-  if (visitor.pieces.shown == wish) return;
-  visitor.pieces.shown = std::move(wish);
+void follow_wish(const Show& show, Visitor& visitor) {
+  const Exhibit& exhibit = show.stage.exhibit;
+  ShownPieces wish{pieces_of(show.visits, visitor), piece_language(exhibit, visitor.lang)};
+  VisitorPieces& pieces = visitor.pieces;
+  const uint64_t arrivals = show.stage.volumes.arrivals();
+  if (pieces.shown == wish && pieces.arrivals == arrivals) return;
+  // A volume that is turned or cut is something that moves.
+  if (changes_volume(exhibit, pieces.shown.choices, wish.choices))
+    visitor.place.moved_at = show.time;
+  pieces.shown = std::move(wish), pieces.arrivals = arrivals;
   visitor.picture->around = {}, visitor.picture->fade = {};  // both show something else
   look_anew(*visitor.picture);
 }
 
+void show_pieces_of(ExhibitStage& stage, const ShownPieces& shown) {
+  show_pieces(stage.exhibit, shown, *stage.world);
+  stage.volumes.show(stage.exhibit, shown.choices, stage.lights, *stage.technique, *stage.world);
+}
+
 void begin_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
-  show_pieces(show.stage.exhibit, visitor.pieces.shown, *show.stage.world);
+  show_pieces_of(show.stage, visitor.pieces.shown);
   pose_world(show.stage, show.cast, show.time, teller_of(show.cast, show.visits, visitor),
              animation_times(show, visitor));
   show.cast.posed_for = number_who_touched(show.visits, visitor);
@@ -56,7 +67,7 @@ void begin_world_of(Show& show, Visitor& visitor) {
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
-  show_pieces(show.stage.exhibit, visitor.pieces.shown, *show.stage.world);
+  show_pieces_of(show.stage, visitor.pieces.shown);
   if (show.cast.posed_as == teller_of(show.cast, show.visits, visitor).number &&
       show.cast.posed_for == number_who_touched(show.visits, visitor))
     return;

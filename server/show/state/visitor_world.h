@@ -14,8 +14,10 @@ void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& 
 // Returns the visitor's wish of what pieces show; the leader's, if there is one.
 const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor);
 // Makes the visitor's pictures follow that wish and the visitor's language from the next one on, if
-// they have changed. Call it while none is drawn for that visitor.
-void follow_wish(const Exhibit& exhibit, const ShowVisits& visits, Visitor& visitor);
+// they have changed, or volumes in new light. Call it while none is drawn for that visitor.
+void follow_wish(const Show& show, Visitor& visitor);
+// Puts what is shown of pieces into the world, while nothing reads it.
+void show_pieces_of(ExhibitStage& stage, const ShownPieces& shown);
 // Prepares the world for a new picture: the visitor's lamps, and the storyteller and the visitor's
 // animations as they are now.
 void begin_world_of(Show& show, Visitor& visitor);

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "show/state/in_view.h"
-#include "show/visit/route.h"
+#include "show/visit/good_view.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/exhibit/exhibit_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/load_error.h"
+#include "show/exhibit/exhibit_files.h"
+#include "volume/format/open_volume.h"
+#include "wire/messages.h"
+
+namespace wellspring::show {
+namespace {
+
+constexpr const char* mode_names[] = {"density", "surface", "maximum"};
+constexpr double most_density = 1e6;  // per millimetre
+constexpr size_t most_points = 64;
+
+// Returns what a preset that was found (volume/draw/preset.h) is called.
+LocalText label_of(const std::string& found) {
+  static const std::map<std::string, LocalText> labels = {
+      {"outside", {{"en", "Outside"}, {"de", "Außen"}, {"sk", "Zvonka"}}},
+      {"inside", {{"en", "Inside"}, {"de", "Innen"}, {"sk", "Vnútro"}}},
+      {"bone", {{"en", "Dense parts"}, {"de", "Dichte Teile"}, {"sk", "Husté časti"}}},
+      {"metal", {{"en", "Densest parts"}, {"de", "Dichteste Teile"}, {"sk", "Najhustejšie časti"}}},
+      {"x-ray", {{"en", "X-ray"}, {"de", "Röntgenbild"}, {"sk", "Röntgen"}}}};
+  const auto known = labels.find(found);
+  return known == labels.end() ? LocalText{{"en", found}} : known->second;
+}
+
+void read_points(FieldReader& fields, Preset& preset) {
+  fields.parts("points", most_points, "values, by size, between which colour and density are mixed",
+               [&](FieldReader& one) {
+                 PresetPoint point;
+                 one.number("value", -1e30, 1e30, point.value, "as the scan has it",
+                            Need::required);
+                 one.vector("color", 1, point.color, "linear red, green, blue; 0 to 1");
+                 one.number("density", 0, most_density, point.density,
+                            "how much a millimetre stops; of maximum: opacity, 0 to 1");
+                 point.color = glm::max(point.color, vec3(0));
+                 if (!preset.points.empty() && point.value < preset.points.back().value)
+                   one.fail("value", "is less than the one before");
+                 else preset.points.push_back(point);
+               });
+}
+
+void read_preset(FieldReader& fields, const std::vector<Preset>& found, ExhibitPiece& piece) {
+  PieceLayer layer;
+  fields.name("id", layer.id, "what messages call it", Need::required);
+  layer.label = read_local_text(fields, "label", "", Need::required);
+  layer.text = read_local_text(fields, "text", "what there is to see in it");
+  Preset preset;
+  preset.name = layer.id;
+  std::string automatic;
+  fields.word("find", {"outside", "inside", "bone", "metal", "x-ray"}, automatic,
+              "finds its values in the scan, in place of mode and points");
+  fields.choice("mode", {"density", "surface", "maximum"}, preset.mode,
+                "density: all that it lets through; surface: where the first value begins; "
+                "maximum: the largest value along each ray");
+  read_points(fields, preset);
+  fields.describe_choice({{"find"}, {"mode", "points"}});
+  if (!automatic.empty()) {
+    const auto same = std::ranges::find(found, automatic, &Preset::name);
+    if (same == found.end())
+      return fields.fail("find", "the scan has no such part; its values differ too little");
+    preset = *same;
+  } else if (preset.points.empty()) {
+    if (!fields.describes()) fields.fail("points", "names no value");
+    return;
+  }
+  if (std::ranges::find(piece.layers, layer.id, &PieceLayer::id) != piece.layers.end())
+    return fields.fail("there is another preset '" + layer.id + "'");
+  layer.preset = std::move(preset);
+  piece.layers.push_back(std::move(layer));
+}
+
+}  // namespace
+
+void read_volume(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
+                 std::vector<Problem>& problems) {
+  const bool described = fields.describes();
+  if (!described) {
+    fields.text("source", piece.source, "", Need::required);
+    const std::string path = package_file(fields, "source", exhibit.folder, piece.source);
+    if (!path.empty()) try {
+        piece.volume = std::make_shared<ShownVolume>(make_shown_volume(open_volume(path)));
+      } catch (const LoadError& error) {
+        problems.push_back({error.file, error.where, error.what_});
+      } catch (const std::length_error& error) {
+        fields.fail("source", std::string("is too much: ") + error.what());
+      }
+  }
+  float height = 0;
+  fields.number("size_m", 0.001, 1000, height, "height of a volume, metres; as scanned without it");
+  const std::vector<Preset> found =
+      piece.volume ? find_presets(*piece.volume) : std::vector<Preset>();
+  fields.parts("presets", most_piece_layers,
+               "what may be seen of a volume, the first at first; without them they are found",
+               [&](FieldReader& one) { read_preset(one, found, piece); });
+  if (!piece.volume) return;
+  if (!fields.has("presets"))
+    for (const Preset& preset : found) {
+      PieceLayer layer;
+      layer.id = preset.name, layer.label = label_of(preset.name), layer.preset = preset;
+      piece.layers.push_back(std::move(layer));
+    }
+  const VolumeBox box = box_of(*piece.volume);
+  if (height > 0) piece.scale = height / (box.high.y - box.low.y);
+}
+
+vec3 size_of(const ExhibitPiece& piece) {
+  const VolumeBox box = box_of(*piece.volume);
+  return piece.scale * (box.high - box.low);
+}
+
+PlacedVolume place_volume(const Exhibit& exhibit, const ExhibitPiece& piece) {
+  const vec3 up(0, 0.5f * size_of(piece).y, 0);
+  return {.volume = piece.volume,
+          .position = vec3(piece.position - exhibit.scene.origin) + up,
+          .yaw = piece.yaw,
+          .scale = piece.scale,
+          .object = piece.object,
+          .look = {}};
+}
+
+std::vector<VolumeCut> cuts_of(const ExhibitPiece& piece, const PieceChoice& choice) {
+  const VolumeBox box = box_of(*piece.volume);
+  std::vector<VolumeCut> cuts;
+  for (int axis = 0; axis < 3; axis++) {
+    const float size = box.high[axis] - box.low[axis];
+    vec3 normal(0);
+    normal[axis] = 1;
+    if (choice.low[axis] > 0) cuts.push_back({normal, box.low[axis] + choice.low[axis] * size});
+    if (choice.high[axis] < 1)
+      cuts.push_back({-normal, -(box.low[axis] + choice.high[axis] * size)});
+  }
+  for (const vec4& plane : {choice.plane, choice.glass_plane})
+    if (const vec3 normal(plane); normal != vec3(0))
+      cuts.push_back({normal, dot(normal, box.middle()) + plane.w / piece.scale});
+  return cuts;
+}
+
+void cut_ahead(const Exhibit& exhibit, const LensOrder& order, vec3 eye, PieceChoices& choices) {
+  choices.resize(exhibit.pieces.size());
+  for (size_t i = 0; i < choices.size(); i++) {
+    const ExhibitPiece& piece = exhibit.pieces[i];
+    if (!piece.volume || !(order.name.empty() || order.name == piece.id)) continue;
+    PlacedVolume placed = place_volume(exhibit, piece);
+    placed.look.turn = choices[i].turn;
+    const VolumeBox box = box_of(*placed.volume);
+    const vec3 to_eye = ToVolume(placed).way(eye - placed.position);
+    const float length = glm::length(to_eye);
+    if (!(length > 0)) continue;
+    const vec3 back = -to_eye / length;
+    const float front = dot(0.5f * (box.high - box.low), glm::abs(back)) * placed.scale;
+    choices[i].glass_plane = vec4(back, order.depth - front);
+  }
+}
+
+}  // namespace wellspring::show

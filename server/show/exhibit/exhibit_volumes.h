@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the pieces of exhibit.json that are scanned volumes: mummies, violins, clouds of light.
+#pragma once
+#include <vector>
+
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/json_fields.h"
+#include "show/exhibit/piece_choices.h"
+#include "world/placed_volume.h"
+
+namespace wellspring::show {
+
+// Reads `source`, `size_m` and `presets`: piece.volume, piece.scale and a layer for each preset. A
+// volume that cannot be read is a problem.
+void read_volume(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
+                 std::vector<Problem>& problems);
+
+// Returns a volume's width, height and depth where it stands, metres.
+vec3 size_of(const ExhibitPiece& piece);
+// Returns where a volume stands, with nothing seen of it.
+PlacedVolume place_volume(const Exhibit& exhibit, const ExhibitPiece& piece);
+// Returns the planes that a choice cuts it by.
+std::vector<VolumeCut> cuts_of(const ExhibitPiece& piece, const PieceChoice& choice);
+// Cuts away of the volume that a glass names, or of all, as much as its order says of the side that
+// an eye (scene coordinates) sees.
+void cut_ahead(const Exhibit& exhibit, const LensOrder& order, vec3 eye, PieceChoices& choices);
+
+}  // namespace wellspring::show

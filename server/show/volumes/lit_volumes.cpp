@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/volumes/lit_volumes.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "base/memory.h"
+#include "base/worker.h"
+#include "show/exhibit/exhibit_volumes.h"
+
+namespace wellspring::show {
+namespace {
+
+constexpr int turns = 24;         // of a volume for which light is kept apart
+constexpr size_t most_kept = 64;  // lit presets of an exhibit
+constexpr size_t most_lights = 256;
+
+// Names a preset in a light.
+struct LitKey {
+  int piece = 0, layer = 0, turn = 0;
+  LampLevels lamps;
+  bool operator==(const LitKey&) const = default;
+};
+
+struct LitPreset {
+  LitKey key;
+  std::shared_ptr<const DrawnPreset> drawn;
+};
+
+// Holds the light of a room on a volume that is not turned, with those lamps.
+struct KnownRoom {
+  int piece = 0;
+  LampLevels lamps;
+  VolumeLight light;
+};
+
+struct Wanted {
+  LitKey key;
+  std::shared_ptr<const ShownVolume> volume;
+  Preset preset;
+  VolumeLight light;
+};
+
+float step_angle(int turn) { return 2 * pi * float(turn) / float(turns); }
+int step_of(float turn) {
+  const int step = int(std::lround(turn * float(turns) / (2 * pi))) % turns;
+  return step < 0 ? step + turns : step;
+}
+
+}  // namespace
+
+struct LitVolumes::Impl {
+  std::vector<int> pieces;  // of the exhibit, for each volume of the world
+  std::list<KnownRoom> rooms;
+  mutable std::mutex guard;    // of what follows
+  std::list<LitPreset> kept;   // the one used last comes first
+  std::vector<Wanted> wanted;  // at most one a piece and use: the newest
+  std::atomic<uint64_t> made{0};
+  Worker worker;  // the last member: it is waited for before the others end
+
+  const VolumeLight& light_of(int piece, const PlacedVolume& placed, const Lights& lights,
+                              const Technique& technique, const World& world);
+  std::shared_ptr<const DrawnPreset> find(const LitKey& key);
+  std::shared_ptr<const DrawnPreset> find_like(const LitKey& key);
+  void keep(const LitKey& key, std::shared_ptr<const DrawnPreset> drawn);
+  void want(Wanted wish);
+  void make_wanted();
+};
+
+const VolumeLight& LitVolumes::Impl::light_of(int piece, const PlacedVolume& placed,
+                                              const Lights& lights, const Technique& technique,
+                                              const World& world) {
+  for (const KnownRoom& room : rooms)
+    if (room.piece == piece && room.lamps == world.lamp_levels()) return room.light;
+  PlacedVolume unturned = placed;
+  unturned.look = {};
+  rooms.push_front({piece, world.lamp_levels(), room_light(world, lights, technique, unturned)});
+  if (rooms.size() > most_lights) rooms.pop_back();
+  return rooms.front().light;
+}
+
+std::shared_ptr<const DrawnPreset> LitVolumes::Impl::find(const LitKey& key) {
+  std::lock_guard lock(guard);
+  const auto found = std::ranges::find(kept, key, &LitPreset::key);
+  if (found == kept.end()) return {};
+  kept.splice(kept.begin(), kept, found);
+  return found->drawn;
+}
+
+// Returns the same preset in another light, that of the same lamps first.
+std::shared_ptr<const DrawnPreset> LitVolumes::Impl::find_like(const LitKey& key) {
+  std::lock_guard lock(guard);
+  const LitPreset* other = nullptr;
+  for (const LitPreset& one : kept) {
+    if (one.key.piece != key.piece || one.key.layer != key.layer) continue;
+    if (one.key.lamps == key.lamps) return one.drawn;
+    if (!other) other = &one;
+  }
+  return other ? other->drawn : nullptr;
+}
+
+void LitVolumes::Impl::keep(const LitKey& key, std::shared_ptr<const DrawnPreset> drawn) {
+  std::lock_guard lock(guard);
+  kept.push_front({key, std::move(drawn)});
+  if (kept.size() > most_kept) kept.pop_back();
+  made++;
+}
+
+void LitVolumes::Impl::want(Wanted wish) {
+  {
+    std::lock_guard lock(guard);
+    const auto same = std::ranges::find_if(wanted, [&](const Wanted& one) {
+      return one.key.piece == wish.key.piece && one.key.layer == wish.key.layer;
+    });
+    if (same != wanted.end()) *same = std::move(wish);
+    else wanted.push_back(std::move(wish));
+  }
+  if (!worker.busy()) worker.run([this] { make_wanted(); });
+}
+
+void LitVolumes::Impl::make_wanted() {
+  while (true) {
+    std::optional<Wanted> next;
+    {
+      std::lock_guard lock(guard);
+      if (wanted.empty()) return;
+      next = std::move(wanted.front());
+      wanted.erase(wanted.begin());
+    }
+    if (!find(next->key))
+      keep(next->key,
+           std::make_shared<const DrawnPreset>(*next->volume, next->preset, next->light));
+  }
+}
+
+LitVolumes::LitVolumes() : impl_(std::make_unique<Impl>()) {}
+LitVolumes::~LitVolumes() = default;
+
+void LitVolumes::begin(const Exhibit& exhibit, const Lights& lights, const Technique& technique,
+                       World& world) {
+  std::vector<PlacedVolume> placed;
+  for (size_t i = 0; i < exhibit.pieces.size(); i++) {
+    const ExhibitPiece& piece = exhibit.pieces[i];
+    if (!piece.volume || piece.layers.empty()) continue;
+    impl_->pieces.push_back(int(i));
+    placed.push_back(place_volume(exhibit, piece));
+  }
+  world.place_volumes(std::move(placed));
+  if (impl_->pieces.empty()) return;
+  show(exhibit, {}, lights, technique, world);
+  wait();
+  show(exhibit, {}, lights, technique, world);
+}
+
+void LitVolumes::show(const Exhibit& exhibit, const PieceChoices& choices, const Lights& lights,
+                      const Technique& technique, World& world) {
+  for (size_t i = 0; i < impl_->pieces.size(); i++) {
+    const int number = impl_->pieces[i];
+    const ExhibitPiece& piece = exhibit.pieces[size_t(number)];
+    const PieceChoice choice = choice_of(choices, size_t(number));
+    const PlacedVolume& placed = world.volumes()[i];
+    // What is not made yet is wanted, and the look before stays as far as there is one.
+    auto lit = [&](int layer, const std::shared_ptr<const DrawnPreset>& before) {
+      const LitKey key{number, layer, step_of(choice.turn), world.lamp_levels()};
+      if (auto found = impl_->find(key)) return found;
+      VolumeLight light = impl_->light_of(number, placed, lights, technique, world);
+      light.to_lamp =
+          mat3(glm::rotate(mat4(1), -step_angle(key.turn), vec3(0, 1, 0))) * light.to_lamp;
+      impl_->want({key, piece.volume, *piece.layers[size_t(layer)].preset, light});
+      const auto like = impl_->find_like(key);
+      return like ? like : before;
+    };
+    VolumeLook look;
+    look.preset = lit(choice.layer, placed.look.preset);
+    if (choice.by != Blend::none && choice.over != choice.layer) {
+      look.over = lit(choice.over, nullptr);
+      look.share = look.over ? choice.share : 0;
+    }
+    look.cuts = cuts_of(piece, choice);
+    look.turn = choice.turn;
+    if (!(look == placed.look)) world.show_volume(int(i), std::move(look));
+  }
+}
+
+void LitVolumes::wait() { impl_->worker.wait(); }
+
+uint64_t LitVolumes::arrivals() const { return impl_->made; }
+
+size_t LitVolumes::memory_bytes() const {
+  std::lock_guard lock(impl_->guard);
+  size_t sum = 0;
+  for (const LitPreset& one : impl_->kept)
+    sum += bytes_of(one.drawn->grid.lamp, one.drawn->grid.around);
+  return sum;
+}
+
+}  // namespace wellspring::show

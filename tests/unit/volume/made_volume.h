@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volumes that a test makes: any function of the place, in millimetres around the origin.
+#pragma once
+#include <cstring>
+#include <functional>
+#include <memory>
+
+#include "volume/volume.h"
+
+namespace wellspring::test {
+
+inline Volume made_volume(glm::ivec3 size, const std::function<float(glm::vec3)>& value,
+                          double spacing = 0.001) {
+  Volume volume;
+  volume.size = size, volume.kind = SampleKind::f32;
+  const size_t count = volume.samples();
+  const std::shared_ptr<std::byte[]> bytes(new std::byte[4 * count]);
+  size_t i = 0;
+  for (int z = 0; z < size.z; z++)
+    for (int y = 0; y < size.y; y++)
+      for (int x = 0; x < size.x; x++, i++) {
+        const float sample = value(glm::vec3(x, y, z) - 0.5f * glm::vec3(size - 1));
+        std::memcpy(&bytes[4 * i], &sample, 4);
+      }
+  volume.bytes = std::shared_ptr<const std::byte>(bytes, bytes.get());
+  volume.to_metres = glm::dmat4(spacing);
+  volume.to_metres[3] = glm::dvec4(-0.5 * spacing * glm::dvec3(size - 1), 1);
+  return volume;
+}
+
+}  // namespace wellspring::test
