@@ -15,6 +15,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "light/kept/bake_file.h"
+#include "light/kept/complete_map.h"
 #include "light/kept/finish_bake.h"
 #include "light/kept/map_file.h"
 #include "show/exhibit/exhibit_load.h"
@@ -33,7 +34,7 @@ void interrupt(int) { interrupted = true; }
 struct Options {
   std::string package, time = "10m", shard, cache = "build/cache", out;
   std::vector<std::string> merge;
-  bool resume = false;
+  bool resume = false, add = false;
 };
 
 // Reads seconds from "90", "90s", "10m", "2h"; below 0: the text is no duration.
@@ -154,8 +155,44 @@ void go_on_for(double seconds, const Bakery& bakery, Bake& bake) {
   }
 }
 
+// Adds what light.maps lacks.
+void add_to_map(const Bakery& bakery, const BakeSettings& settings, double seconds) {
+  const LoadedMap known = load_map(bakery.world, bakery.light, bakery.key);
+  if (!known.map) throw Failure(bakery.light + ": there is no light that could be added to");
+  if (known.found == KeyedFile::read) {
+    std::cout << bakery.light << ": nothing has changed\n";
+    return;
+  }
+  BakeSettings alike = settings;
+  alike.tile = known.map->places->tile;
+  const std::vector<vec3> places = eye_places(bakery.exhibit);
+  Bake bake = begin_bake(bakery.world, places, alike);
+  const std::vector<uint32_t> tiles = find_new_tiles(bakery.world, bake, *known.map);
+  std::cout << tiles.size() << " of " << bake.charts.tiles << " tiles are new or near new things\n";
+  const BakeScene scene = make_bake_scene(bakery.world, places);
+  Progress progress("bake", say_elsewhere);
+  const double began = seconds_now();
+  double now = began;
+  // All tiles are refined and sampled once; then those that count.
+  for (uint32_t ahead = 1; !interrupted && (bake.passes == 0 || now - began < seconds);
+       now = seconds_now()) {
+    if (bake.passes == 0)
+      go_on(scene, bake,
+            [&] { return interrupted || bake.passes > 0 || seconds_now() >= now + look_every; });
+    else if (!go_ahead(scene, bake, tiles, ahead)) ahead++;
+    progress.tell((now - began) / seconds, fmt::format("{} passes of them", ahead));
+  }
+  const auto fresh = finish_map(bakery.world, all_eye_places(bakery.exhibit), bake);
+  if (!fresh) throw Failure("interrupted too early: " + bakery.light + " is as it was");
+  const auto map = complete_map(bakery.world, bake, *known.map, *fresh, tiles);
+  if (!save_map(bakery.world, *map, bakery.light, bakery.key))
+    throw Failure(bakery.light + ": cannot be written");
+  std::cout << bakery.light << ": " << std::filesystem::file_size(bakery.light) << " bytes\n";
+}
+
 void run(const Options& options, const BakeSettings& settings, double seconds) {
   const Bakery bakery(options, settings);
+  if (options.add) return add_to_map(bakery, settings, seconds);
   Bake bake;
   if (!options.merge.empty()) {
     bake = merge(bakery, options);
@@ -181,6 +218,9 @@ int main(int argc, char** argv) {
   app.add_option("package", options.package, "folder of the exhibit, e.g. content/castle");
   app.add_option("--time", options.time, "how long: 90s, 10m, 8h");
   app.add_flag("--resume", options.resume, "goes on where the last one ended");
+  app.add_flag("--add", options.add,
+               "keeps the light of light.maps where things stand as they did, and finds that of "
+               "new things and what is near them");
   app.add_option("--shard", options.shard,
                  "i/N: every N-th part, for N machines; merge afterwards");
   app.add_option("--merge", options.merge, "files of all shards: one bake is made of them");

@@ -310,7 +310,7 @@ Bake begin_bake(const World& world, std::span<const vec3> places, const BakeSett
   bake.settings = settings;
   double area = charted_area(world);
   double tiles = std::max(double(settings.gather_nodes) / tile_nodes, 1.0);
-  bake.tile = float(std::max(std::sqrt(area / tiles), 1e-20));
+  bake.tile = settings.tile > 0 ? settings.tile : float(std::max(std::sqrt(area / tiles), 1e-20));
   bake.shards_done = {settings.shard};
   bake.charts = make_charts(world, bake.tile);
   check_cancelled();

@@ -26,6 +26,7 @@ struct BakeSettings {
   size_t gather_nodes = 250000, direct_nodes = 1000000;  // numbers of nodes at most, about
   uint64_t seed = 1;
   int shard = 0, shards = 1;
+  float tile = 0;  // metres, as of make_charts(); 0: by the number of nodes
 };
 
 // Holds what a tile's pilot samples found: the mean luminance of its direct light, and the mean

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Adds to a map the light of things that were not there when it was baked, so that a new show-case
+// takes minutes, not an hour.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "light/kept/bake.h"
+#include "light/sample/illumination_map.h"
+
+namespace wellspring::light {
+
+// Metres around new things in which the light of others is found anew: their shadow and what they
+// reflect.
+inline constexpr float reach_of_new = 1.5f;
+
+// Returns the bake's tiles for which `known` has no light, and those within reach_of_new of such
+// things. `known`: load_map() of another scene (light/kept/map_file.h), whose tiles have the size
+// of the bake's (BakeSettings::tile).
+std::vector<uint32_t> find_new_tiles(const World& world, const Bake& bake,
+                                     const IlluminationMap& known);
+
+// Returns a map that has `fresh` light, finish_map() of the bake, in those tiles, and known light
+// in all others. Its error is that of the known light.
+std::shared_ptr<const IlluminationMap> complete_map(const World& world, const Bake& bake,
+                                                    const IlluminationMap& known,
+                                                    const IlluminationMap& fresh,
+                                                    const std::vector<uint32_t>& tiles);
+
+}  // namespace wellspring::light
