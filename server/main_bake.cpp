@@ -20,6 +20,7 @@
 #include "light/kept/map_file.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/exhibit/exhibit_objects.h"
+#include "show/exhibit/exhibit_volumes.h"
 
 using namespace wellspring;
 using namespace wellspring::program;
@@ -71,6 +72,7 @@ struct Bakery {
         world(exhibit.scene),
         file(options.out),
         light(shipped_light(options.package)) {
+    place_volumes(exhibit, world);
     if (!file.empty()) {
       light = std::filesystem::path(file).replace_extension(".maps").string();
       return;

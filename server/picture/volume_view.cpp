@@ -75,7 +75,7 @@ VolumeView::VolumeView(std::span<const PlacedVolume> volumes, const View& view, 
     const vec3 nearest = glm::clamp(view.position, box.low, box.high);
     const float pixel = 2 * view.tan_half_fov / float(view.height);
     seen.level =
-        level_for(*placed.volume, double(length(nearest - view.position) * pixel / placed.scale));
+        level_for(placed.shown(), double(length(nearest - view.position) * pixel / placed.scale));
     seen_.push_back(seen);
   }
   auto distance = [&](const Seen& one) { return length(one.placed->position - view.position); };
@@ -101,7 +101,7 @@ float VolumeView::step_in_samples() const { return settled_ ? settled_step : mov
 
 float VolumeView::step_of(const Seen& seen) const {
   const PlacedVolume& placed = *seen.placed;
-  return std::ldexp(step_in_samples() * float(placed.volume->voxel), seen.level) * placed.scale;
+  return std::ldexp(step_in_samples() * float(placed.shown().voxel), seen.level) * placed.scale;
 }
 
 MarchedLight VolumeView::march_one(const Seen& seen, const Rays& rays) const {
@@ -117,9 +117,9 @@ MarchedLight VolumeView::march_one(const Seen& seen, const Rays& rays) const {
   settings.step = step_in_samples();
   settings.jitter = rays.jitter;
   settings.cuts = look.cuts;
-  MarchedLight found = march(*placed.volume, *look.preset, inside, settings);
+  MarchedLight found = march(placed.shown(), *look.preset, inside, settings);
   if (look.over) {
-    const MarchedLight over = march(*placed.volume, *look.over, inside, settings);
+    const MarchedLight over = march(placed.shown(), *look.over, inside, settings);
     const Lanes own = all_lanes(1 - look.share), others = all_lanes(look.share);
     found.color = found.color * own + over.color * others;
     found.clear = found.clear * own + over.clear * others;

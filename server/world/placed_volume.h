@@ -15,6 +15,7 @@ namespace wellspring::world {
 // Holds what is seen of a volume: a preset in the light of the room, or a mixture of two.
 struct VolumeLook {
   std::shared_ptr<const DrawnPreset> preset, over;  // null `preset`: nothing; null `over`: it alone
+  std::shared_ptr<const ShownVolume> volume;        // null: PlacedVolume::volume
   float share = 0;                                  // of `over`, 0 to 1
   std::vector<VolumeCut> cuts;                      // in the frame of Volume::to_metres
   float turn = 0;  // radians to the left, around the upright axis through its middle
@@ -22,8 +23,8 @@ struct VolumeLook {
     const auto same = [](const VolumeCut& a, const VolumeCut& b) {
       return a.normal == b.normal && a.offset == b.offset;
     };
-    return preset == other.preset && over == other.over && share == other.share &&
-           turn == other.turn && std::ranges::equal(cuts, other.cuts, same);
+    return preset == other.preset && over == other.over && volume == other.volume &&
+           share == other.share && turn == other.turn && std::ranges::equal(cuts, other.cuts, same);
   }
 };
 
@@ -41,6 +42,7 @@ struct PlacedVolume {
   float scale = 1;      // metres of the scene to one of the scan
   uint32_t object = 0;  // id of what is seen there
   VolumeLook look;
+  const ShownVolume& shown() const { return look.volume ? *look.volume : *volume; }
 };
 
 // Leads from the scene to the frame of a volume (Volume::to_metres), in which one metre is

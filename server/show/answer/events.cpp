@@ -90,6 +90,8 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
     json& told =
         message["pieces"].emplace_back(json{{"id", piece.id}, {"layers", std::move(layers)}});
     if (piece.volume) told["volume"] = {{"size", triple(size_of(piece))}};
+    if (piece.nebula)
+      told["volume"]["tilt"] = std::round(10 * glm::degrees(piece.nebula->tilt)) / 10;
   }
   message["day"] = nullptr;
   if (const std::optional<Day>& day = exhibit.day)
@@ -167,6 +169,7 @@ std::string state_message(const Show& show, const Visitor& visitor) {
                                                    {"share", choice.share}};
     if (!exhibit.pieces[i].volume) continue;
     told["turn"] = std::round(10 * glm::degrees(choice.turn)) / 10;
+    if (exhibit.pieces[i].nebula) told["tilt"] = choice.tilt;
     told["low"] = triple(choice.low), told["high"] = triple(choice.high);
     told["plane"] = {choice.plane.x, choice.plane.y, choice.plane.z, choice.plane.w};
   }

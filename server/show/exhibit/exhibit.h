@@ -15,6 +15,7 @@
 #include "show/lighting/day.h"
 #include "store/picture/sample_picture.h"
 #include "volume/draw/preset.h"
+#include "volume/nebula/nebula.h"
 #include "world/load/scene_join.h"
 #include "world/scene.h"
 
@@ -149,6 +150,13 @@ struct PieceLayer {
 };
 inline constexpr size_t most_piece_layers = 32;
 
+// Holds what a nebula's volume is made of, so that it can be made again for another tilt.
+struct PieceNebula {
+  volume::NebulaPicture picture;
+  volume::NebulaSettings settings;
+  float tilt = 0;  // radians, of ExhibitPiece::volume
+};
+
 // A piece of the exhibit that is no part of its glTF files.
 struct ExhibitPiece {
   std::string id, source;  // source: that of the first layer
@@ -166,6 +174,7 @@ struct ExhibitPiece {
   std::vector<PieceLayer> layers;                     // the first is shown at first
   int image = -1;                                     // index into Scene::images
   std::shared_ptr<const volume::ShownVolume> volume;  // null: it is no volume
+  std::shared_ptr<const PieceNebula> nebula;          // null: it is a scan
   float scale = 1;                                    // metres here to one of the volume
   uint32_t object = 0;                                // the volume's
 };

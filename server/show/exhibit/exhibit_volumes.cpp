@@ -13,9 +13,9 @@
 namespace wellspring::show {
 namespace {
 
-constexpr const char* mode_names[] = {"density", "surface", "maximum"};
 constexpr double most_density = 1e6;  // per millimetre
 constexpr size_t most_points = 64;
+constexpr int nebula_side = 160;  // voxels
 
 // Returns what a preset that was found (volume/draw/preset.h) is called.
 LocalText label_of(const std::string& found) {
@@ -24,25 +24,26 @@ LocalText label_of(const std::string& found) {
       {"inside", {{"en", "Inside"}, {"de", "Innen"}, {"sk", "Vnútro"}}},
       {"bone", {{"en", "Dense parts"}, {"de", "Dichte Teile"}, {"sk", "Husté časti"}}},
       {"metal", {{"en", "Densest parts"}, {"de", "Dichteste Teile"}, {"sk", "Najhustejšie časti"}}},
-      {"x-ray", {{"en", "X-ray"}, {"de", "Röntgenbild"}, {"sk", "Röntgen"}}}};
+      {"x-ray", {{"en", "X-ray"}, {"de", "Röntgenbild"}, {"sk", "Röntgen"}}},
+      {"light", {{"en", "Light"}, {"de", "Licht"}, {"sk", "Svetlo"}}}};
   const auto known = labels.find(found);
   return known == labels.end() ? LocalText{{"en", found}} : known->second;
 }
 
 void read_points(FieldReader& fields, Preset& preset) {
-  fields.parts("points", most_points, "values, by size, between which colour and density are mixed",
-               [&](FieldReader& one) {
-                 PresetPoint point;
-                 one.number("value", -1e30, 1e30, point.value, "as the scan has it",
-                            Need::required);
-                 one.vector("color", 1, point.color, "linear red, green, blue; 0 to 1");
-                 one.number("density", 0, most_density, point.density,
-                            "how much a millimetre stops; of maximum: opacity, 0 to 1");
-                 point.color = glm::max(point.color, vec3(0));
-                 if (!preset.points.empty() && point.value < preset.points.back().value)
-                   one.fail("value", "is less than the one before");
-                 else preset.points.push_back(point);
-               });
+  fields.parts(
+      "points", most_points, "values, by size, between which colour and density are mixed",
+      [&](FieldReader& one) {
+        PresetPoint point;
+        one.number("value", -1e30, 1e30, point.value, "as the scan has it", Need::required);
+        one.vector("color", 1, point.color, "linear red, green, blue; 0 to 1");
+        one.number("density", 0, most_density, point.density,
+                   "how much a millimetre stops, of glow sends; of maximum: opacity, 0 to 1");
+        point.color = glm::max(point.color, vec3(0));
+        if (!preset.points.empty() && point.value < preset.points.back().value)
+          one.fail("value", "is less than the one before");
+        else preset.points.push_back(point);
+      });
 }
 
 void read_preset(FieldReader& fields, const std::vector<Preset>& found, ExhibitPiece& piece) {
@@ -53,11 +54,11 @@ void read_preset(FieldReader& fields, const std::vector<Preset>& found, ExhibitP
   Preset preset;
   preset.name = layer.id;
   std::string automatic;
-  fields.word("find", {"outside", "inside", "bone", "metal", "x-ray"}, automatic,
+  fields.word("find", {"outside", "inside", "bone", "metal", "x-ray", "light"}, automatic,
               "finds its values in the scan, in place of mode and points");
-  fields.choice("mode", {"density", "surface", "maximum"}, preset.mode,
+  fields.choice("mode", {"density", "surface", "maximum", "glow"}, preset.mode,
                 "density: all that it lets through; surface: where the first value begins; "
-                "maximum: the largest value along each ray");
+                "maximum: the largest value along each ray; glow: light that it sends");
   read_points(fields, preset);
   fields.describe_choice({{"find"}, {"mode", "points"}});
   if (!automatic.empty()) {
@@ -75,21 +76,55 @@ void read_preset(FieldReader& fields, const std::vector<Preset>& found, ExhibitP
   piece.layers.push_back(std::move(layer));
 }
 
+// Reads how a picture of a nebula becomes a volume, and makes it.
+void read_nebula(FieldReader& fields, const std::string& path, ExhibitPiece& piece) {
+  auto nebula = std::make_shared<PieceNebula>();
+  double angle = 0, tilt = 0;
+  const bool has_angle =
+      fields.number("angle_deg", -360, 360, angle,
+                    "of its axis, from the right, counter-clockwise; found without it");
+  const bool has_tilt = fields.number("tilt_deg", -75, 75, tilt,
+                                      "of the axis's end out of the picture, towards the visitor");
+  if (has_angle) nebula->settings.angle_degrees = angle;
+  if (has_tilt) nebula->settings.tilt_degrees = tilt;
+  nebula->settings.most_side = nebula_side;
+  if (path.empty()) return;
+  NebulaReport report;
+  nebula->picture = prepare_nebula(load_nebula_picture(path), nebula->settings, report);
+  nebula->tilt = float(has_tilt ? glm::radians(tilt) : nebula->picture.proposed_tilt.value_or(0));
+  piece.volume = solve_nebula(*nebula, nebula->tilt);
+  piece.nebula = std::move(nebula);
+}
+
+// Opens what `source` names.
+void open_source(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece) {
+  const std::string path = package_file(fields, "source", exhibit.folder, piece.source);
+  if (fields.part("nebula", "the source is a picture of a nebula, of which a volume is made",
+                  [&](FieldReader& nebula) { read_nebula(nebula, path, piece); }))
+    return;
+  if (!path.empty() && !fields.describes())
+    piece.volume = std::make_shared<ShownVolume>(make_shown_volume(open_volume(path)));
+}
+
 }  // namespace
+
+std::shared_ptr<const ShownVolume> solve_nebula(const PieceNebula& nebula, float tilt) {
+  NebulaReport report;
+  const RingMap map = volume::solve_nebula(nebula.picture, double(tilt), nebula.settings, report);
+  return std::make_shared<ShownVolume>(
+      make_shown_volume(fill_cubes(map, nebula.picture.axis, double(tilt), nebula.picture.picture,
+                                   nebula.settings.cubes, report.cubes)));
+}
 
 void read_volume(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
                  std::vector<Problem>& problems) {
-  const bool described = fields.describes();
-  if (!described) {
-    fields.text("source", piece.source, "", Need::required);
-    const std::string path = package_file(fields, "source", exhibit.folder, piece.source);
-    if (!path.empty()) try {
-        piece.volume = std::make_shared<ShownVolume>(make_shown_volume(open_volume(path)));
-      } catch (const LoadError& error) {
-        problems.push_back({error.file, error.where, error.what_});
-      } catch (const std::length_error& error) {
-        fields.fail("source", std::string("is too much: ") + error.what());
-      }
+  if (!fields.describes()) fields.text("source", piece.source, "", Need::required);
+  try {
+    open_source(exhibit, fields, piece);
+  } catch (const LoadError& error) {
+    problems.push_back({error.file, error.where, error.what_});
+  } catch (const std::length_error& error) {
+    fields.fail("source", std::string("is too much: ") + error.what());
   }
   float height = 0;
   fields.number("size_m", 0.001, 1000, height, "height of a volume, metres; as scanned without it");
@@ -122,6 +157,17 @@ PlacedVolume place_volume(const Exhibit& exhibit, const ExhibitPiece& piece) {
           .scale = piece.scale,
           .object = piece.object,
           .look = {}};
+}
+
+void place_volumes(const Exhibit& exhibit, World& world) {
+  std::vector<PlacedVolume> volumes;
+  for (const ExhibitPiece& piece : exhibit.pieces) {
+    if (!piece.volume || piece.layers.empty()) continue;
+    volumes.push_back(place_volume(exhibit, piece));
+    volumes.back().look.preset = std::make_shared<const DrawnPreset>(
+        *piece.volume, *piece.layers.front().preset, VolumeLight{});
+  }
+  world.place_volumes(std::move(volumes));
 }
 
 std::vector<VolumeCut> cuts_of(const ExhibitPiece& piece, const PieceChoice& choice) {

@@ -7,6 +7,7 @@
 #include "show/exhibit/json_fields.h"
 #include "show/exhibit/piece_choices.h"
 #include "world/placed_volume.h"
+#include "world/world.h"
 
 namespace wellspring::show {
 
@@ -15,10 +16,15 @@ namespace wellspring::show {
 void read_volume(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
                  std::vector<Problem>& problems);
 
+// Returns the volume of a nebula whose axis is tilted so, radians. Takes some tenths of a second.
+std::shared_ptr<const ShownVolume> solve_nebula(const PieceNebula& nebula, float tilt);
 // Returns a volume's width, height and depth where it stands, metres.
 vec3 size_of(const ExhibitPiece& piece);
 // Returns where a volume stands, with nothing seen of it.
 PlacedVolume place_volume(const Exhibit& exhibit, const ExhibitPiece& piece);
+// Puts all volumes into the world with their first presets, in no light: as a bake wants them, for
+// which they throw shadows.
+void place_volumes(const Exhibit& exhibit, World& world);
 // Returns the planes that a choice cuts it by.
 std::vector<VolumeCut> cuts_of(const ExhibitPiece& piece, const PieceChoice& choice);
 // Cuts away of the volume that a glass names, or of all, as much as its order says of the side that

@@ -2,6 +2,7 @@
 #include "show/exhibit/piece_choices.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "wire/messages.h"
@@ -59,6 +60,7 @@ std::string choose_piece(const Exhibit& exhibit, const PieceOrder& order, PieceC
     choice.turn = float(glm::radians(order.turn));
     choice.low = glm::clamp(order.low, 0.0f, 1.0f),
     choice.high = glm::clamp(order.high, 0.0f, 1.0f);
+    if (piece.nebula) choice.tilt = int(std::lround(std::min(order.tilt, 75.0)));
     const float length = glm::length(vec3(order.plane));
     if (length > 0) choice.plane = vec4(vec3(order.plane) / length, order.plane.w);
   }

@@ -25,6 +25,7 @@ struct PieceChoice {
   float turn = 0;
   vec3 low{0}, high{1};
   vec4 plane{0}, glass_plane{0};
+  int tilt = 0;  // of a nebula's axis, degrees; 0: as at first
   bool operator==(const PieceChoice&) const = default;
 };
 using PieceChoices = std::vector<PieceChoice>;  // for each piece; empty: each as it is at first

@@ -99,7 +99,8 @@ void Baker::publish(const World& world, Bake& bake, uint64_t key, float& shown) 
 }
 
 void Baker::live(const std::stop_token& end) {
-  const World world(scene_);
+  World world(scene_);
+  world.place_volumes(settings_.volumes);
   if (!wait_until_allowed(end)) return;
   const uint64_t key = hash_scene(scene_);
   const std::string file = settings_.file + ".bake";

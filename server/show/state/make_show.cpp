@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "show/exhibit/exhibit_volumes.h"
 #include "show/state/make_show.h"
 
 #include <stdexcept>
@@ -94,6 +95,8 @@ void begin_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   baker.source = show.stage.exhibit.folder;
   baker.places = eye_places(show.stage.exhibit);
   baker.eyes = all_eye_places(show.stage.exhibit);
+  const auto volumes = show.stage.world->volumes();
+  baker.volumes.assign(volumes.begin(), volumes.end());
   show.stage.baker = std::make_unique<Baker>(show.stage.exhibit.scene, std::move(baker));
 }
 
@@ -121,6 +124,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   show->cast.movers = make_movers(show->stage.exhibit, moving, moving_object);
   show->cast.plays.resize(show->stage.exhibit.animations.size());
   show->stage.world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
+  place_volumes(show->stage.exhibit, *show->stage.world);  // whose shadows light is found with
   show->stage.skin = make_skin_light(*show->stage.world);
   if (!show->cast.figures.empty()) enter(show->stage, show->cast.teller);
   if (!show->cast.figures.empty() || !show->cast.props.empty())

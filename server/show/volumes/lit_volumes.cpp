@@ -22,7 +22,7 @@ constexpr size_t most_lights = 256;
 
 // Names a preset in a light.
 struct LitKey {
-  int piece = 0, layer = 0, turn = 0;
+  int piece = 0, layer = 0, turn = 0, tilt = 0;
   LampLevels lamps;
   bool operator==(const LitKey&) const = default;
 };
@@ -30,6 +30,7 @@ struct LitKey {
 struct LitPreset {
   LitKey key;
   std::shared_ptr<const DrawnPreset> drawn;
+  std::shared_ptr<const ShownVolume> volume;  // null: the piece's own
 };
 
 // Holds the light of a room on a volume that is not turned, with those lamps.
@@ -42,6 +43,7 @@ struct KnownRoom {
 struct Wanted {
   LitKey key;
   std::shared_ptr<const ShownVolume> volume;
+  std::shared_ptr<const PieceNebula> nebula;  // null: `volume` is drawn
   Preset preset;
   VolumeLight light;
 };
@@ -65,9 +67,10 @@ struct LitVolumes::Impl {
 
   const VolumeLight& light_of(int piece, const PlacedVolume& placed, const Lights& lights,
                               const Technique& technique, const World& world);
-  std::shared_ptr<const DrawnPreset> find(const LitKey& key);
-  std::shared_ptr<const DrawnPreset> find_like(const LitKey& key);
-  void keep(const LitKey& key, std::shared_ptr<const DrawnPreset> drawn);
+  std::optional<LitPreset> find(const LitKey& key);
+  std::optional<LitPreset> find_like(const LitKey& key) const;
+  std::shared_ptr<const ShownVolume> find_tilted(const LitKey& key) const;
+  void keep(LitPreset made);
   void want(Wanted wish);
   void make_wanted();
 };
@@ -84,29 +87,37 @@ const VolumeLight& LitVolumes::Impl::light_of(int piece, const PlacedVolume& pla
   return rooms.front().light;
 }
 
-std::shared_ptr<const DrawnPreset> LitVolumes::Impl::find(const LitKey& key) {
+std::optional<LitPreset> LitVolumes::Impl::find(const LitKey& key) {
   std::lock_guard lock(guard);
   const auto found = std::ranges::find(kept, key, &LitPreset::key);
   if (found == kept.end()) return {};
   kept.splice(kept.begin(), kept, found);
-  return found->drawn;
+  return *found;
 }
 
 // Returns the same preset in another light, that of the same lamps first.
-std::shared_ptr<const DrawnPreset> LitVolumes::Impl::find_like(const LitKey& key) {
+std::optional<LitPreset> LitVolumes::Impl::find_like(const LitKey& key) const {
   std::lock_guard lock(guard);
   const LitPreset* other = nullptr;
   for (const LitPreset& one : kept) {
     if (one.key.piece != key.piece || one.key.layer != key.layer) continue;
-    if (one.key.lamps == key.lamps) return one.drawn;
+    if (one.key.lamps == key.lamps && one.key.tilt == key.tilt) return one;
     if (!other) other = &one;
   }
-  return other ? other->drawn : nullptr;
+  return other ? std::optional(*other) : std::nullopt;
 }
 
-void LitVolumes::Impl::keep(const LitKey& key, std::shared_ptr<const DrawnPreset> drawn) {
+// Returns the nebula's volume of that tilt, if it was made for another preset or light.
+std::shared_ptr<const ShownVolume> LitVolumes::Impl::find_tilted(const LitKey& key) const {
   std::lock_guard lock(guard);
-  kept.push_front({key, std::move(drawn)});
+  for (const LitPreset& one : kept)
+    if (one.key.piece == key.piece && one.key.tilt == key.tilt) return one.volume;
+  return {};
+}
+
+void LitVolumes::Impl::keep(LitPreset made_now) {
+  std::lock_guard lock(guard);
+  kept.push_front(std::move(made_now));
   if (kept.size() > most_kept) kept.pop_back();
   made++;
 }
@@ -132,9 +143,16 @@ void LitVolumes::Impl::make_wanted() {
       next = std::move(wanted.front());
       wanted.erase(wanted.begin());
     }
-    if (!find(next->key))
-      keep(next->key,
-           std::make_shared<const DrawnPreset>(*next->volume, next->preset, next->light));
+    if (find(next->key)) continue;
+    std::shared_ptr<const ShownVolume> volume;
+    if (next->nebula && next->key.tilt != 0) {
+      volume = find_tilted(next->key);
+      if (!volume) volume = solve_nebula(*next->nebula, glm::radians(float(next->key.tilt)));
+    }
+    keep({next->key,
+          std::make_shared<const DrawnPreset>(volume ? *volume : *next->volume, next->preset,
+                                              next->light),
+          volume});
   }
 }
 
@@ -165,22 +183,23 @@ void LitVolumes::show(const Exhibit& exhibit, const PieceChoices& choices, const
     const PieceChoice choice = choice_of(choices, size_t(number));
     const PlacedVolume& placed = world.volumes()[i];
     // What is not made yet is wanted, and the look before stays as far as there is one.
-    auto lit = [&](int layer, const std::shared_ptr<const DrawnPreset>& before) {
-      const LitKey key{number, layer, step_of(choice.turn), world.lamp_levels()};
+    auto lit = [&](int layer) {
+      const LitKey key{number, layer, step_of(choice.turn), choice.tilt, world.lamp_levels()};
       if (auto found = impl_->find(key)) return found;
       VolumeLight light = impl_->light_of(number, placed, lights, technique, world);
       light.to_lamp =
           mat3(glm::rotate(mat4(1), -step_angle(key.turn), vec3(0, 1, 0))) * light.to_lamp;
-      impl_->want({key, piece.volume, *piece.layers[size_t(layer)].preset, light});
-      const auto like = impl_->find_like(key);
-      return like ? like : before;
+      impl_->want({key, piece.volume, piece.nebula, *piece.layers[size_t(layer)].preset, light});
+      return impl_->find_like(key);
     };
-    VolumeLook look;
-    look.preset = lit(choice.layer, placed.look.preset);
-    if (choice.by != Blend::none && choice.over != choice.layer) {
-      look.over = lit(choice.over, nullptr);
-      look.share = look.over ? choice.share : 0;
-    }
+    VolumeLook look = placed.look;
+    if (const auto found = lit(choice.layer))
+      look.preset = found->drawn, look.volume = found->volume;
+    look.over = nullptr, look.share = 0;
+    if (choice.by != Blend::none && choice.over != choice.layer)
+      // Both are seen of one volume.
+      if (const auto over = lit(choice.over); over && over->volume == look.volume)
+        look.over = over->drawn, look.share = choice.share;
     look.cuts = cuts_of(piece, choice);
     look.turn = choice.turn;
     if (!(look == placed.look)) world.show_volume(int(i), std::move(look));

@@ -70,7 +70,7 @@ LightGrid make_light_grid(const ShownVolume& volume, const TransferTable& table,
   grid.scale = vec3(grid.size - 1) / glm::max(vec3(finest.size - 1), vec3(1));
   const size_t nodes = size_t(grid.size.x) * size_t(grid.size.y) * size_t(grid.size.z);
   grid.lamp.assign(nodes, 255), grid.around.assign(nodes, 255);
-  if (table.mode() == VolumeMode::maximum) return grid;
+  if (table.mode() == VolumeMode::maximum || table.mode() == VolumeMode::glow) return grid;
   // A level about as coarse as the grid.
   const int level = std::min(2, int(volume.levels.size()) - 1);
   const ShadowRays rays{volume.levels[size_t(level)], table, ToSamples(volume, level),

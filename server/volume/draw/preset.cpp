@@ -94,11 +94,18 @@ std::vector<int> split_bins(const Histogram& histogram, int classes) {
   return firsts;
 }
 
+constexpr double brightness = 1.5;  // of a ray through a nebula, over that of its picture
 const vec3 linen(0.62f, 0.47f, 0.29f), bone(0.84f, 0.77f, 0.6f), gold(0.9f, 0.6f, 0.18f);
 
 }  // namespace
 
 std::vector<Preset> find_presets(const ShownVolume& volume) {
+  if (!volume.levels.front().colors[0].empty()) {
+    const double most = std::max(volume.high, 0.0);
+    return {{"light",
+             VolumeMode::glow,
+             {{0, vec3(1), 0}, {most, vec3(1), brightness * most / (1000 * volume.voxel)}}}};
+  }
   const Histogram histogram = count_codes(volume.levels.front());
   const auto used = std::ranges::count_if(histogram.count, [](double n) { return n > 0; });
   const int classes = int(std::clamp<ptrdiff_t>(used, 1, most_classes));

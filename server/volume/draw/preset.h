@@ -16,14 +16,16 @@ enum class VolumeMode : uint8_t {
   density,  // light that is sent on and absorbed, all along the ray
   surface,  // the first place whose value is that of the first point
   maximum,  // the largest value along the ray
+  glow,     // light that is sent, all along the ray; nothing is absorbed
 };
 
 // Between points, colour and density are mixed; before the first and behind the last they stay. Two
 // points of one value make an edge.
 struct PresetPoint {
-  double value = 0;    // in the volume's unit
-  vec3 color{1};       // linear
-  double density = 0;  // extinction per millimetre; of `maximum`: opacity, 0 to 1
+  double value = 0;  // in the volume's unit
+  vec3 color{1};     // linear
+  // Extinction per millimetre; of `maximum`: opacity, 0 to 1; of `glow`: light per millimetre.
+  double density = 0;
 };
 struct Preset {
   std::string name;
@@ -37,7 +39,7 @@ class TransferTable {
 
   VolumeMode mode() const { return mode_; }
   float threshold() const { return threshold_; }  // code of the first point
-  // Returns linear colour and, in `density`, extinction per metre (of `maximum`: opacity).
+  // Returns linear colour and, in `density`, extinction or light per metre (of `maximum`: opacity).
   Lanes3 look(const Lanes& codes, Lanes& density) const;
   // Returns whether nothing is seen of codes in the range.
   bool is_empty(const CodeRange& range) const;
@@ -55,7 +57,8 @@ class TransferTable {
 
 // Finds presets in the volume's histogram: the classes of values that differ most (Otsu 1979, for
 // four classes), for which a scan has air, wrapping or soft matter, bone, and metal. The first is
-// what one sees from outside. A volume with fewer classes gets fewer presets, at least one.
+// what one sees from outside. A volume with fewer classes gets fewer presets, at least one. One of
+// colours is light that it sends.
 std::vector<Preset> find_presets(const ShownVolume& volume);
 
 }  // namespace wellspring::volume

@@ -7,16 +7,43 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
+#include "image/srgb.h"
 
 namespace wellspring::volume {
 namespace {
 
 constexpr int least_side = 16;  // samples; smaller levels are of no use
 
+// Returns a channel of a colour as linear light.
+double light_at(const Volume& volume, int x, int y, int z, int channel) {
+  const double value = volume.at(x, y, z, channel);
+  if (volume.kind == SampleKind::f32 || volume.kind == SampleKind::f64) return value;
+  const double most = volume.kind == SampleKind::u8 ? 255 : 65535;
+  return double(image::decode_srgb(uint8_t(std::clamp(255 * value / most, 0.0, 255.0))));
+}
+
 double measured_at(const Volume& volume, int x, int y, int z) {
-  double sum = 0;
-  for (int channel = 0; channel < volume.channels; channel++) sum += volume.at(x, y, z, channel);
-  return sum / volume.channels;
+  if (volume.channels == 1) return volume.at(x, y, z);
+  double most = light_at(volume, x, y, z, 0);
+  for (int channel = 1; channel < volume.channels; channel++)
+    most = std::max(most, light_at(volume, x, y, z, channel));
+  return most;
+}
+
+void add_colors(const Volume& volume, VolumeLevel& level) {
+  for (std::vector<uint8_t>& plane : level.colors) plane.resize(level.codes.size());
+  parallel_each(volume.size.z, [&](int z) {
+    size_t index = size_t(z) * size_t(volume.size.x) * size_t(volume.size.y);
+    for (int y = 0; y < volume.size.y; y++)
+      for (int x = 0; x < volume.size.x; x++, index++) {
+        const double most = measured_at(volume, x, y, z);
+        for (int channel = 0; channel < 3; channel++) {
+          const double share = most > 0 ? light_at(volume, x, y, z, channel) / most : 1;
+          level.colors[channel][index] =
+              uint8_t(std::lrint(255 * std::sqrt(std::clamp(share, 0.0, 1.0))));
+        }
+      }
+  });
 }
 
 // Returns the least and the largest finite value.
@@ -68,26 +95,34 @@ void add_normals_and_ranges(VolumeLevel& level) {
 }
 
 // Averages boxes of 2 x 2 x 2 samples; where a side is odd, the last sample counts twice.
-VolumeLevel halve_level(const VolumeLevel& from) {
-  VolumeLevel to;
-  to.size = (from.size + 1) / 2;
-  to.codes.resize(size_t(to.size.x) * size_t(to.size.y) * size_t(to.size.z));
-  parallel_each(to.size.z, [&](int z) {
-    for (int y = 0; y < to.size.y; y++)
-      for (int x = 0; x < to.size.x; x++) {
+template <class Code>
+std::vector<Code> halve(const std::vector<Code>& from, glm::ivec3 size) {
+  const glm::ivec3 half = (size + 1) / 2;
+  std::vector<Code> to(size_t(half.x) * size_t(half.y) * size_t(half.z));
+  parallel_each(half.z, [&](int z) {
+    for (int y = 0; y < half.y; y++)
+      for (int x = 0; x < half.x; x++) {
         uint32_t sum = 0;
         for (int corner = 0; corner < 8; corner++) {
           const glm::ivec3 at = glm::min(
               2 * glm::ivec3(x, y, z) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2),
-              from.size - 1);
+              size - 1);
           sum +=
-              from.codes[(size_t(at.z) * size_t(from.size.y) + size_t(at.y)) * size_t(from.size.x) +
-                         size_t(at.x)];
+              from[(size_t(at.z) * size_t(size.y) + size_t(at.y)) * size_t(size.x) + size_t(at.x)];
         }
-        to.codes[(size_t(z) * size_t(to.size.y) + size_t(y)) * size_t(to.size.x) + size_t(x)] =
-            uint16_t((sum + 4) / 8);
+        to[(size_t(z) * size_t(half.y) + size_t(y)) * size_t(half.x) + size_t(x)] =
+            Code((sum + 4) / 8);
       }
   });
+  return to;
+}
+
+VolumeLevel halve_level(const VolumeLevel& from) {
+  VolumeLevel to;
+  to.size = (from.size + 1) / 2;
+  to.codes = halve(from.codes, from.size);
+  for (size_t channel = 0; !from.colors[0].empty() && channel < 3; channel++)
+    to.colors[channel] = halve(from.colors[channel], from.size);
   return to;
 }
 
@@ -114,6 +149,7 @@ ShownVolume make_shown_volume(const Volume& volume) {
             std::isfinite(value) ? uint16_t(std::lrint(shown.code_of(value))) : uint16_t(0);
       }
   });
+  if (volume.channels == 3) add_colors(volume, finest);
   while (std::max({shown.levels.back().size.x, shown.levels.back().size.y,
                    shown.levels.back().size.z}) > 2 * least_side)
     shown.levels.push_back(halve_level(shown.levels.back()));

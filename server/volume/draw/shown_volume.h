@@ -26,6 +26,9 @@ struct VolumeLevel {
   // One for each cell, x fastest, of the samples that places in it lie between: one more on each
   // side that is not the border.
   std::vector<CodeRange> ranges;
+  // Of a volume of colours: for each sample, square roots of red, green and blue over the largest
+  // of them, as codes. Empty: tables alone give colour.
+  std::vector<uint8_t> colors[3];
 
   SampleBox<uint16_t> box() const { return whole_box(codes.data(), size); }
 };
@@ -41,7 +44,8 @@ struct ShownVolume {
   }
 };
 
-// Takes a volume of one channel; of three, their mean. Values that are not finite count as the
+// Takes a volume of one channel; of three, the largest, and colours. Integers of three channels are
+// display codes, floats are linear. Values that are not finite count as the
 // least finite one. Takes about 7 bytes a sample.
 // Throws std::length_error beyond 2^31 samples.
 ShownVolume make_shown_volume(const Volume& volume);

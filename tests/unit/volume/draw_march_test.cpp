@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "volume/draw/along_ray.h"
 #include "unit/volume/made_volume.h"
@@ -247,6 +248,39 @@ TEST(DrawVolume, ABallIsInTheMiddleOfItsPicture) {
     }
   EXPECT_NEAR(middle.x / sum, 32, 0.3);
   EXPECT_NEAR(middle.y / sum, 32, 0.3);
+}
+
+// Returns a volume of linear colours, 40 mm wide: the same everywhere.
+Volume made_colors(vec3 color) {
+  Volume volume = made_volume({40, 40, 40}, [](glm::vec3) { return 0.0f; });
+  volume.channels = 3;
+  const std::shared_ptr<std::byte[]> bytes(new std::byte[volume.byte_count()]);
+  for (size_t i = 0; i < volume.samples(); i++) std::memcpy(&bytes[12 * i], &color, 12);
+  volume.bytes = std::shared_ptr<const std::byte>(bytes, bytes.get());
+  return volume;
+}
+
+TEST(VolumeMarch, GlowAddsUpAndStopsNothing) {
+  const ShownVolume volume = make_shown_volume(made_colors({0.2f, 0.4f, 0.1f}));
+  const Preset light{"light", VolumeMode::glow, {{0, vec3(1), 0}, {0.4, vec3(1), 0.05}}};
+  const DrawnPreset preset(volume, light, {});
+  const MarchedLight found = march(volume, preset, rays_at({0, 0, 1}), {.step = 0.5f});
+  EXPECT_NEAR(found.color.y[0], 40 * 0.05, 0.03);
+  EXPECT_NEAR(found.color.x[0] / found.color.y[0], 0.5f, 0.01f);
+  EXPECT_NEAR(found.color.z[0] / found.color.y[0], 0.25f, 0.01f);
+  EXPECT_EQ(found.clear[0], 1);
+  EXPECT_EQ(found.depth[0], INFINITY);
+}
+
+TEST(VolumeMarch, AVolumeOfColorsKeepsThem) {
+  const ShownVolume volume = make_shown_volume(made_colors({0.8f, 0.4f, 0.2f}));
+  const VolumeLight even{.to_lamp = {0, 1, 0}, .lamp = vec3(0), .around = vec3(1)};
+  const DrawnPreset preset(volume, even_preset(1), even);
+  for (int level : {0, 1}) {
+    const MarchedLight found = march(volume, preset, rays_at({0, 0, 1}), {.level = level});
+    EXPECT_NEAR(found.color.y[0] / found.color.x[0], 0.5f, 0.01f) << level;
+    EXPECT_NEAR(found.color.z[0] / found.color.x[0], 0.25f, 0.01f) << level;
+  }
 }
 
 }  // namespace
