@@ -20,17 +20,20 @@ namespace wellspring::world {
 namespace {
 
 float uniform_of(const Ray& ray, uint32_t instance, uint32_t triangle) {
+  return float(hash_ray(ray, instance, triangle) >> 40) * 0x1p-24f;
+}
+
+}  // namespace
+
+uint64_t hash_ray(const Ray& ray, uint32_t instance, uint32_t triangle) {
   auto pair = [](float a, float b) {
     return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b);
   };
   uint64_t hash = mix64(uint64_t(instance) << 32 | triangle);
   hash = mix64(hash ^ pair(ray.origin.x, ray.origin.y));
   hash = mix64(hash ^ pair(ray.origin.z, ray.direction.x));
-  hash = mix64(hash ^ pair(ray.direction.y, ray.direction.z));
-  return float(hash >> 40) * 0x1p-24f;
+  return mix64(hash ^ pair(ray.direction.y, ray.direction.z));
 }
-
-}  // namespace
 
 bool may_pass(const Mesh& mesh, const Material& material) {
   if (material.alpha_mode == AlphaMode::opaque) return false;

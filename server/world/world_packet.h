@@ -23,6 +23,16 @@ inline void cut_by_slab(float low, float high, float origin, float inverse, floa
   far = out < far ? out : far;
 }
 
+// Returns whether the ray may meet the box before t_max; never if its low is above its high.
+inline bool meets(const Bounds& box, const Ray& ray, float t_max) {
+  if (!(box.low.x <= box.high.x)) return false;
+  vec3 inverse = 1.0f / ray.direction;
+  float near = ray.t_min, far = t_max;
+  for (int i = 0; i < 3; i++)
+    cut_by_slab(box.low[i], box.high[i], ray.origin[i], inverse[i], near, far);
+  return near <= far * 1.00001f;
+}
+
 inline void set_ray(const Ray& ray, int lane, RayPacket& rays) {
   rays.origin_x[lane] = ray.origin.x, rays.origin_y[lane] = ray.origin.y;
   rays.origin_z[lane] = ray.origin.z;

@@ -94,6 +94,7 @@ StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_cloc
   const bool switched = !levels.empty() && show.stage.switches.all.known;
   lights.known = switched ? relit(*show.stage.switches.all.known, levels) : show.stage.lights.known;
   if (!lights.known) transport.clamp = 0;  // it is the reference
+  transport.sees_volumes = true;
 }
 
 // One sample a pixel, and as many more as there is time for by what that took.
