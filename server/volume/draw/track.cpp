@@ -10,7 +10,7 @@
 namespace wellspring::volume {
 namespace {
 
-constexpr int refinements = 4;  // looks that narrow down where a surface is crossed
+constexpr int refinements = 3;  // halvings of the step in which a surface is crossed
 
 // All reading of samples is here.
 
@@ -85,12 +85,15 @@ class Tracker::Flight {
     if (!found.is_stopped()) return;
     const float threshold = table_.threshold();
     float inside = stopped_, outside = std::max(inside - step_, 0.0f);
-    if (read(outside) >= threshold) return stop(outside);
+    float value_inside = read(inside), value_outside = read(outside);
+    if (value_outside >= threshold) return stop(outside);
     for (int i = 0; i < refinements; i++) {
-      const float middle = 0.5f * (inside + outside);
-      (read(middle) < threshold ? outside : inside) = middle;
+      const float middle = 0.5f * (inside + outside), value = read(middle);
+      if (value < threshold) outside = middle, value_outside = value;
+      else inside = middle, value_inside = value;
     }
-    stop(inside);
+    const float way = (threshold - value_outside) / (value_inside - value_outside);
+    stop(outside + (inside - outside) * way);
   }
 
   void find_maximum() {

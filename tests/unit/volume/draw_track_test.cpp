@@ -89,7 +89,7 @@ TEST(VolumeTrack, MatterIsAsBrightAsByMarching) {
       // Three standard errors, and what marching leaves away behind nearly opaque matter.
       EXPECT_NEAR(a.clear, b.clear, 3 * std::sqrt(0.25 / 30000) + 0.004) << k;
     }
-    EXPECT_GT(marched.color.x, 1) << "the rays meet something";
+    EXPECT_GT(marched.color.x, 0.5) << "the rays meet something";
     for (int c = 0; c < 3; c++) EXPECT_NEAR(tracked.color[c] / marched.color[c], 1, 0.01) << c;
   }
 }
