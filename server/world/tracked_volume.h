@@ -19,7 +19,7 @@ struct TrackedVolume {
   ToVolume to_volume;
   Tracker tracker;
   std::optional<Tracker> over{};  // VolumeLook::over
-  float share = 0;                // of `over`
+  float share = 0;                // chance that a ray meets `over`
   uint32_t object = 0, number = 0;
 };
 

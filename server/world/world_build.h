@@ -24,10 +24,6 @@ bool may_be_pane(const Material& material);
 bool passes(const Scene& scene, const PlacedMesh& placed, uint32_t instance, uint32_t triangle,
             vec2 barycentric, const Ray& ray);
 
-// Returns a hash of the ray's origin and direction and of a triangle, or of whatever else decides
-// by chance about the ray.
-uint64_t hash_ray(const Ray& ray, uint32_t instance, uint32_t triangle);
-
 // Sets PlacedMesh::apart and steps. The first of `placed` are the scene's instances.
 void mark_far(const Scene& scene, std::vector<PlacedMesh>& placed);
 

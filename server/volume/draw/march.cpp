@@ -25,7 +25,7 @@ class March {
         preset_(preset),
         seen_(preset.seen[size_t(settings.level)]),
         to_samples_(volume, settings.level),
-        light_(preset, to_samples_, settings.level, rays.direction) {
+        light_(preset.light, preset.grid, to_samples_, settings.level, rays.direction) {
     origin_ = to_samples_.place(rays.origin), way_ = to_samples_.way(rays.direction);
     const Lanes speed = lanes_sqrt(dot(way_, way_));  // samples a metre
     step_ = settings.step / speed;

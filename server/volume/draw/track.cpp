@@ -117,7 +117,8 @@ class Tracker::Flight {
       there.value = lanes_max(there.value, all_lanes(table_.threshold()));
     Lanes density;
     const Lanes3 color = table_.look(there.value, density);
-    const MatterLight light(*tracker_.preset_, tracker_.to_samples_, settings_.level,
+    const DrawnPreset& preset = *tracker_.preset_;
+    const MatterLight light(preset.light, preset.grid, tracker_.to_samples_, settings_.level,
                             all_lanes(ray_.direction));
     found.color =
         (mode == VolumeMode::maximum ? color : light.lit(color, all_lanes(place), there.normal))
