@@ -435,6 +435,7 @@ void render(const Options& o) {
   settings.spp = o.spp;
   settings.seed = o.seed;
   settings.transport.max_depth = o.max_depth;
+  settings.transport.sees_volumes = true;
   if (!o.replay.empty()) return print_replay(o, world, lights, view, settings);
   double start = seconds_now();
   fetch_pieces(world, lights, view);

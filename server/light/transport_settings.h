@@ -51,6 +51,9 @@ struct TransportSettings {
   int max_depth = 8;
   float clamp =
       0;  // >0: bound of what one sample owes to chance (radiance; biased, for display); 0: none
+  // Volumes that stand in the scene are seen by the eye itself, not only in mirrors. Else whoever
+  // shows the picture lays them over it.
+  bool sees_volumes = false;
   InstantRadiositySettings instant;
   SplatSettings splat;
 };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -71,6 +72,13 @@ struct PanesPassed {
   Hit hits[most];
   int count = 0;
   bool more = false;  // more triangles than fit: the ray was taken for blocked
+};
+
+// Holds the place where a volume stops a ray.
+struct VolumeHit {
+  float t = 0;
+  vec3 color{0};        // light that the matter there sends back along the ray
+  uint32_t object = 0;  // PlacedVolume::object
 };
 
 // Returns how many rays this thread has traced so far, nearest hits and occluders alike: for
@@ -167,6 +175,11 @@ class World {
   void place_volumes(std::vector<PlacedVolume> volumes);
   void show_volume(int volume, VolumeLook look);  // likewise
   std::span<const PlacedVolume> volumes() const;
+  // Returns where a volume stops the ray before t_end, if one does: a mean of many rays is what
+  // pictures march through it. Rays are stopped by chance, decided by a hash of the ray, so that a
+  // replay agrees. `maxima`: also by volumes that show the largest value along a ray, which is no
+  // matter in the room.
+  std::optional<VolumeHit> meet_volume(const Ray& ray, float t_end, bool maxima) const;
 
   // Returns the nearest hit. Rays pass surfaces with alpha where their alpha says so (mask:
   // cut-off; blend: stochastically, decided by a hash of the ray and the hit, so that a replay
@@ -175,6 +188,7 @@ class World {
   // between commits. A ray that is not finite hits nothing.
   Hit intersect(const Ray& ray) const;
   // Returns whether anything lies between t_min and t_max. Alpha as above. Glass counts as opaque.
+  // Volumes stop the ray as in meet_volume(), but for maxima.
   bool occluded(const Ray& ray) const;
   // Does the same, but rays pass thin transmitting materials, which `panes` gets: the caller finds
   // how much light they let through.

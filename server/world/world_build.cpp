@@ -3,7 +3,6 @@
 #include "world/world_build.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,6 +12,7 @@
 #include "base/worker.h"
 #include "gltf/animation.h"
 #include "world/mesh_finish.h"
+#include "world/one_ray.h"
 #include "world/surface.h"
 #include "world/world_impl.h"
 
@@ -20,14 +20,7 @@ namespace wellspring::world {
 namespace {
 
 float uniform_of(const Ray& ray, uint32_t instance, uint32_t triangle) {
-  auto pair = [](float a, float b) {
-    return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b);
-  };
-  uint64_t hash = mix64(uint64_t(instance) << 32 | triangle);
-  hash = mix64(hash ^ pair(ray.origin.x, ray.origin.y));
-  hash = mix64(hash ^ pair(ray.origin.z, ray.direction.x));
-  hash = mix64(hash ^ pair(ray.direction.y, ray.direction.z));
-  return float(hash >> 40) * 0x1p-24f;
+  return float(hash_ray(ray, instance, triangle) >> 40) * 0x1p-24f;
 }
 
 }  // namespace

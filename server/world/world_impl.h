@@ -7,6 +7,7 @@
 #pragma once
 #include "world/embree.h"
 #include "store/picture/sample_picture.h"
+#include "world/tracked_volume.h"
 #include "world/world.h"
 
 namespace wellspring::world {
@@ -48,8 +49,9 @@ struct World::Impl {
   std::vector<std::pair<int, std::unique_ptr<Material>>>
       of_lamps;  // copies of the materials of lamps
   LampLevels lamp_levels;
-  std::vector<ShownPicture> pictures;    // for each of the images; empty: none is very large
+  std::vector<ShownPicture> pictures;  // for each of the images; empty: none is very large
   std::vector<PlacedVolume> volumes;
+  std::vector<TrackedVolume> tracked;    // those that stop rays
   std::vector<std::vector<Face>> faces;  // for each instance of the scene, if placed points to them
   std::vector<Tag> tags;                 // reserved up front: geometries point into it
   RTCScene still_scene = nullptr, moving_scene = nullptr;
@@ -88,7 +90,11 @@ struct World::Impl {
                ? nearest(ray, filter_culled)
                : hit;
   }
+  // Returns whether a mesh is in the way of a ray that is traceable.
   bool is_occluded(const Ray& ray, PanesPassed* panes) const;
+  // Return whether a volume is in the way of it, or of those rays of a packet.
+  bool is_shaded(const Ray& ray) const { return !tracked.empty() && shades(tracked, ray); }
+  uint32_t shaded(const RayPacket& rays, uint32_t active) const;
   RTCGeometry make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
                             RTCBuildQuality);
   RTCGeometry make_apart(uint32_t instance, RTCBuildQuality quality);

@@ -97,18 +97,19 @@ uint32_t World::occluded_packet(const RayPacket& rays, uint32_t active) const {
   active = traceable(rays, active);
   if (active == 0) return 0;
   const Impl& w = *impl_;
-  if (packet_width() == 16) return w.occluded_lanes<RTCRay16, 16>(rays, active, 0);
   uint32_t blocked = 0;
-  if (packet_width() == 8) {
+  if (packet_width() == 16) {
+    blocked = w.occluded_lanes<RTCRay16, 16>(rays, active, 0);
+  } else if (packet_width() == 8) {
     if (active & 0xff) blocked |= w.occluded_lanes<RTCRay8, 8>(rays, active & 0xff, 0);
     if (active >> 8) blocked |= w.occluded_lanes<RTCRay8, 8>(rays, active & 0xff00, 8);
-    return blocked;
+  } else {
+    Impl::Query query;
+    query.packet = &rays;
+    for (unsigned i = 0; i < RayPacket::lanes; i++)
+      if (active >> i & 1) blocked |= uint32_t(w.is_occluded(query.ray(i), nullptr)) << i;
   }
-  Impl::Query query;
-  query.packet = &rays;
-  for (unsigned i = 0; i < RayPacket::lanes; i++)
-    if (active >> i & 1) blocked |= uint32_t(occluded(query.ray(i))) << i;
-  return blocked;
+  return blocked | w.shaded(rays, active & ~blocked);
 }
 
 namespace {
@@ -179,7 +180,7 @@ uint32_t World::occluded_each(const RayPacket& p, uint32_t active) const {
     blocked |= uint32_t(r.tfar < 0) << i;
   }
   count_rays(uint64_t(std::popcount(active)));
-  return blocked;
+  return blocked | w.shaded(p, active & ~blocked);
 }
 
 }  // namespace wellspring::world

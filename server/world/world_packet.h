@@ -2,26 +2,10 @@
 // Fills the lanes of ray packets.
 #pragma once
 #include "base/simd.h"
+#include "world/one_ray.h"
 #include "world/world.h"
 
 namespace wellspring::world {
-
-// Tests rays against boxes, slab by slab, in a form that compilers turn into vector code: std::fmin
-// and std::fmax are calls.
-
-// Cuts [near, far] of a ray down to the slab [low, high] of one axis; `inverse`: 1 / direction. A
-// ray in the slab's very plane (0 times infinity) is not cut: the test is only whether the box may
-// be met.
-inline void cut_by_slab(float low, float high, float origin, float inverse, float& near,
-                        float& far) {
-  float a = (low - origin) * inverse, b = (high - origin) * inverse;
-  float in = a < b ? a : b, out = a < b ? b : a;
-  bool known = a + b == a + b;  // else the ray lies in the slab's plane
-  in = known ? in : near;
-  out = known ? out : far;
-  near = in > near ? in : near;
-  far = out < far ? out : far;
-}
 
 inline void set_ray(const Ray& ray, int lane, RayPacket& rays) {
   rays.origin_x[lane] = ray.origin.x, rays.origin_y[lane] = ray.origin.y;

@@ -44,15 +44,6 @@ float half_area(const Bounds& box) {
   return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-bool meets(const Bounds& box, const Ray& ray, float t_max) {
-  if (!(box.low.x <= box.high.x)) return false;  // nothing moves, or all is hidden
-  vec3 inverse = 1.0f / ray.direction;
-  float near = ray.t_min, far = t_max;
-  for (int i = 0; i < 3; i++)
-    cut_by_slab(box.low[i], box.high[i], ray.origin[i], inverse[i], near, far);
-  return near <= far * 1.00001f;
-}
-
 }  // namespace
 
 uint64_t rays_traced() { return traced; }
@@ -156,16 +147,6 @@ void World::show_picture(int image, const ShownPicture& shown) {
 
 std::span<const ShownPicture> World::pictures() const { return impl_->pictures; }
 
-void World::place_volumes(std::vector<PlacedVolume> volumes) {
-  impl_->volumes = std::move(volumes);
-}
-
-void World::show_volume(int volume, VolumeLook look) {
-  impl_->volumes.at(size_t(volume)).look = std::move(look);
-}
-
-std::span<const PlacedVolume> World::volumes() const { return impl_->volumes; }
-
 void World::commit() {
   if (!impl_->moved) return;
   impl_->moved = false;
@@ -202,7 +183,6 @@ Hit World::intersect(const Ray& ray) const {
 }
 
 bool World::Impl::is_occluded(const Ray& ray, PanesPassed* panes) const {
-  if (!is_traceable(ray)) return false;
   traced++;
   Query query;
   embree::init(query);
@@ -216,12 +196,18 @@ bool World::Impl::is_occluded(const Ray& ray, PanesPassed* panes) const {
   return r.tfar < ray.t_min;
 }
 
-bool World::occluded(const Ray& ray) const { return impl_->is_occluded(ray, nullptr); }
+bool World::occluded(const Ray& ray) const {
+  return is_traceable(ray) && (impl_->is_occluded(ray, nullptr) || impl_->is_shaded(ray));
+}
 
 bool World::occluded(const Ray& ray, PanesPassed& panes) const {
   panes.count = 0;
   panes.more = false;
-  return impl_->is_occluded(ray, &panes);
+  if (!is_traceable(ray)) return false;
+  const bool blocked = impl_->is_occluded(ray, &panes);
+  if ((blocked && !panes.more) || !impl_->is_shaded(ray)) return blocked;
+  panes.more = false;
+  return true;
 }
 
 void World::Impl::intersect8(const Ray* rays, Hit* hits, int count) const {

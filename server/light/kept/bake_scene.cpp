@@ -75,13 +75,14 @@ void add_met_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::spa
   };
   for (int step = 0; step < most_steps; step++) {
     Hit hit = world.intersect(walk.ray);
+    if (step == 0 && hit.valid() && is_inside(world, walk, hit)) {
+      inside = true;
+      return;
+    }
+    if (ends_in_volume(any, walk, hit.t, light[0])) return;
     if (!hit.valid()) {
       weigh_for(0);
       light[0] += walk.throughput * walk_met_sky(any, walk);
-      return;
-    }
-    if (step == 0 && is_inside(world, walk, hit)) {
-      inside = true;
       return;
     }
     const Material& material = world.material_of(hit.instance);
@@ -111,14 +112,19 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
   for (int step = 0; step < most_steps; step++) {
     const uint32_t base = Dimensions::walk + uint32_t(step) * Dimensions::surface;
     Hit hit = world.intersect(walk.ray);
+    if (step == 0 && hit.valid() && is_inside(world, walk, hit)) {
+      inside = true;
+      return;
+    }
+    vec3 of_volume(0);
+    if (ends_in_volume(any, walk, hit.t, of_volume)) {
+      if (scattered_once) light[0] += of_volume;
+      return;
+    }
     if (!hit.valid()) {
       if (!scattered_once) return;
       weigh_for(0);
       light[0] += walk.throughput * walk_met_sky(any, walk);
-      return;
-    }
-    if (step == 0 && is_inside(world, walk, hit)) {
-      inside = true;
       return;
     }
     Surface surface = meet_surface(any, walk.ray, hit, walk.media);

@@ -22,6 +22,8 @@ struct Transport {
   const LampsSeen* lamps = nullptr;
   // Light in whose multiples samples give the diffuse light that they find
   const IlluminationMap* maps = nullptr;
+  // The eye's own rays meet World::volumes(); those of walks always do.
+  bool sees_volumes = false;
 };
 
 }  // namespace wellspring::light

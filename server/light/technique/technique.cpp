@@ -266,7 +266,9 @@ void trace_many_direct(const World& world, const Lights& lights, const Transport
   WalkRules rules;
   rules.max_depth = settings.max_depth;
   rules.scatterings = 1;
-  trace_samples({world, *lights.tables}, rules, requests, samples);
+  Transport transport{world, *lights.tables};
+  transport.sees_volumes = settings.sees_volumes;
+  trace_samples(transport, rules, requests, samples);
   finish_samples(lights, settings, samples);
 }
 
@@ -285,6 +287,7 @@ void trace_many_path(const World& world, const Lights& lights, const TransportSe
   rules.max_depth = settings.max_depth;
   Transport transport{world, *lights.tables};
   transport.maps = lights.maps.get();
+  transport.sees_volumes = settings.sees_volumes;
   trace_samples(transport, rules, requests, samples);
   finish_samples(lights, settings, samples);
 }
@@ -313,9 +316,9 @@ void trace_many_gather(const World& world, const Lights& lights, const Transport
   rules.max_depth = settings.max_depth;
   if (lights.known) rules.blunt = blunt;
   rules.reads_maps = true;
-  trace_samples(
-      {world, *lights.tables, lights.known.get(), lights.lamps_seen.get(), lights.maps.get()},
-      rules, requests, samples);
+  trace_samples({world, *lights.tables, lights.known.get(), lights.lamps_seen.get(),
+                 lights.maps.get(), settings.sees_volumes},
+                rules, requests, samples);
   finish_samples(lights, settings, samples);
 }
 
@@ -332,7 +335,10 @@ void prepare_gather(const World& world, std::span<const vec3> places, Lights& li
   if (lights.known || places.empty()) return;
   // Moving meshes would leave their shadows in light that is kept.
   std::optional<World> still;
-  if (size_t(world.instance_count()) > world.scene().instances.size()) still.emplace(world.scene());
+  if (size_t(world.instance_count()) > world.scene().instances.size()) {
+    still.emplace(world.scene());
+    still->place_volumes({world.volumes().begin(), world.volumes().end()});
+  }
   lights.known = make_bake_scene(still ? *still : world, places).known;
 }
 

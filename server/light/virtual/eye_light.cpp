@@ -117,6 +117,10 @@ vec3 gather_along(const EyeLight& eye, Walk walk, Sampler& sampler) {
   for (int i = 0; i < most_panes; i++) {
     if (!eye.pass.sharp) walk.ray.t_max = clip - run;
     Hit hit = transport.world.intersect(walk.ray);
+    vec3 unseen(0);
+    if (ends_in_volume(transport, walk, std::min(hit.t, walk.ray.t_max),
+                       chained ? radiance : unseen))
+      return radiance;
     if (!hit.valid()) {
       if (chained && tables.environment.cells.cells.empty())
         radiance += walk.throughput * plain_sky(tables.environment, walk.ray.direction);
@@ -173,6 +177,7 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
   vec3 radiance(0);
   for (int i = 0; i < most_panes + most_glass; i++) {
     Hit hit = transport.world.intersect(walk.ray);
+    if (ends_in_volume(transport, walk, hit.t, radiance)) return radiance;
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
     Met met;
     meet(transport, hit, sampler, walk, met);
@@ -467,6 +472,7 @@ void trace_many_instant(const World& world, const Lights& lights, const Transpor
   }();
   const InstantPass& pass = lights.pass ? *lights.pass : nothing;
   Transport transport{world, *lights.tables};
+  transport.sees_volumes = settings.sees_volumes;
   std::vector<uint32_t> others;
   if (pass.sharp || settings.max_depth < 2) {
     for (size_t i = 0; i < requests.size(); i++) others.push_back(uint32_t(i));

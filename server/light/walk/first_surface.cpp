@@ -78,6 +78,21 @@ void describe_place(const World& world, const Hit& hit, const SurfacePlace& plac
   sample.flags = uint8_t(sample_hit | (world.is_moving(hit.instance) ? sample_moving : 0));
 }
 
+bool see_volume(const Transport& transport, const Walk& walk, float t_end, vec3 tint,
+                float distance, Sample& sample) {
+  if (!transport.sees_volumes) return false;
+  const std::optional<VolumeHit> met = transport.world.meet_volume(walk.ray, t_end, true);
+  if (!met) return false;
+  sample.position = walk.ray.origin + met->t * walk.ray.direction;
+  sample.normal = -walk.ray.direction;
+  sample.distance = distance + met->t;
+  sample.object = met->object;
+  sample.rest +=
+      tint * eval_absorption(transport, walk.media.here.innermost(), met->t) * met->color;
+  sample.flags = sample_hit;
+  return true;
+}
+
 void describe_sky(const Transport& transport, vec3 direction, vec3 tint, Sample& sample) {
   sample.position = direction;
   sample.distance = std::numeric_limits<float>::infinity();
@@ -106,6 +121,8 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
   Walk& walk = first.walk;
   float distance = 0, reflections = 0;
   for (;; hit = world.intersect(walk.ray)) {
+    first.by_chance = see_volume(transport, walk, hit.t, first.tint, distance, sample);
+    if (first.by_chance) break;
     if (!hit.valid()) {
       describe_sky(transport, walk.ray.direction, first.tint, sample);
       break;
@@ -263,17 +280,19 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
   Sampler sampler(request.seed, request.index);
   Sample sample;
   Walk walk = begin_walk(transport, request);
+  const bool simple = !hit.valid() || met_lambertian(transport, hit);
+  if (simple && see_volume(transport, walk, hit.t, vec3(1), 0, sample)) return sample;
   if (!hit.valid()) {
     describe_sky(transport, walk.ray.direction, vec3(1), sample);
     sample.flags |= sample_sure;
     return sample;
   }
-  if (met_lambertian(transport, hit)) {
+  if (simple) {
     shade_first_lambert(transport, rules, walk, hit, sampler, sample);
     return sample;
   }
   FirstSurface first = find_first_surface(transport, rules.max_depth, walk, hit, sampler, sample);
-  sample.flags |= sample_sure;  // until chance comes in
+  if (!first.by_chance) sample.flags |= sample_sure;  // until chance comes in
   if (first.scatters) shade_first(transport, rules, first, sampler, sample);
   if (first.mirrored) {
     sample.flags &= uint8_t(~sample_sure);

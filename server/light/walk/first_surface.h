@@ -16,6 +16,7 @@ struct FirstSurface {
   Bsdf bsdf;
   vec3 tint{1};  // share of light that panes and media before the surface let through
   MetalDemodulation metal = MetalDemodulation::none;  // the surface material's
+  bool by_chance = false;  // a volume is seen, whose matter the ray met by chance
   bool mirrored = false;
   // If mirrored, carries what the panes reflect, divided by the chance of the choice.
   Walk reflection;
@@ -33,6 +34,11 @@ Walk begin_walk(const Transport& transport, const Request& request);
 // Describe in a sample the place where it ended, or the sky if it met nothing.
 void describe_place(const World& world, const Hit& hit, const SurfacePlace& place, vec3 normal,
                     float distance, Sample& sample);
+// Finds a volume that the eye sees before `t_end` on the walk's ray, if the transport sees volumes,
+// and describes the place in the sample; returns whether there is one. `tint` and `distance` are of
+// what lies before the ray.
+bool see_volume(const Transport& transport, const Walk& walk, float t_end, vec3 tint,
+                float distance, Sample& sample);
 void describe_sky(const Transport& transport, vec3 direction, vec3 tint, Sample& sample);
 
 inline constexpr float least_albedo = 1e-4f;  // a surface with less has no diffuse layer

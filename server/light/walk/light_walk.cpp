@@ -47,7 +47,7 @@ bool arrive(const Transport& transport, LightWalk& walk, Arrival& arrival) {
   if (!(max_component(walk.flux) > 0) || !is_finite(walk.flux)) return false;
   const World& world = transport.world;
   Hit hit = world.intersect(walk.ray);
-  if (!hit.valid()) return false;
+  if (!hit.valid() || world.meet_volume(walk.ray, hit.t, false)) return false;
   if (transport.tables.any_solid && walk.edges() == 1 && walk.panes == 0)
     walk.media.here = find_media(transport, walk.ray.origin);
   arrival.surface = meet_surface(transport, walk.ray, hit, walk.media);

@@ -62,7 +62,9 @@ LambertHits see_lambert(const Transport& transport, std::span<const Request> req
     transport.world.intersect_each(rays, asked, hits);
     for (int i = 0; i < count; i++) {
       uint32_t number = uint32_t(first) + uint32_t(i);
-      if (!(asked >> i & 1)) {
+      const bool sees = transport.sees_volumes && asked >> i & 1 &&
+                        transport.world.meet_volume(requests[number].ray, hits[i].t, true);
+      if (!(asked >> i & 1) || sees) {
         seen.others.push_back(number);
       } else if (!hits[i].valid()) {
         samples[number] = Sample();
@@ -101,6 +103,7 @@ struct Batch {
   std::span<const Request> requests;
   std::span<Sample> samples;
   size_t next = 0;
+  bool volumes = !transport.world.volumes().empty();
 };
 
 // Returns the dimensions of the surface at that depth, as walk.h numbers them.
@@ -131,11 +134,12 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
     sample = trace_sample(transport, batch.rules, request, hit);
     return false;
   }
+  if (see_volume(transport, begin_walk(transport, request), hit.t, vec3(1), 0, sample = Sample()))
+    return false;
   KnownLight& known = walks.map[lane];
   known = find_known_light(transport, request.ray, hit,
                            request.ray.origin + hit.t * request.ray.direction);
   walks.known = (walks.known & ~(1u << lane)) | uint32_t(known.known) << lane;
-  sample = Sample();
   walks.samplers.set(lane, Sampler(request.seed, request.index));
   walks.depth[lane] = 1;
   walks.direction.set(lane, request.ray.direction);
@@ -328,10 +332,19 @@ Walk lone_walk(const LightTables& tables, const LambertWalks& walks, const RayPa
 bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, LambertWalks& walks) {
   const Transport& transport = batch.transport;
   const Hit& hit = walks.hits[i];
-  if (!hit.valid() && !sky) return false;
-  bool lambertian = hit.valid() && met_lambertian(transport, hit);
-  if (lambertian && !transport.known)
-    return walks.depth[i] <= batch.rules.scatterings && walks.depth[i] < batch.rules.max_depth;
+  const bool lambertian = hit.valid() && met_lambertian(transport, hit);
+  if ((!hit.valid() && !sky) || (lambertian && !transport.known)) {
+    if (batch.volumes) {
+      vec3 more(0);
+      const Walk walk = lone_walk(transport.tables, walks, rays, i);
+      if (ends_in_volume(transport, walk, hit.t, more)) {
+        walks.smooth.set(i, walks.smooth.at(i) + more);
+        return false;
+      }
+    }
+    return lambertian && walks.depth[i] <= batch.rules.scatterings &&
+           walks.depth[i] < batch.rules.max_depth;
+  }
   Sampler sampler = walks.samplers.at(i);
   sampler.seek(dimensions_of(walks.depth)[i]);
   Walk walk = lone_walk(transport.tables, walks, rays, i);

@@ -49,6 +49,15 @@ bool survives(Walk& walk, Sampler& sampler) {
 
 }  // namespace
 
+bool ends_in_volume(const Transport& transport, const Walk& walk, float t_end, vec3& radiance) {
+  const bool sharp = walk.scattered == 0 || (walk.scattered == 1 && walk.pdf > wide);
+  const std::optional<VolumeHit> met = transport.world.meet_volume(walk.ray, t_end, sharp);
+  if (!met) return false;
+  radiance += walk.throughput * eval_absorption(transport, walk.media.here.innermost(), met->t) *
+              met->color;
+  return true;
+}
+
 vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
                        const Material& material) {
   vec3 emission = surface_emission(surface, material);
@@ -264,6 +273,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
   vec3 radiance(0);
   const uint32_t block = sampler.drawn;
   for (uint32_t base = block;; base += Dimensions::surface, hit = world.intersect(walk.ray)) {
+    if (ends_in_volume(transport, walk, hit.t, radiance)) return radiance;
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
     if (met_lambertian(transport, hit)) {
       if (!scatter_lambert(transport, rules, walk, hit, base, sampler, radiance)) return radiance;

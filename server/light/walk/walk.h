@@ -65,6 +65,11 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit hit,
             Sampler& sampler);
 
+// Returns whether a volume stops the walk's ray before t_end; if so, adds the light that its matter
+// sends back. Matter in a volume scatters nothing on: the walk ends. Light that is spread wide
+// meets no volume that shows the largest value along a ray, as it casts no shadow either.
+bool ends_in_volume(const Transport& transport, const Walk& walk, float t_end, vec3& radiance);
+
 // Returns emission met by the walk's ray, weighted against the chance that light sampling had found
 // it from the place that the ray left.
 vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/exhibit_volumes.h"
 #include "show/state/make_show.h"
 
 #include <stdexcept>
@@ -10,6 +9,7 @@
 #include "light/kept/map_file.h"
 #include "light/sample/light_tables.h"
 #include "show/exhibit/exhibit_objects.h"
+#include "show/exhibit/exhibit_volumes.h"
 #include "show/moving/exhibit_scene.h"
 #include "show/state/renderer.h"
 #include "show/state/lamps.h"

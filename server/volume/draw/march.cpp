@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "volume/draw/along_ray.h"
+#include "volume/draw/matter_light.h"
 #include "volume/reconstruct/trilinear.h"
 
 namespace wellspring::volume {
@@ -23,20 +24,16 @@ class March {
         box_(level_.box()),
         preset_(preset),
         seen_(preset.seen[size_t(settings.level)]),
-        to_finest_(std::ldexp(1.0f, settings.level)) {
-    const ToSamples to_samples(volume, settings.level);
-    origin_ = to_samples.place(rays.origin), way_ = to_samples.way(rays.direction);
+        to_samples_(volume, settings.level),
+        light_(preset.light, preset.grid, to_samples_, settings.level, rays.direction) {
+    origin_ = to_samples_.place(rays.origin), way_ = to_samples_.way(rays.direction);
     const Lanes speed = lanes_sqrt(dot(way_, way_));  // samples a metre
     step_ = settings.step / speed;
     near_ = rays.near, far_ = rays.far;
     clip_to(origin_.x, way_.x, level_.size.x), clip_to(origin_.y, way_.y, level_.size.y),
         clip_to(origin_.z, way_.z, level_.size.z);
     for (const VolumeCut& cut : settings.cuts) clip_to(rays, cut);
-    // Normals are counted in samples; the transpose turns them to metres.
-    for (int i = 0; i < 3; i++)
-      normal_[i] = vec3(to_samples.turn[i][0], to_samples.turn[i][1], to_samples.turn[i][2]);
     place_ = near_ + settings.jitter * step_;
-    toward_eye_ = -rays.direction;
     if (preset.table.mode() == VolumeMode::maximum) follow_maximum();
     else if (preset.table.mode() == VolumeMode::surface) find_surface();
     else if (preset.table.mode() == VolumeMode::glow) add_glow();
@@ -49,10 +46,10 @@ class March {
   const SampleBox<uint16_t> box_;
   const DrawnPreset& preset_;
   const std::vector<uint8_t>& seen_;
-  const float to_finest_;
-  Lanes3 origin_, way_, toward_eye_;
+  const ToSamples to_samples_;
+  const MatterLight light_;
+  Lanes3 origin_, way_;
   Lanes step_, near_, far_, place_;
-  vec3 normal_[3];
 
   void clip(const Lanes& distance, const Lanes& speed) {
     // Keeps where distance + t * speed >= 0.
@@ -102,34 +99,6 @@ class March {
     return full;
   }
 
-  // Returns the light that matter of this colour sends to the eye.
-  Lanes3 lit(const Lanes3& color, const Lanes3& p, const Lanes3& stored) const {
-    const VolumeLight& light = preset_.light;
-    const Lanes3 n = {stored.x * normal_[0].x + stored.y * normal_[0].y + stored.z * normal_[0].z,
-                      stored.x * normal_[1].x + stored.y * normal_[1].y + stored.z * normal_[1].z,
-                      stored.x * normal_[2].x + stored.y * normal_[2].y + stored.z * normal_[2].z};
-    const Lanes length2 = dot(n, n);
-    // There is no surface where neighbours disagree: light goes all ways.
-    const Lanes surface = lanes_min(dot(stored, stored) * 2.0f, all_lanes(1));
-    const Lanes unit = 1.0f / lanes_sqrt(lanes_max(length2, all_lanes(1e-20f)));
-    const Lanes facing = dot(n, all_lanes(light.to_lamp)) * unit;
-    const Lanes diffuse = positive_lanes(facing) * surface + 0.25f * (1.0f - surface);
-    const Lanes3 half = toward_eye_ + all_lanes(light.to_lamp);
-    const Lanes along = positive_lanes(dot(n, half) * unit /
-                                       lanes_sqrt(lanes_max(dot(half, half), all_lanes(1e-12f))));
-    const Lanes two = along * along, four = two * two, eight = four * four;
-    const Lanes shine =
-        0.15f * eight * eight * four * surface * (facing > 0.0f ? all_lanes(1) : Lanes{});
-    const LightGrid& grid = preset_.grid;
-    const Lanes3 fine = (p + all_lanes(vec3(0.5f))) * all_lanes(to_finest_) - all_lanes(vec3(0.5f));
-    const Lanes3 node = fine * all_lanes(grid.scale);
-    const Lanes lamp = linear_value(whole_box(grid.lamp.data(), grid.size), node) * (1 / 255.0f);
-    const Lanes around =
-        linear_value(whole_box(grid.around.data(), grid.size), node) * (1 / 255.0f);
-    const Lanes3 from_lamp = all_lanes(light.lamp) * lamp;
-    return color * (from_lamp * diffuse + all_lanes(light.around) * around) + from_lamp * shine;
-  }
-
   // Calls read(full) at each place of the rays, for the lanes whose cell shows something, while
   // more than `least` of the light behind comes through.
   template <class Read>
@@ -157,7 +126,7 @@ class March {
       const LaneMask some = full & (density > 0.0f);
       if (!any_lane(some)) return;
       const Lanes share = keep_lanes(some, found.clear * (1.0f - through));
-      found.color = found.color + lit(color, p, sample.normal) * share;
+      found.color = found.color + light_.lit(color, p, sample.normal) * share;
       const Lanes after = some ? found.clear * through : found.clear;
       found.depth = (found.clear > 0.5f) & (after <= 0.5f) ? place_ : found.depth;
       found.clear = after;
@@ -199,7 +168,7 @@ class March {
         Lanes density;
         const Lanes3 color =
             preset_.table.look(lanes_max(there.value, all_lanes(threshold)), density);
-        found.color = choose(hit, lit(color, p, there.normal), found.color);
+        found.color = choose(hit, light_.lit(color, p, there.normal), found.color);
         found.depth = hit ? place : found.depth;
         found.clear = hit ? Lanes{} : found.clear;
       }

@@ -2,6 +2,7 @@
 #include "volume/draw/preset.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace wellspring::volume {
@@ -24,6 +25,14 @@ TransferTable::TransferTable(const Preset& preset, const ShownVolume& volume)
   }
   for (int i = 0; i < steps; i++)
     seen_[size_t(i) + 1] = seen_[size_t(i)] + (entries_[size_t(i)].density > 0);
+  std::vector<float>& each = largest_.emplace_back();
+  for (const Entry& entry : entries_) each.push_back(entry.density);
+  for (size_t half = 1; 2 * half <= size_t(steps); half *= 2) {
+    std::vector<float> row(size_t(steps) - 2 * half + 1);
+    for (size_t i = 0; i < row.size(); i++)
+      row[i] = std::max(largest_.back()[i], largest_.back()[i + half]);
+    largest_.push_back(std::move(row));
+  }
 }
 
 Lanes3 TransferTable::look(const Lanes& codes, Lanes& density) const {
@@ -36,13 +45,24 @@ Lanes3 TransferTable::look(const Lanes& codes, Lanes& density) const {
   return {lanes_as<Lanes>(red), lanes_as<Lanes>(green), lanes_as<Lanes>(blue)};
 }
 
+TransferTable::EntryRange TransferTable::entries_of(const CodeRange& range) {
+  // The entries next to the range are rounded to.
+  const float scale = float(steps - 1) / most_code;
+  return {int(float(range.least) * scale), std::min(int(float(range.most) * scale) + 1, steps - 1)};
+}
+
+float TransferTable::largest_density(const CodeRange& range) const {
+  if (range.least > range.most) return 0;
+  const auto [first, last] = entries_of(range);
+  const int row = std::bit_width(unsigned(last - first + 1)) - 1;
+  const std::vector<float>& largest = largest_[size_t(row)];
+  return std::max(largest[size_t(first)], largest[size_t(last + 1 - (1 << row))]);
+}
+
 bool TransferTable::is_empty(const CodeRange& range) const {
   if (range.least > range.most) return true;
   if (mode_ == VolumeMode::surface) return float(range.most) < threshold_;
-  // The entries next to the range are rounded to.
-  const float scale = float(steps - 1) / most_code;
-  const int first = int(float(range.least) * scale),
-            last = std::min(int(float(range.most) * scale) + 1, steps - 1);
+  const auto [first, last] = entries_of(range);
   return seen_[size_t(last) + 1] == seen_[size_t(first)];
 }
 

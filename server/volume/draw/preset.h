@@ -43,6 +43,11 @@ class TransferTable {
   Lanes3 look(const Lanes& codes, Lanes& density) const;
   // Returns whether nothing is seen of codes in the range.
   bool is_empty(const CodeRange& range) const;
+  // Returns what look() finds as the density of one code, and the largest of all codes in a range.
+  float density_of(float code) const {
+    return entries_[size_t(code * (float(steps - 1) / most_code) + 0.5f)].density;
+  }
+  float largest_density(const CodeRange& range) const;
 
  private:
   static constexpr int steps = 4096;
@@ -53,6 +58,12 @@ class TransferTable {
   float threshold_ = 0;
   std::vector<Entry> entries_;
   std::vector<uint32_t> seen_;  // how many entries before this one are seen
+  // Row k holds the largest density of 2^k entries from each one on.
+  std::vector<std::vector<float>> largest_;
+  struct EntryRange {
+    int first, last;
+  };
+  static EntryRange entries_of(const CodeRange& range);
 };
 
 // Finds presets in the volume's histogram: the classes of values that differ most (Otsu 1979, for

@@ -8,7 +8,7 @@
 #include <functional>
 #include <tuple>
 
-#include "unit/volume/made_volume.h"
+#include "unit/volume/draw_made.h"
 
 namespace wellspring::test {
 namespace {

@@ -6,18 +6,12 @@
 #include <cmath>
 #include <cstring>
 
+#include "unit/volume/draw_made.h"
 #include "volume/draw/along_ray.h"
-#include "unit/volume/made_volume.h"
 #include "volume/draw/preview.h"
 
 namespace wellspring::test {
 namespace {
-
-constexpr double millimetre = 0.001;
-
-float ball_of(glm::vec3 at, float radius) {
-  return std::clamp(radius + 0.5f - length(at), 0.0f, 1.0f);
-}
 
 // Returns rays along -Z, side by side along x, `apart` metres.
 VolumeRays rays_at(vec3 first, float apart = 0) {

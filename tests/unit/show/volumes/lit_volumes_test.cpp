@@ -6,7 +6,7 @@
 #include "light/sample/lights.h"
 #include "show/exhibit/exhibit_volumes.h"
 #include "unit/show/tiny_exhibit.h"
-#include "unit/volume/made_volume.h"
+#include "unit/volume/draw_made.h"
 #include "world/world.h"
 
 namespace wellspring::test {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The volumes of a World.
+#include <bit>
+
+#include "world/world.h"
+#include "world/world_impl.h"
+
+namespace wellspring::world {
+
+void World::place_volumes(std::vector<PlacedVolume> volumes) {
+  impl_->volumes = std::move(volumes);
+  impl_->tracked = track_volumes(impl_->volumes);
+}
+
+void World::show_volume(int volume, VolumeLook look) {
+  impl_->volumes.at(size_t(volume)).look = std::move(look);
+  impl_->tracked = track_volumes(impl_->volumes);
+}
+
+std::span<const PlacedVolume> World::volumes() const { return impl_->volumes; }
+
+std::optional<VolumeHit> World::meet_volume(const Ray& ray, float t_end, bool maxima) const {
+  if (impl_->tracked.empty()) return {};
+  return meet(impl_->tracked, ray, t_end, maxima);
+}
+
+uint32_t World::Impl::shaded(const RayPacket& rays, uint32_t active) const {
+  if (tracked.empty()) return 0;
+  Query query;
+  query.packet = &rays;
+  uint32_t blocked = 0;
+  for (uint32_t bits = active; bits; bits &= bits - 1) {
+    const int i = std::countr_zero(bits);
+    blocked |= uint32_t(shades(tracked, query.ray(unsigned(i)))) << i;
+  }
+  return blocked;
+}
+
+}  // namespace wellspring::world
