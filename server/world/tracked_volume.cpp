@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/tracked_volume.h"
 
+#include <utility>
+
 #include "world/one_ray.h"
 #include "world/world.h"
 
@@ -12,10 +14,10 @@ constexpr uint32_t no_mesh = 0xffffffffu;  // in place of an instance, in hashes
 // Leads a ray into a volume's frame and calls follow() for it, with the look that chance chooses of
 // a mixture. `unit` becomes the ray's t for a metre of the volume.
 template <class Follow>
-TrackedRay track_one(const TrackedVolume& volume, const Ray& ray, float t_end, float& unit,
-                     const Follow& follow) {
+auto track_one(const TrackedVolume& volume, const Ray& ray, float t_end, float& unit,
+               const Follow& follow) {
   const float length = glm::length(ray.direction);
-  if (!(length > 0)) return {};
+  if (!(length > 0)) return decltype(follow(volume.tracker, {}, std::declval<Rng&>())){};
   unit = volume.to_volume.scale / length;
   const VolumeRay inside{volume.to_volume.place(ray.origin),
                          volume.to_volume.way(ray.direction / length), ray.t_min / unit,
@@ -36,8 +38,8 @@ std::vector<TrackedVolume> track_volumes(std::span<const PlacedVolume> volumes) 
     TrackSettings settings;
     settings.cuts = look.cuts;
     TrackedVolume one{bounds_of(placed), ToVolume(placed),
-                      Tracker(*placed.volume, *look.preset, settings)};
-    if (look.over && look.share > 0) one.over.emplace(*placed.volume, *look.over, settings);
+                      Tracker(placed.shown(), *look.preset, settings)};
+    if (look.over && look.share > 0) one.over.emplace(placed.shown(), *look.over, settings);
     if (one.tracker.is_empty() && (!one.over || one.over->is_empty())) continue;
     one.share = look.share, one.object = placed.object, one.number = uint32_t(i);
     tracked.push_back(std::move(one));
@@ -62,6 +64,18 @@ std::optional<VolumeHit> meet(std::span<const TrackedVolume> volumes, const Ray&
     nearest = VolumeHit{t_end, found.color, volume.object};
   }
   return nearest;
+}
+
+vec3 glow(std::span<const TrackedVolume> volumes, const Ray& ray, float t_end) {
+  vec3 sum(0);
+  float unit = 1;
+  for (const TrackedVolume& volume : volumes)
+    if (meets(volume.box, ray, t_end))
+      sum += track_one(volume, ray, t_end, unit,
+                       [](const Tracker& tracker, const VolumeRay& inside, Rng& random) {
+                         return tracker.glow(inside, random);
+                       });
+  return sum;
 }
 
 bool shades(std::span<const TrackedVolume> volumes, const Ray& ray) {

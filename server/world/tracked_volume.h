@@ -29,6 +29,8 @@ std::vector<TrackedVolume> track_volumes(std::span<const PlacedVolume> volumes);
 // Returns where the nearest volume stops the ray before t_end (World::meet_volume).
 std::optional<VolumeHit> meet(std::span<const TrackedVolume> volumes, const Ray& ray, float t_end,
                               bool maxima);
+// Returns light that glowing volumes send along the ray before t_end (World::volume_glow).
+vec3 glow(std::span<const TrackedVolume> volumes, const Ray& ray, float t_end);
 // Returns whether one is in the way of the ray.
 bool shades(std::span<const TrackedVolume> volumes, const Ray& ray);
 

@@ -180,6 +180,9 @@ class World {
   // replay agrees. `maxima`: also by volumes that show the largest value along a ray, which is no
   // matter in the room.
   std::optional<VolumeHit> meet_volume(const Ray& ray, float t_end, bool maxima) const;
+  // Returns light that glowing volumes send along the ray before t_end, which they stop nowhere:
+  // right in the mean, by such a hash.
+  vec3 volume_glow(const Ray& ray, float t_end) const;
 
   // Returns the nearest hit. Rays pass surfaces with alpha where their alpha says so (mask:
   // cut-off; blend: stochastically, decided by a hash of the ray and the hit, so that a replay

@@ -24,6 +24,10 @@ std::optional<VolumeHit> World::meet_volume(const Ray& ray, float t_end, bool ma
   return meet(impl_->tracked, ray, t_end, maxima);
 }
 
+vec3 World::volume_glow(const Ray& ray, float t_end) const {
+  return impl_->tracked.empty() ? vec3(0) : glow(impl_->tracked, ray, t_end);
+}
+
 uint32_t World::Impl::shaded(const RayPacket& rays, uint32_t active) const {
   if (tracked.empty()) return 0;
   Query query;

@@ -82,6 +82,7 @@ bool see_volume(const Transport& transport, const Walk& walk, float t_end, vec3 
                 float distance, Sample& sample) {
   if (!transport.sees_volumes) return false;
   const std::optional<VolumeHit> met = transport.world.meet_volume(walk.ray, t_end, true);
+  sample.rest += tint * transport.world.volume_glow(walk.ray, met ? met->t : t_end);
   if (!met) return false;
   sample.position = walk.ray.origin + met->t * walk.ray.direction;
   sample.normal = -walk.ray.direction;

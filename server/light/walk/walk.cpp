@@ -52,6 +52,7 @@ bool survives(Walk& walk, Sampler& sampler) {
 bool ends_in_volume(const Transport& transport, const Walk& walk, float t_end, vec3& radiance) {
   const bool sharp = walk.scattered == 0 || (walk.scattered == 1 && walk.pdf > wide);
   const std::optional<VolumeHit> met = transport.world.meet_volume(walk.ray, t_end, sharp);
+  radiance += walk.throughput * transport.world.volume_glow(walk.ray, met ? met->t : t_end);
   if (!met) return false;
   radiance += walk.throughput * eval_absorption(transport, walk.media.here.innermost(), met->t) *
               met->color;

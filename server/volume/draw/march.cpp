@@ -121,7 +121,7 @@ class March {
       const Lanes3 p = at(place_);
       const LanesLit sample = linear_value_and_normal(box_, level_.normals.words.data(), p);
       Lanes density;
-      const Lanes3 color = preset_.table.look(sample.value, density) * own_color(p);
+      const Lanes3 color = preset_.table.look(sample.value, density) * own_color(level_, p);
       const Lanes through = fade(density * step_);
       const LaneMask some = full & (density > 0.0f);
       if (!any_lane(some)) return;
@@ -133,21 +133,11 @@ class March {
     });
   }
 
-  // Returns the volume's own colour.
-  Lanes3 own_color(const Lanes3& p) const {
-    if (level_.colors[0].empty()) return all_lanes(vec3(1));
-    const auto channel = [&](const std::vector<uint8_t>& plane) {
-      const Lanes root = linear_value(whole_box(plane.data(), level_.size), p) * (1 / 255.0f);
-      return root * root;
-    };
-    return {channel(level_.colors[0]), channel(level_.colors[1]), channel(level_.colors[2])};
-  }
-
   void add_glow() {
     follow(0, [&](const LaneMask& full) {
       const Lanes3 p = at(place_);
       Lanes light;
-      const Lanes3 color = preset_.table.look(linear_value(box_, p), light) * own_color(p);
+      const Lanes3 color = preset_.table.look(linear_value(box_, p), light) * own_color(level_, p);
       found.color = found.color + color * keep_lanes(full, light * step_);
     });
   }

@@ -107,6 +107,16 @@ class Tracker::Flight {
     if (most >= 0 && random_.uniform() < table_.density_of(most)) stop(where);
   }
 
+  // Sets the light of a place drawn along the ray, as if it were sent all along.
+  void find_glow() {
+    const vec3 place = at(random_.uniform() * length_);
+    found.reads++;
+    Lanes light;
+    const Lanes3 color =
+        table_.look(all_lanes(code_at(level_, place)), light) * own_color(level_, all_lanes(place));
+    found.color = (color * (light * length_)).at(0);
+  }
+
   // Sets the colour of the place where the ray was stopped.
   void light_up() {
     if (!found.is_stopped()) return;
@@ -116,7 +126,7 @@ class Tracker::Flight {
     if (mode == VolumeMode::surface)
       there.value = lanes_max(there.value, all_lanes(table_.threshold()));
     Lanes density;
-    const Lanes3 color = table_.look(there.value, density);
+    const Lanes3 color = table_.look(there.value, density) * own_color(level_, all_lanes(place));
     const DrawnPreset& preset = *tracker_.preset_;
     const MatterLight light(preset.light, preset.grid, tracker_.to_samples_, settings_.level,
                             all_lanes(ray_.direction));
@@ -206,8 +216,15 @@ Tracker::Tracker(const ShownVolume& volume, const DrawnPreset& preset,
       to_samples_(volume, settings.level),
       empty_(preset.table.is_empty({0, uint16_t(most_code)})) {}
 
+vec3 Tracker::glow(const VolumeRay& ray, Rng& random) const {
+  if (empty_ || mode() != VolumeMode::glow) return vec3(0);
+  Flight flight(*this, ray, random);
+  if (flight.is_inside()) flight.find_glow();
+  return flight.found.color;
+}
+
 TrackedRay Tracker::track(const VolumeRay& ray, Rng& random) const {
-  if (empty_) return {};
+  if (empty_ || mode() == VolumeMode::glow) return {};
   Flight flight(*this, ray, random);
   if (!flight.is_inside()) return {};
   if (mode() == VolumeMode::maximum) flight.find_maximum();
@@ -218,7 +235,7 @@ TrackedRay Tracker::track(const VolumeRay& ray, Rng& random) const {
 }
 
 TrackedRay Tracker::track_shadow(const VolumeRay& ray, Rng& random) const {
-  if (empty_ || mode() == VolumeMode::maximum) return {};
+  if (empty_ || mode() == VolumeMode::maximum || mode() == VolumeMode::glow) return {};
   Flight flight(*this, ray, random);
   if (!flight.is_inside()) return {};
   if (mode() == VolumeMode::density) flight.find_collision();

@@ -44,6 +44,9 @@ class Tracker {
   TrackedRay track(const VolumeRay& ray, Rng& random) const;
   // Does the same without colour. No value casts a shadow as the largest of a ray.
   TrackedRay track_shadow(const VolumeRay& ray, Rng& random) const;
+  // Returns the light that the matter of a glowing volume sends along the ray, from one place of
+  // it: the mean of many is all of it. It stops no ray.
+  vec3 glow(const VolumeRay& ray, Rng& random) const;
   VolumeMode mode() const { return preset_->table.mode(); }
   bool is_empty() const { return empty_; }  // nothing stops any ray
 
