@@ -80,7 +80,7 @@ std::vector<BrickLevel> brick_levels(glm::ivec3 finest) {
   size_t first = 0;
   for (const glm::ivec3 size : level_sizes(finest)) {
     // Places lie between samples, so there are bricks for one sample less.
-    const glm::ivec3 bricks = glm::max((size - 1 + brick_side - 1) / brick_side, 1);
+    const glm::ivec3 bricks = glm::max((size - 1 + inner_side - 1) / inner_side, 1);
     levels.push_back({size, bricks, first});
     first += levels.back().count();
   }
@@ -94,9 +94,10 @@ void BrickFile::read(const BrickEntry& entry, uint16_t* codes, uint32_t* normals
     return;
   }
   const uint64_t from = sizeof(BrickHead) + uint64_t(entry.record) * record_bytes;
-  read_at(path, *descriptor, from, codes, code_bytes);
+  read_at(path, *descriptor, from, codes, stored_code_bytes);
   if (normals)
-    read_at(path, *descriptor, from + code_bytes, normals, stored_samples * sizeof(uint32_t));
+    read_at(path, *descriptor, from + stored_code_bytes, normals,
+            stored_samples * sizeof(uint32_t));
 }
 
 void BrickFile::expect(const BrickEntry& entry) const {
@@ -161,11 +162,11 @@ std::vector<uint16_t> read_level_codes(const BrickFile& file, int level) {
     for (int by = 0; by < of.bricks.y; by++)
       for (int bx = 0; bx < of.bricks.x; bx++) {
         file.read(file.entries[of.number_of({bx, by, bz})], brick.data(), nullptr);
-        const glm::ivec3 from = brick_side * glm::ivec3(bx, by, bz);
+        const glm::ivec3 from = inner_side * glm::ivec3(bx, by, bz);
         // The last bricks have the samples at the end, too. What two have is the same; each writes
         // its own part.
         const glm::ivec3 last = glm::ivec3(bx, by, bz) + 1;
-        glm::ivec3 count = glm::min(of.size - from, brick_side);
+        glm::ivec3 count = glm::min(of.size - from, inner_side);
         for (int axis = 0; axis < 3; axis++)
           if (last[axis] == of.bricks[axis]) count[axis] = of.size[axis] - from[axis];
         for (int z = 0; z < count.z; z++)

@@ -18,7 +18,7 @@
 
 namespace wellspring::volume {
 
-inline constexpr int brick_side = 32, stored_side = brick_side + 2;
+inline constexpr int inner_side = 32, stored_side = inner_side + 2;
 inline constexpr int stored_row = stored_side, stored_slice = stored_side * stored_side;
 inline constexpr int stored_samples = stored_slice * stored_side;
 inline constexpr uint32_t no_record = 0xffffffff;
@@ -53,8 +53,8 @@ struct BrickHead {
   uint64_t code_counts[code_bins];
 };
 inline constexpr std::array<char, 8> brick_magic{'W', 'S', 'b', 'r', 'i', 'c', 'k', '1'};
-inline constexpr size_t code_bytes = stored_samples * sizeof(uint16_t),
-                        record_bytes = code_bytes + stored_samples * sizeof(uint32_t);
+inline constexpr size_t stored_code_bytes = stored_samples * sizeof(uint16_t),
+                        record_bytes = stored_code_bytes + stored_samples * sizeof(uint32_t);
 
 struct BrickFile {
   std::string path;

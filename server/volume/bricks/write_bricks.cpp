@@ -65,7 +65,7 @@ class UnnamedFile {
   int file_ = -1;
 };
 
-constexpr int window = brick_side + 4;  // slices: a layer of bricks, its skirt, and theirs
+constexpr int window = inner_side + 4;  // slices: a layer of bricks, its skirt, and theirs
 
 // Holds the newest slices of a level, and what was made of it so far.
 struct Stage {
@@ -89,7 +89,7 @@ class CutBrick {
  public:
   // Copies codes from slices that must be there.
   void cut(const Stage& stage, glm::ivec3 brick) {
-    size_ = stage.level.size, from_ = brick_side * brick - 1;
+    size_ = stage.level.size, from_ = inner_side * brick - 1;
     uint16_t* to = codes_.data();
     for (int z = 0; z < stored_side; z++) {
       const uint16_t* slice = stage.slice(inside(from_.z + z, 2));
@@ -191,7 +191,7 @@ class BrickWriter {
     if ((stage.have % cell_side == 1 && z > 0) || is_last)
       while (stage.cell_layers * cell_side < (is_last ? size.z : z)) write_cells(k);
     while (stage.layers < stage.level.bricks.z &&
-           stage.have >= std::min((stage.layers + 1) * brick_side + 2, size.z))
+           stage.have >= std::min((stage.layers + 1) * inner_side + 2, size.z))
       write_layer(stage);
     if (k + 1 == stages_.size() || (z % 2 == 0 && !is_last)) return;
     Stage& coarser = stages_[k + 1];
@@ -240,8 +240,8 @@ class BrickWriter {
         brick.cut(stage, place(i));
         brick.add_normals(stage);
         const uint64_t at = sizeof head_ + uint64_t(entry(i).record) * record_bytes;
-        file_.write_at(at, brick.codes(), code_bytes);
-        file_.write_at(at + code_bytes, brick.normals(), record_bytes - code_bytes);
+        file_.write_at(at, brick.codes(), stored_code_bytes);
+        file_.write_at(at + stored_code_bytes, brick.normals(), record_bytes - stored_code_bytes);
       }
     });
   }

@@ -42,7 +42,7 @@ void BrickSamples::put(int lane, const FoundBrick& found) {
   first_[lane] = found.place + skirt;
   scale_[lane] = std::ldexp(1.0f, number_ - found.level);
   last_.set(lane, vec3(file_.levels[size_t(found.level)].size - 1));
-  begin_.set(lane, vec3(found.brick * brick_side));
+  begin_.set(lane, vec3(found.brick * inner_side));
   const unsigned bit = 1u << lane;
   coarser_ = found.level == number_ ? coarser_ & ~bit : coarser_ | bit;
 }

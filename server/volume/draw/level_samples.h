@@ -49,7 +49,7 @@ class BrickSamples {
     const LaneMask others = lanes & (brick != brick_);
     if (any_lane(others)) look_up(others, x.at, y.at, z.at, brick);
     if (coarser_ != 0) return coarser_cell(place);
-    constexpr int inside = brick_side - 1;
+    constexpr int inside = inner_side - 1;
     return {
         first_ + (x.at & inside) + (y.at & inside) * stored_row + (z.at & inside) * stored_slice,
         x.way,
@@ -64,7 +64,7 @@ class BrickSamples {
   LanesCell coarser_cell(const Lanes3& place) const;
 
   static constexpr int brick_bits = 5;
-  static_assert(1 << brick_bits == brick_side);
+  static_assert(1 << brick_bits == inner_side);
   const BrickReader reader_;
   const BrickFile& file_;
   const int number_;  // of the level
