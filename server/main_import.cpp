@@ -129,6 +129,9 @@ int main(int argc, char** argv) {
   volume.add_option("--preview", scan.preview, "a PNG that shows it in the presets that fit it");
   volume.add_flag("--compress", scan.compress,
                   "write it at 0.75 bits a voxel and 2 to 4 MB of codebooks, with losses");
+  volume.add_flag("--bricks", scan.bricks,
+                  "write bricks, which are shown without all being in memory; of more than 64 Mi "
+                  "samples they are always written");
   volume.add_flag("--overwrite", scan.overwrite, "replace what is there");
   volume.add_flag_callback(
       "--raw-schema",

@@ -28,11 +28,21 @@ void put(const volume::VolumePicture& picture, int column, Frame& sheet) {
     }
 }
 
+// Draws until all bricks that the picture looks for are there, as far as there is room.
+volume::VolumePicture draw_finest(const volume::ShownVolume& shown,
+                                  const volume::DrawnPreset& preset) {
+  while (true) {
+    const uint64_t before = shown.arrivals();
+    volume::VolumePicture picture = draw_volume(shown, preset, {.side = side, .cuts = {}});
+    while (shown.bricks && shown.bricks->pool().load_some()) {}
+    if (shown.arrivals() == before) return picture;
+  }
+}
+
 }  // namespace
 
-void write_preview(const volume::Volume& volume, const std::string& file) {
+void write_preview(const volume::ShownVolume& shown, const std::string& file) {
   const double began = seconds_now();
-  const volume::ShownVolume shown = make_shown_volume(volume);
   const std::vector<volume::Preset> presets = find_presets(shown);
   Frame sheet;
   fit_frame(side * int(presets.size()), side, sheet);
@@ -40,7 +50,7 @@ void write_preview(const volume::Volume& volume, const std::string& file) {
   for (size_t i = 0; i < presets.size(); i++) {
     const volume::DrawnPreset drawn(shown, presets[i], volume::preview_light());
     const double drawing = seconds_now();
-    const volume::VolumePicture picture = draw_volume(shown, drawn, {.side = side});
+    const volume::VolumePicture picture = draw_finest(shown, drawn);
     std::cerr << fmt::format("  preset '{}' from {:.6g}, drawn in {:.0f} ms\n", presets[i].name,
                              presets[i].points.front().value, 1000 * (seconds_now() - drawing));
     put(picture, int(i), sheet);

@@ -3,12 +3,12 @@
 #pragma once
 #include <string>
 
-#include "volume/volume.h"
+#include "volume/draw/shown_volume.h"
 
 namespace wellspring::program {
 
 // Writes a PNG with the volume in each of the presets that its values propose, side by side, and
 // tells of each on stderr. Throws LoadError.
-void write_preview(const volume::Volume& volume, const std::string& file);
+void write_preview(const volume::ShownVolume& shown, const std::string& file);
 
 }  // namespace wellspring::program

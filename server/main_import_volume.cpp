@@ -18,10 +18,12 @@
 #include "base/parallel.h"
 #include "json/text.h"
 #include "main_import_preview.h"
+#include "volume/bricks/write_bricks.h"
 #include "volume/compressed/coding_loss.h"
 #include "volume/compressed/compress.h"
 #include "volume/compressed/compressed_file.h"
 #include "volume/compressed/to_volume.h"
+#include "volume/draw/shown_volume.h"
 #include "volume/format/byte_stream.h"
 #include "volume/format/open_volume.h"
 #include "volume/format/patient_frame.h"
@@ -30,6 +32,8 @@ namespace wellspring::program {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr size_t bricks_from = size_t(64) << 20;  // samples; whole in memory they take 512 MiB
 
 struct TemporaryFolder {
   fs::path path;
@@ -155,13 +159,18 @@ std::string convert_dicom(const VolumeImport& import, const fs::path& folder) {
   return all[chosen].file;
 }
 
+// Makes the folder of a file that is to be written.
+void make_place(const fs::path& to, bool overwrite) {
+  if (fs::exists(to) && !overwrite)
+    throw LoadError(to.string(), "", "is there already; --overwrite replaces it");
+  fs::create_directories(to.parent_path());
+}
+
 // Copies a file so that nobody finds half of it.
 void copy_whole(const fs::path& from, const fs::path& to, bool overwrite) {
   std::error_code error;
   if (fs::equivalent(from, to, error)) return;
-  if (fs::exists(to) && !overwrite)
-    throw LoadError(to.string(), "", "is there already; --overwrite replaces it");
-  fs::create_directories(to.parent_path());
+  make_place(to, overwrite);
   const fs::path half = fs::path(to).concat(".part");
   try {
     fs::copy_file(from, half, fs::copy_options::overwrite_existing);
@@ -217,9 +226,7 @@ std::string id_of(const std::string& path) {
 
 // Compresses the volume into `to`, and returns what is then shown.
 Volume compress_to(const fs::path& to, const Volume& volume, bool overwrite) {
-  if (fs::exists(to) && !overwrite)
-    throw LoadError(to.string(), "", "is there already; --overwrite replaces it");
-  fs::create_directories(to.parent_path());
+  make_place(to, overwrite);
   Progress progress("import");
   const CompressedVolume compressed =
       compress_volume(volume, {}, [&](double done) { progress.tell(done); });
@@ -227,6 +234,15 @@ Volume compress_to(const fs::path& to, const Volume& volume, bool overwrite) {
   const CodingLoss loss = compare_compressed(volume, compressed);
   std::cerr << fmt::format("  {:.3f} bits a voxel, {:.1f} dB\n", loss.bits_a_voxel, loss.decibel);
   return to_volume(compressed);
+}
+
+void write_bricks_to(const fs::path& to, const Volume& volume, bool overwrite) {
+  make_place(to, overwrite);
+  const double began = seconds_now();
+  Progress progress("import");
+  write_bricks(volume, to.string(), [&](double done) { progress.tell(done); });
+  std::cerr << fmt::format("  {}: {:.0f} MiB of bricks, in {:.1f} s\n", to.string(),
+                           double(fs::file_size(to)) / 0x1p20, seconds_now() - began);
 }
 
 void tell(const std::string& file, const StoredVolume& stored, const Volume& volume) {
@@ -274,7 +290,14 @@ void import_volume(const VolumeImport& import) {
       if (made.empty()) made = to;
     }
   tell(made.string(), stored, volume);
-  if (!import.preview.empty()) write_preview(volume, import.preview);
+  if (import.bricks || volume.samples() > bricks_from) {
+    made = fs::path(import.out) / (id + ".bricks");
+    write_bricks_to(made, volume, import.overwrite);
+  }
+  if (!import.preview.empty())
+    write_preview(made.extension() == ".bricks" ? open_shown_volume(made.string())
+                                                : make_shown_volume(volume),
+                  import.preview);
   nlohmann::ordered_json piece;
   piece["id"] = id, piece["kind"] = "volume";
   piece["source"] = made.lexically_relative(import.out).string();

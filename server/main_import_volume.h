@@ -15,11 +15,13 @@ struct VolumeImport {
   int64_t time = 0;        // which is checked, of a file that has several
   std::string preview;     // PNG of the volume in proposed presets; empty: none
   bool compress = false;   // as volume/compressed/compressed_volume.h has it
+  bool bricks = false;     // as volume/bricks/brick_file.h has it, too; large ones always
   bool overwrite = false;  // replaces files that are there
 };
 
 // Turns DICOM into NIfTI by dcm2niix, reads the volume, puts it with its companions into `out`,
-// tells what it is on stderr, and prints a piece for exhibit.json. Throws LoadError.
+// and its bricks beside it if it is large, tells what it is on stderr, and prints a piece for
+// exhibit.json. Throws LoadError.
 void import_volume(const VolumeImport& import);
 
 }  // namespace wellspring::program

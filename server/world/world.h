@@ -180,6 +180,8 @@ class World {
   // replay agrees. `maxima`: also by volumes that show the largest value along a ray, which is no
   // matter in the room.
   std::optional<VolumeHit> meet_volume(const Ray& ray, float t_end, bool maxima) const;
+  // Returns whether the ray crosses a volume's bounds before t_end.
+  bool has_volume_on(const Ray& ray, float t_end) const;
   // Returns light that glowing volumes send along the ray before t_end, which they stop nowhere:
   // right in the mean, by such a hash.
   vec3 volume_glow(const Ray& ray, float t_end) const;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The volumes of a World.
+#include <algorithm>
 #include <bit>
 
+#include "world/one_ray.h"
 #include "world/world.h"
 #include "world/world_impl.h"
 
@@ -22,6 +24,11 @@ std::span<const PlacedVolume> World::volumes() const { return impl_->volumes; }
 std::optional<VolumeHit> World::meet_volume(const Ray& ray, float t_end, bool maxima) const {
   if (impl_->tracked.empty()) return {};
   return meet(impl_->tracked, ray, t_end, maxima);
+}
+
+bool World::has_volume_on(const Ray& ray, float t_end) const {
+  return std::ranges::any_of(impl_->tracked,
+                             [&](const TrackedVolume& one) { return meets(one.box, ray, t_end); });
 }
 
 vec3 World::volume_glow(const Ray& ray, float t_end) const {

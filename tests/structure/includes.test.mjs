@@ -37,7 +37,8 @@ const may_enter = {
     compressed: [''],
     compare: ['reconstruct', ''],
     nebula: [''],
-    draw: ['reconstruct', ''],
+    bricks: ['reconstruct', 'format', ''],
+    draw: ['bricks', 'reconstruct', 'format', ''],
   },
   world: {
     '': [],

@@ -63,7 +63,7 @@ LambertHits see_lambert(const Transport& transport, std::span<const Request> req
     for (int i = 0; i < count; i++) {
       uint32_t number = uint32_t(first) + uint32_t(i);
       const bool sees = transport.sees_volumes && asked >> i & 1 &&
-                        transport.world.meet_volume(requests[number].ray, hits[i].t, true);
+                        transport.world.has_volume_on(requests[number].ray, hits[i].t);
       if (!(asked >> i & 1) || sees) {
         seen.others.push_back(number);
       } else if (!hits[i].valid()) {
@@ -145,7 +145,7 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
   walks.direction.set(lane, request.ray.direction);
   walks.throughput.set(lane, vec3(1));
   walks.smooth.set(lane, vec3(0));
-  walks.rest.set(lane, vec3(0));
+  walks.rest.set(lane, sample.rest);  // of volumes that glow before it
   return true;
 }
 

@@ -28,9 +28,9 @@ std::array<vec3, sky_ways> spread_ways() {
   return ways;
 }
 
-// Follows rays from nodes until they leave the level.
+// Follows rays from nodes until they leave the box.
 struct ShadowRays {
-  const VolumeLevel& level;
+  SampleBox<uint16_t> box;  // all samples of a level
   const TransferTable& table;
   ToSamples to_samples;
   float voxel;  // metres between samples of the level
@@ -39,16 +39,16 @@ struct ShadowRays {
   Lanes clear(const Lanes3& from, vec3 way) const {
     const Lanes3 step = to_samples.way(all_lanes(way * voxel));
     const vec3 each = step.at(0);
-    const vec3 last = vec3(level.size - 1);
+    const vec3 last = vec3(box.size - 1);
     Lanes3 place = from + step * all_lanes(1.5f);  // not the node's own matter
     Lanes sum{};
-    const int most = int(2 * length(vec3(level.size)));
+    const int most = int(2 * length(vec3(box.size)));
     for (int i = 0; i < most; i++) {
       const LaneMask inside = (place.x >= -0.5f) & (place.x <= last.x + 0.5f) & (place.y >= -0.5f) &
                               (place.y <= last.y + 0.5f) & (place.z >= -0.5f) &
                               (place.z <= last.z + 0.5f) & (sum < 6.0f);
       if (!any_lane(inside)) break;
-      const Lanes codes = linear_value(level.box(), place);
+      const Lanes codes = linear_value(box, place);
       Lanes density;
       if (table.mode() == VolumeMode::surface)
         density = keep_lanes(codes >= table.threshold(), all_lanes(opaque_density));
@@ -72,8 +72,11 @@ LightGrid make_light_grid(const ShownVolume& volume, const TransferTable& table,
   grid.lamp.assign(nodes, 255), grid.around.assign(nodes, 255);
   if (table.mode() == VolumeMode::maximum || table.mode() == VolumeMode::glow) return grid;
   // A level about as coarse as the grid.
-  const int level = std::min(2, int(volume.levels.size()) - 1);
-  const ShadowRays rays{volume.levels[size_t(level)], table, ToSamples(volume, level),
+  const float apart = 1 / std::min({grid.scale.x, grid.scale.y, grid.scale.z});
+  const int level =
+      std::max(std::min(std::max(2, int(std::log2(apart))), int(volume.levels.size()) - 1),
+               volume.whole_level);
+  const ShadowRays rays{volume.levels[size_t(level)].box(), table, ToSamples(volume, level),
                         float(volume.voxel * std::ldexp(1.0, level))};
   const std::array<vec3, sky_ways> ways = spread_ways();
   const float down = std::ldexp(1.0f, -level);

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "volume/draw/along_ray.h"
+#include "volume/draw/level_samples.h"
 #include "volume/draw/matter_light.h"
-#include "volume/reconstruct/trilinear.h"
 
 namespace wellspring::volume {
 namespace {
@@ -15,13 +15,14 @@ namespace {
 constexpr float nearly_opaque = 0.004f;  // share of light that comes through and changes no code
 constexpr float least_leap = 1e-3f;      // samples beyond a cell's border
 
-// Follows eight rays through one level.
+// Follows eight rays through one level. Samples: WholeSamples or BrickSamples.
+template <class Samples>
 class March {
  public:
   March(const ShownVolume& volume, const DrawnPreset& preset, const VolumeRays& rays,
         const MarchSettings& settings)
       : level_(volume.levels[size_t(settings.level)]),
-        box_(level_.box()),
+        samples_(volume, settings.level),
         preset_(preset),
         seen_(preset.seen[size_t(settings.level)]),
         to_samples_(volume, settings.level),
@@ -43,7 +44,7 @@ class March {
 
  private:
   const VolumeLevel& level_;
-  const SampleBox<uint16_t> box_;
+  Samples samples_;
   const DrawnPreset& preset_;
   const std::vector<uint8_t>& seen_;
   const ToSamples to_samples_;
@@ -119,7 +120,7 @@ class March {
   void add_up() {
     follow(nearly_opaque, [&](const LaneMask& full) {
       const Lanes3 p = at(place_);
-      const LanesLit sample = linear_value_and_normal(box_, level_.normals.words.data(), p);
+      const LanesLit sample = samples_.value_and_normal(p, full);
       Lanes density;
       const Lanes3 color = preset_.table.look(sample.value, density) * own_color(level_, p);
       const Lanes through = fade(density * step_);
@@ -147,14 +148,14 @@ class March {
     Lanes before = near_, value_before{};
     LaneMask first = LaneMask{} - 1;  // nothing was read yet
     follow(0.5f, [&](const LaneMask& full) {
-      const Lanes value = linear_value(box_, at(place_));
+      const Lanes value = samples_.value(at(place_), full);
       const LaneMask hit = full & (value >= threshold) & (found.clear > 0.5f);
       if (any_lane(hit)) {
         const LaneMask crossed = hit & ~first & (value_before < threshold);
         const Lanes way = (threshold - value_before) / (value - value_before);
         const Lanes place = crossed ? before + (place_ - before) * way : place_;
         const Lanes3 p = at(place);
-        const LanesLit there = linear_value_and_normal(box_, level_.normals.words.data(), p);
+        const LanesLit there = samples_.value_and_normal(p, hit);
         Lanes density;
         const Lanes3 color =
             preset_.table.look(lanes_max(there.value, all_lanes(threshold)), density);
@@ -170,7 +171,7 @@ class March {
   void follow_maximum() {
     Lanes most = all_lanes(-1), where = all_lanes(INFINITY);
     follow(0, [&](const LaneMask& full) {
-      const Lanes value = linear_value(box_, at(place_));
+      const Lanes value = samples_.value(at(place_), full);
       const LaneMask more = full & (value > most);
       most = more ? value : most, where = more ? place_ : where;
     });
@@ -182,6 +183,14 @@ class March {
     found.depth = opacity > 0.5f ? where : all_lanes(INFINITY);
   }
 };
+
+// Each is a function of its own, so that the compiler inlines in one what it would in the other.
+template <class Samples>
+[[gnu::noinline]] MarchedLight march_through(const ShownVolume& volume, const DrawnPreset& preset,
+                                             const VolumeRays& rays,
+                                             const MarchSettings& settings) {
+  return March<Samples>(volume, preset, rays, settings).found;
+}
 
 }  // namespace
 
@@ -195,7 +204,8 @@ DrawnPreset::DrawnPreset(const ShownVolume& volume, const Preset& preset, const 
 
 MarchedLight march(const ShownVolume& volume, const DrawnPreset& preset, const VolumeRays& rays,
                    const MarchSettings& settings) {
-  return March(volume, preset, rays, settings).found;
+  return volume.bricks ? march_through<BrickSamples>(volume, preset, rays, settings)
+                       : march_through<WholeSamples>(volume, preset, rays, settings);
 }
 
 int level_for(const ShownVolume& volume, double footprint) {

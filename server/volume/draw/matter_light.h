@@ -13,8 +13,8 @@ namespace wellspring::volume {
 // Returns the volume's own colour at places in the level, in samples; white where it has none.
 inline Lanes3 own_color(const VolumeLevel& level, const Lanes3& p) {
   if (level.colors[0].empty()) return all_lanes(vec3(1));
-  const auto channel = [&](const std::vector<uint8_t>& plane) {
-    const Lanes root = linear_value(whole_box(plane.data(), level.size), p) * (1 / 255.0f);
+  const auto channel = [&](const std::vector<uint16_t>& plane) {
+    const Lanes root = linear_value(whole_box(plane.data(), level.size), p) * (1 / most_code);
     return root * root;
   };
   return {channel(level.colors[0]), channel(level.colors[1]), channel(level.colors[2])};

@@ -68,20 +68,13 @@ bool TransferTable::is_empty(const CodeRange& range) const {
 
 namespace {
 
-constexpr int bins = 128, most_classes = 4;
+constexpr int bins = code_bins, most_classes = 4;
 constexpr double least_share = 1e-5;  // a class with fewer of the samples is noise
 
 struct Histogram {
-  std::vector<double> count = std::vector<double>(bins);
+  std::vector<double> count;
   double all = 0;
 };
-
-Histogram count_codes(const VolumeLevel& level) {
-  Histogram histogram;
-  for (const uint16_t code : level.codes) histogram.count[code * size_t(bins) / 65536]++;
-  histogram.all = double(level.codes.size());
-  return histogram;
-}
 
 // Splits the bins into so many classes that the variance between classes is largest. Bins count by
 // the square root of their samples: bone and metal are a small part of a scan. Returns the first
@@ -126,7 +119,9 @@ std::vector<Preset> find_presets(const ShownVolume& volume) {
              VolumeMode::glow,
              {{0, vec3(1), 0}, {most, vec3(1), brightness * most / (1000 * volume.voxel)}}}};
   }
-  const Histogram histogram = count_codes(volume.levels.front());
+  Histogram histogram;
+  histogram.count.assign(volume.code_counts.begin(), volume.code_counts.end());
+  for (const double count : histogram.count) histogram.all += count;
   const auto used = std::ranges::count_if(histogram.count, [](double n) { return n > 0; });
   const int classes = int(std::clamp<ptrdiff_t>(used, 1, most_classes));
   auto value_of = [&](double bin) { return volume.low + (volume.high - volume.low) * bin / bins; };

@@ -1,53 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
 // A volume made ready for rays: its values as 16-bit codes with normals beside them, in levels of
-// detail, and the range of codes in each cell of 8 x 8 x 8, so that rays leap over what is empty.
+// detail, whole in memory or in bricks that come when they are looked for; and the range of codes
+// in each cell of 8 x 8 x 8, so that rays leap over what is empty.
 #pragma once
+#include <memory>
+#include <string>
 #include <vector>
 
+#include "volume/bricks/brick_pool.h"
+#include "volume/codes.h"
 #include "volume/reconstruct/normal_grid.h"
 #include "volume/reconstruct/sample_box.h"
 #include "volume/volume.h"
 
 namespace wellspring::volume {
 
-inline constexpr int cell_side = 8;
-inline constexpr float most_code = 65535;
-
-struct CodeRange {
-  uint16_t least = 65535, most = 0;
-};
-
 // Sample (x, y, z) of level k lies at ((x, y, z) + 0.5) * 2^k - 0.5 of the finest level.
 struct VolumeLevel {
   glm::ivec3 size{0};
-  std::vector<uint16_t> codes;  // x fastest
+  std::vector<uint16_t> codes;  // x fastest; none where there are only bricks
   NormalGrid normals;
   glm::ivec3 cells{0};
-  // One for each cell, x fastest, of the samples that places in it lie between: one more on each
-  // side that is not the border.
-  std::vector<CodeRange> ranges;
-  // Of a volume of colours: for each sample, square roots of red, green and blue over the largest
-  // of them, as codes. Empty: tables alone give colour.
-  std::vector<uint8_t> colors[3];
+  std::vector<CodeRange> ranges;  // one for each cell, x fastest (find_ranges())
+  // Of a volume of colours: color_row() of red, green and blue. Empty: tables alone give colour.
+  std::vector<uint16_t> colors[3];
 
+  // Only of whole levels.
   SampleBox<uint16_t> box() const { return whole_box(codes.data(), size); }
 };
 
-struct ShownVolume {
-  std::vector<VolumeLevel> levels;  // the finest first; never empty
-  double low = 0, high = 1;         // measured by code 0 and by code 65535; low < high
-  glm::dmat4 to_metres{1};          // as Volume's, of the finest level
-  double voxel = 1;                 // the smallest distance of samples, metres
+struct ShownVolume : CodeScale {
+  std::vector<VolumeLevel> levels;         // the finest first; never empty
+  glm::dmat4 to_metres{1};                 // as Volume's, of the finest level
+  double voxel = 1;                        // the smallest distance of samples, metres
+  std::vector<uint64_t> code_counts;       // of the finest level, in code_bins even bins
+  std::shared_ptr<ResidentBricks> bricks;  // null: all levels are whole
+  int whole_level = 0;                     // the finest of those that are whole
 
-  float code_of(double value) const {
-    return float((value - low) / (high - low) * double(most_code));
-  }
+  // Returns how many bricks that pictures looked for have come so far. Any thread.
+  uint64_t arrivals() const { return bricks ? bricks->arrivals() : 0; }
 };
 
-// Takes a volume of one channel; of three, the largest, and colours. Integers of three channels are
-// display codes, floats are linear. Values that are not finite count as the
+// Takes a volume of one channel; of three, their mean. Values that are not finite count as the
 // least finite one. Takes about 7 bytes a sample.
 // Throws std::length_error beyond 2^31 samples.
 ShownVolume make_shown_volume(const Volume& volume);
+
+// Opens a file of bricks (bricks/brick_file.h) at once, to be shown out of this pool; any other
+// file is read as open_volume() does, and is whole in memory. Throws LoadError that names file and
+// place.
+ShownVolume open_shown_volume(const std::string& path,
+                              std::shared_ptr<BrickPool> pool = shared_brick_pool());
 
 }  // namespace wellspring::volume

@@ -210,11 +210,13 @@ class Tracker::Flight {
 
 Tracker::Tracker(const ShownVolume& volume, const DrawnPreset& preset,
                  const TrackSettings& settings)
-    : level_(&volume.levels[size_t(settings.level)]),
+    : level_(&volume.levels[size_t(std::max(settings.level, volume.whole_level))]),
       preset_(&preset),
       settings_(settings),
-      to_samples_(volume, settings.level),
-      empty_(preset.table.is_empty({0, uint16_t(most_code)})) {}
+      to_samples_(volume, std::max(settings.level, volume.whole_level)),
+      empty_(preset.table.is_empty({0, uint16_t(most_code)})) {
+  settings_.level = std::max(settings.level, volume.whole_level);
+}
 
 vec3 Tracker::glow(const VolumeRay& ray, Rng& random) const {
   if (empty_ || mode() != VolumeMode::glow) return vec3(0);

@@ -22,7 +22,7 @@ struct VolumeRay {
 };
 
 struct TrackSettings {
-  int level = 0;
+  int level = 0;      // the finest whole one, if that is coarser
   float step = 0.7f;  // samples of the level from look to look for a surface, or the maximum
   std::span<const VolumeCut> cuts;
 };

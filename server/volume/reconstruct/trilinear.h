@@ -53,7 +53,8 @@ inline bool has_pairs(const SampleBox<Sample>& box) {
 }
 
 template <class Sample>
-inline Lanes mix_samples(const SampleBox<Sample>& box, const LanesCell& cell) {
+[[gnu::always_inline]] inline Lanes mix_samples(const SampleBox<Sample>& box,
+                                                const LanesCell& cell) {
   auto row = [&](int shift) {
     Lanes near, far;
     load_pairs(box.samples, box.count, cell.at + shift, near, far);
@@ -65,10 +66,10 @@ inline Lanes mix_samples(const SampleBox<Sample>& box, const LanesCell& cell) {
 }
 
 // Adds up packed normals of eight corners (normal_grid.h) by their trilinear weights.
-inline Lanes3 mix_normals(const uint32_t* normals, const LanesCell& cell) {
+[[gnu::always_inline]] inline Lanes3 mix_normals(const uint32_t* normals, const LanesCell& cell) {
   const Lanes back_x = 1.0f - cell.way_x, back_y = 1.0f - cell.way_y, back_z = 1.0f - cell.way_z;
   Lanes3 sum;
-  auto add_row = [&](int shift, const Lanes& weight) {
+  auto add_row = [&](int shift, const Lanes& weight) __attribute__((always_inline)) {
     LaneBits near, far;
     load_word_pairs(normals, cell.at + shift, near, far);
     sum = sum + unpack_normals(near) * (weight * back_x) +
@@ -125,8 +126,10 @@ struct LanesLit {
 };
 // Returns normals, too, of packed ones that lie as the samples do: `normals` has that of sample 0.
 template <class Sample>
-inline LanesLit linear_value_and_normal(const SampleBox<Sample>& box, const uint32_t* normals,
-                                        const Lanes3& place, const LaneMask& first = LaneMask{}) {
+[[gnu::always_inline]] inline LanesLit linear_value_and_normal(const SampleBox<Sample>& box,
+                                                               const uint32_t* normals,
+                                                               const Lanes3& place,
+                                                               const LaneMask& first = LaneMask{}) {
   const LanesCell cell = cell_of(box, place, first);
   if (has_pairs(box)) return {mix_samples(box, cell), mix_normals(normals, cell)};
   return {linear_value_slowly(box, place, first), mix_normals_slowly(box, normals, cell)};
