@@ -210,9 +210,11 @@ void VolumeLayer::lay_over(std::span<const PlacedVolume> volumes, const View& vi
                            Frame& frame) {
   if (volumes.empty()) return;
   std::vector<VolumeLook> looks;
-  for (const PlacedVolume& placed : volumes) looks.push_back(placed.look);
-  if (view != view_ || looks != looks_) {
-    view_ = view, looks_ = std::move(looks), pictures_ = 0;
+  uint64_t arrivals = 0;
+  for (const PlacedVolume& placed : volumes)
+    looks.push_back(placed.look), arrivals += placed.shown().arrivals();
+  if (view != view_ || looks != looks_ || arrivals != arrivals_) {
+    view_ = view, looks_ = std::move(looks), arrivals_ = arrivals, pictures_ = 0;
     window_ = VolumeView(volumes, view, true, 0).window();
     const size_t pixels = window_.empty() ? 0 : size_t(window_.width) * size_t(window_.height);
     color_.assign(pixels, vec3(0)), clear_.assign(pixels, 0);

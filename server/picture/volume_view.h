@@ -70,7 +70,8 @@ class VolumeView {
 class VolumeLayer {
  public:
   // Looks at the volumes from so many more places of the pixels, unless there were enough, and lays
-  // the mean over the frame. Begins anew if the view or the looks have changed.
+  // the mean over the frame. Begins anew if the view or the looks have changed, or bricks have
+  // come.
   void lay_over(std::span<const PlacedVolume> volumes, const View& view, int places, Frame& frame);
   size_t memory_bytes() const;
 
@@ -78,6 +79,7 @@ class VolumeLayer {
   View view_;
   std::vector<VolumeLook> looks_;
   PictureWindow window_;
+  uint64_t arrivals_ = 0;  // of all volumes' bricks
   uint32_t pictures_ = 0;
   // Sums for each pixel of the window.
   std::vector<vec3> color_;

@@ -7,7 +7,6 @@
 
 #include "base/load_error.h"
 #include "show/exhibit/exhibit_files.h"
-#include "volume/format/open_volume.h"
 #include "wire/messages.h"
 
 namespace wellspring::show {
@@ -103,7 +102,7 @@ void open_source(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piec
                   [&](FieldReader& nebula) { read_nebula(nebula, path, piece); }))
     return;
   if (!path.empty() && !fields.describes())
-    piece.volume = std::make_shared<ShownVolume>(make_shown_volume(open_volume(path)));
+    piece.volume = std::make_shared<ShownVolume>(open_shown_volume(path));
 }
 
 }  // namespace

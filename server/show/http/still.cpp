@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <oneapi/tbb/task_arena.h>
 #include <optional>
 #include <shared_mutex>
+#include <thread>
 #include <vector>
 
 #include "denoise/denoise.h"
@@ -29,7 +31,9 @@ constexpr size_t most_kept_bytes = size_t(16) << 20;
 constexpr int still_jpeg_quality = 90;
 constexpr NetSize still_net = NetSize::base;
 constexpr int volume_places = 16;  // of a pixel at which volumes are looked at
-constexpr double slice = 0.02;     // seconds of the network, between looks whether it is given up
+constexpr int most_brick_rounds = 20;
+constexpr auto time_of_bricks = std::chrono::milliseconds(20);
+constexpr double slice = 0.02;  // seconds of the network, between looks whether it is given up
 // Ends the loops of a picture that nobody waits for any more.
 struct GivenUp {};
 
@@ -48,6 +52,8 @@ struct StillRoom::Scenery {
   std::optional<Frame> reconstruct(const StillJob& order, const View& view,
                                    const std::function<bool()>& given_up, double denoise_seconds,
                                    StillCosts& costs, StillPicture& picture) const;
+  void lay_volumes_over(const View& view, const std::function<bool()>& given_up,
+                        Frame& frame) const;
   bool add_glass(StillJob order, const std::function<bool()>& given_up, double denoise_seconds,
                  StillCosts& costs, StillPicture& picture, Image8& image) const;
   std::string comment(const StillPicture& picture) const;
@@ -164,8 +170,25 @@ std::optional<Frame> StillRoom::Scenery::render(const StillJob& order, const Vie
                                                 double denoise_seconds, StillCosts& costs,
                                                 StillPicture& picture) const {
   auto frame = reconstruct(order, view, given_up, denoise_seconds, costs, picture);
-  if (frame) VolumeLayer().lay_over(world->volumes(), view, volume_places, *frame);
+  if (frame) lay_volumes_over(view, given_up, *frame);
   return frame;
+}
+
+// Waits for the bricks that volumes larger than memory lack, as long as any come.
+void StillRoom::Scenery::lay_volumes_over(const View& view, const std::function<bool()>& given_up,
+                                          Frame& frame) const {
+  const bool bricks = std::ranges::any_of(
+      world->volumes(), [](const PlacedVolume& one) { return one.shown().bricks != nullptr; });
+  for (int round = bricks ? 0 : 1;; round++) {
+    Frame laid = frame;
+    const uint64_t before = volumes.arrivals();
+    VolumeLayer().lay_over(world->volumes(), view, round == 0 ? 1 : volume_places, laid);
+    if (round == 0) std::this_thread::sleep_for(time_of_bricks);
+    const bool more = volumes.arrivals() != before || round == 0;
+    if (more && round < most_brick_rounds && !(given_up && given_up())) continue;
+    frame = std::move(laid);
+    return;
+  }
 }
 
 std::optional<Frame> StillRoom::Scenery::reconstruct(const StillJob& order, const View& view,

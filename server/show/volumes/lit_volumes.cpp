@@ -58,6 +58,7 @@ int step_of(float turn) {
 
 struct LitVolumes::Impl {
   std::vector<int> pieces;  // of the exhibit, for each volume of the world
+  std::vector<std::shared_ptr<const ShownVolume>> volumes;  // of these
   std::list<KnownRoom> rooms;
   mutable std::mutex guard;    // of what follows
   std::list<LitPreset> kept;   // the one used last comes first
@@ -166,6 +167,7 @@ void LitVolumes::begin(const Exhibit& exhibit, const Lights& lights, const Techn
     const ExhibitPiece& piece = exhibit.pieces[i];
     if (!piece.volume || piece.layers.empty()) continue;
     impl_->pieces.push_back(int(i));
+    impl_->volumes.push_back(piece.volume);
     placed.push_back(place_volume(exhibit, piece));
   }
   world.place_volumes(std::move(placed));
@@ -208,7 +210,11 @@ void LitVolumes::show(const Exhibit& exhibit, const PieceChoices& choices, const
 
 void LitVolumes::wait() { impl_->worker.wait(); }
 
-uint64_t LitVolumes::arrivals() const { return impl_->made; }
+uint64_t LitVolumes::arrivals() const {
+  uint64_t sum = impl_->made;
+  for (const auto& volume : impl_->volumes) sum += volume->arrivals();
+  return sum;
+}
 
 size_t LitVolumes::memory_bytes() const {
   std::lock_guard lock(impl_->guard);

@@ -26,7 +26,8 @@ class LitVolumes {
             const Technique& technique, World& world);
   // Waits until all that show() has asked for is made.
   void wait();
-  // Returns how often something was made since the beginning: then show() may show it.
+  // Returns how often something was made since the beginning, or read of volumes that are larger
+  // than memory: then pictures may show it.
   uint64_t arrivals() const;
   size_t memory_bytes() const;
 

@@ -22,6 +22,17 @@ struct PreviewView {
   std::vector<VolumeCut> cuts;
 };
 
+// Holds where the eye stands, in the frame of Volume::to_metres.
+struct PreviewEye {
+  vec3 eye, from, right, above;  // `from`: from the volume's middle to the eye
+  float half, pixel;             // of the picture and of a pixel, at a depth of 1
+  int level;                     // whose samples are about as far apart as pixels
+
+  PreviewEye(const ShownVolume& volume, const PreviewView& view);
+  // Returns the unit direction through a place of the picture, in pixels.
+  vec3 way(float x, float y) const;
+};
+
 VolumePicture draw_volume(const ShownVolume& volume, const DrawnPreset& preset,
                           const PreviewView& view);
 
