@@ -3,7 +3,6 @@
 // done, 1 the input is wrong, 2 the command line is wrong.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
 
@@ -13,17 +12,15 @@
 #include "base/log.h"
 #include "base/write_file.h"
 #include "volume/compare/colored_glb.h"
+#include "volume/compare/compare_surface.h"
 #include "volume/compare/mesh_file.h"
-#include "volume/compare/report.h"
 #include "volume/format/open_volume.h"
-#include "world/load/scene_load.h"
+#include "world/load/scene_surface.h"
 
 using namespace wellspring;
 using namespace wellspring::program;
 
 namespace {
-
-constexpr size_t most_points = 4'000'000;
 
 struct Options {
   std::string mesh, volume, pairs, json, csv, colored, show = "distance";
@@ -33,30 +30,6 @@ struct Options {
          tolerance_mm = 0, kept_share = 0.8;
   std::vector<double> profile, lens;  // x, y, z in mm; and radius, size
 };
-
-// Joins all triangles of a glTF file, where its nodes put them.
-SurfaceMesh read_scene_surface(const std::string& file, double metres) {
-  const Scene scene = load_scene(file);
-  SurfaceMesh surface;
-  for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
-    const dmat4 to_world(instance.to_world);
-    const bool mirrors = glm::determinant(glm::dmat3(to_world)) < 0;
-    if (surface.positions.size() + mesh.positions.size() > UINT32_MAX)
-      throw LoadError(file, "", "has too many vertices");
-    const uint32_t first = uint32_t(surface.positions.size());
-    for (vec3 position : mesh.positions)
-      surface.positions.push_back(
-          (dvec3(to_world * glm::dvec4(dvec3(position), 1)) + scene.origin) * metres);
-    for (uvec3 triangle : mesh.triangles) {
-      if (mirrors) std::swap(triangle.y, triangle.z);
-      surface.triangles.push_back(triangle + first);
-    }
-  }
-  if (surface.triangles.empty()) throw LoadError(file, "", "has no triangles");
-  weld(surface);
-  return surface;
-}
 
 SurfaceMesh read_surface(const Options& options) {
   const bool is_print = is_mesh_file(options.mesh);
@@ -89,64 +62,34 @@ void look_closer(const Options& options, const DensityField& field, Comparison& 
   comparison.glyphs = lens_glyphs(points, comparison.deviations, lens, size, tolerance);
 }
 
-// A scale that is not given reaches from the first to the last percent.
-ColorScale chosen_scale(const Options& options, const Comparison& comparison) {
-  if (options.show == "angle") return angle_scale(options.range_deg);
-  double range = options.range_mm;
-  if (range <= 0)
-    for (const auto& one : comparison.summary.percentiles)
-      range = std::max(range, std::abs(one.distance) * 1000);
-  return distance_scale(range > 0 ? range : comparison.voxel * 1000);
-}
-
 void compare(const Options& options) {
-  double began = seconds_now();
-  auto lap = [&] {
-    const double now = seconds_now(), took = now - began;
-    began = now;
-    return took;
-  };
+  CompareSettings settings;
+  settings.cone.reach = options.reach;
+  settings.cone.threshold = options.threshold_per_mm * 1000;
+  settings.cone.boundary = options.falling ? Boundary::falling : Boundary::any;
+  settings.registers = !options.no_register;
+  settings.kept_share = options.kept_share;
+  settings.spacing_voxels = options.spacing_voxels;
+  if (!options.pairs.empty()) settings.pairs = read_control_pairs(options.pairs);
+  const double began = seconds_now();
   SurfaceMesh mesh = read_surface(options);
   const Volume volume = open_volume(options.volume);
-  std::vector<ControlPair> pairs;
-  if (!options.pairs.empty()) pairs = read_control_pairs(options.pairs);
   const DensityField field = make_density_field(volume);
-  Comparison comparison;
+  const double read = seconds_now();
+  Comparison comparison = compare_surface(field, settings, mesh);
   comparison.mesh = options.mesh, comparison.volume = options.volume;
-  comparison.triangles = mesh.triangles.size(), comparison.vertices = mesh.positions.size();
-  comparison.flat_triangles = flat_triangles(mesh);
-  comparison.grid = field.grid.size, comparison.voxel = field.voxel;
-  comparison.settings.reach = options.reach;
-  comparison.settings.threshold = options.threshold_per_mm * 1000;
-  comparison.settings.boundary = options.falling ? Boundary::falling : Boundary::any;
-  comparison.threshold = slope_threshold(field, comparison.settings);
-  const double read_time = lap();
-  if (!options.no_register) {
-    RegistrationSettings settings;
-    settings.kept_share = options.kept_share, settings.reach = options.reach;
-    settings.threshold = comparison.settings.threshold;
-    comparison.registration = register_surface(mesh, field, pairs, settings);
-    mesh = moved(mesh, comparison.registration->to_volume);
-  }
-  const double place_time = lap();
-  comparison.points = triangle_points(mesh, options.spacing_voxels * field.voxel, most_points);
-  const size_t first_vertex = comparison.points.size();
-  const std::vector<SurfacePoint> vertices = vertex_points(mesh);
-  comparison.points.insert(comparison.points.end(), vertices.begin(), vertices.end());
-  comparison.deviations = find_deviations(field, comparison.points, comparison.settings);
-  const double search_time = lap();
-  comparison.summary = summarize(comparison.points, comparison.deviations);
-  comparison.scale = chosen_scale(options, comparison);
+  if (options.show == "angle") comparison.scale = angle_scale(options.range_deg);
+  else if (options.range_mm > 0) comparison.scale = distance_scale(options.range_mm);
+  const double compared = seconds_now();
   look_closer(options, field, comparison);
   std::cout << report_text(comparison);
-  log::info("read in {:.2f} s, placed in {:.2f} s, searched in {:.2f} s", read_time, place_time,
-            search_time);
+  log::info("read in {:.2f} s, compared in {:.2f} s", read - began, compared - read);
   if (!options.json.empty())
     write_file(options.json, std::span<const char>(report_json(comparison)));
   if (!options.csv.empty()) write_file(options.csv, std::span<const char>(report_csv(comparison)));
   if (options.colored.empty()) return;
-  const std::vector<Deviation> at_vertices(comparison.deviations.begin() + ptrdiff_t(first_vertex),
-                                           comparison.deviations.end());
+  const std::vector<Deviation> at_vertices(
+      comparison.deviations.end() - ptrdiff_t(comparison.vertices), comparison.deviations.end());
   const std::string name = std::filesystem::path(options.mesh).stem().string();
   write_file(options.colored, std::span<const char>(colored_glb(
                                   mesh, deviation_colors(comparison.scale, at_vertices), name)));

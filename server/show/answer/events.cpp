@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "frame/tonemap.h"
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
 #include "show/exhibit/exhibit_volumes.h"
@@ -23,6 +25,35 @@ namespace {
 json triple(dvec3 v) {
   auto round = [](double x) { return std::round(x * 1e4) / 1e4; };
   return json::array({round(v.x), round(v.y), round(v.z)});
+}
+
+// Describes the colours of a comparison, from the scale's low end to its high one, and how far both
+// are off, in millimetres.
+json describe_scale(const volume::Comparison& comparison) {
+  const volume::ColorScale& scale = comparison.scale;
+  json colors = json::array();
+  constexpr int steps = 8;
+  for (int i = 0; i <= steps; i++) {
+    const vec3 color =
+        volume::scale_color(scale, scale.low + (scale.high - scale.low) * double(i) / steps);
+    const auto code = [](float light) {
+      return int(std::lround(255 * frame::encode_srgb(all_lanes(light))[0]));
+    };
+    colors.push_back(
+        fmt::format("#{:02x}{:02x}{:02x}", code(color.x), code(color.y), code(color.z)));
+  }
+  json ticks = json::array();
+  for (const volume::ColorTick& tick : scale.ticks)
+    ticks.push_back({{"value", tick.value}, {"at", tick.position}});
+  const auto mm = [](double metres) { return std::round(1e5 * metres) / 100; };
+  json percentiles = json::array();
+  for (const auto& one : comparison.summary.percentiles)
+    percentiles.push_back({{"percent", one.percent}, {"mm", mm(one.distance)}});
+  return {{"unit", scale.unit},
+          {"colors", std::move(colors)},
+          {"ticks", std::move(ticks)},
+          {"percentiles", std::move(percentiles)},
+          {"mean", mm(comparison.summary.mean_absolute)}};
 }
 
 const char* tour_word(TourRide::State state) {
@@ -86,6 +117,7 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
       json& one = layers.emplace_back(
           json{{"id", layer.id}, {"label", text(layer.label)}, {"text", text(layer.text)}});
       if (layer.year) one["year"] = *layer.year;
+      if (layer.comparison) one["scale"] = describe_scale(*layer.comparison);
     }
     json& told =
         message["pieces"].emplace_back(json{{"id", piece.id}, {"layers", std::move(layers)}});

@@ -14,6 +14,7 @@
 #include "avatar/story/story_script.h"
 #include "show/lighting/day.h"
 #include "store/picture/sample_picture.h"
+#include "volume/compare/report.h"
 #include "volume/draw/preset.h"
 #include "volume/nebula/nebula.h"
 #include "world/load/scene_join.h"
@@ -145,6 +146,10 @@ struct PieceLayer {
   std::optional<int> year;               // year of a map
   PictureLayer shown;                    // of a volume: nothing
   std::optional<volume::Preset> preset;  // of a volume
+  // Of a volume that is compared with a model: the volume in colours, and what they mean. Null: the
+  // piece's volume as it is.
+  std::shared_ptr<const volume::ShownVolume> volume;
+  std::shared_ptr<const volume::Comparison> comparison;  // without its points
   // The same with words in another language, by its tag.
   std::map<std::string, std::shared_ptr<const LargePicture>, std::less<>> spoken;
 };

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/load_error.h"
+#include "show/exhibit/exhibit_compare.h"
 #include "show/exhibit/exhibit_files.h"
 #include "wire/messages.h"
 
@@ -45,7 +46,24 @@ void read_points(FieldReader& fields, Preset& preset) {
       });
 }
 
-void read_preset(FieldReader& fields, const std::vector<Preset>& found, ExhibitPiece& piece) {
+// Holds what a volume was read from.
+struct ReadVolume {
+  std::string path;
+  std::vector<Preset> found;
+};
+
+// Compares the volume with the model that a preset names.
+void compare_layer(const Exhibit& exhibit, FieldReader& fields, const ReadVolume& read,
+                   const std::string& model, const ExhibitPiece& piece, PieceLayer& layer) {
+  const std::string path = package_file(fields, "compare", exhibit.folder, model);
+  if (path.empty() || !piece.volume) return;
+  const Preset& outside = piece.layers.empty() ? read.found.front() : *piece.layers.front().preset;
+  compare_model(path, read.path, piece, outside, layer);
+}
+
+void read_preset(const Exhibit& exhibit, FieldReader& fields, const ReadVolume& read,
+                 ExhibitPiece& piece) {
+  const std::vector<Preset>& found = read.found;
   PieceLayer layer;
   fields.name("id", layer.id, "what messages call it", Need::required);
   layer.label = read_local_text(fields, "label", "", Need::required);
@@ -59,8 +77,16 @@ void read_preset(FieldReader& fields, const std::vector<Preset>& found, ExhibitP
                 "density: all that it lets through; surface: where the first value begins; "
                 "maximum: the largest value along each ray; glow: light that it sends");
   read_points(fields, preset);
-  fields.describe_choice({{"find"}, {"mode", "points"}});
-  if (!automatic.empty()) {
+  std::string model;
+  fields.text("compare", model,
+              "a model of it, glTF, STL or PLY: colours show how far it is off, on the surface of "
+              "the first preset");
+  fields.describe_choice({{"find"}, {"mode", "points"}, {"compare"}});
+  if (!model.empty()) {
+    compare_layer(exhibit, fields, read, model, piece, layer);
+    if (!layer.preset) return;
+    preset = *layer.preset;
+  } else if (!automatic.empty()) {
     const auto same = std::ranges::find(found, automatic, &Preset::name);
     if (same == found.end())
       return fields.fail("find", "the scan has no such part; its values differ too little");
@@ -95,14 +121,15 @@ void read_nebula(FieldReader& fields, const std::string& path, ExhibitPiece& pie
   piece.nebula = std::move(nebula);
 }
 
-// Opens what `source` names.
-void open_source(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece) {
+// Opens what `source` names. Returns its path.
+std::string open_source(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece) {
   const std::string path = package_file(fields, "source", exhibit.folder, piece.source);
   if (fields.part("nebula", "the source is a picture of a nebula, of which a volume is made",
                   [&](FieldReader& nebula) { read_nebula(nebula, path, piece); }))
-    return;
+    return path;
   if (!path.empty() && !fields.describes())
     piece.volume = std::make_shared<ShownVolume>(open_shown_volume(path));
+  return path;
 }
 
 }  // namespace
@@ -118,23 +145,23 @@ std::shared_ptr<const ShownVolume> solve_nebula(const PieceNebula& nebula, float
 void read_volume(const Exhibit& exhibit, FieldReader& fields, ExhibitPiece& piece,
                  std::vector<Problem>& problems) {
   if (!fields.describes()) fields.text("source", piece.source, "", Need::required);
+  ReadVolume read;
+  float height = 0;
+  fields.number("size_m", 0.001, 1000, height, "height of a volume, metres; as scanned without it");
   try {
-    open_source(exhibit, fields, piece);
+    read.path = open_source(exhibit, fields, piece);
+    if (piece.volume) read.found = find_presets(*piece.volume);
+    fields.parts("presets", most_piece_layers,
+                 "what may be seen of a volume, the first at first; without them they are found",
+                 [&](FieldReader& one) { read_preset(exhibit, one, read, piece); });
   } catch (const LoadError& error) {
     problems.push_back({error.file, error.where, error.what_});
   } catch (const std::length_error& error) {
     fields.fail("source", std::string("is too much: ") + error.what());
   }
-  float height = 0;
-  fields.number("size_m", 0.001, 1000, height, "height of a volume, metres; as scanned without it");
-  const std::vector<Preset> found =
-      piece.volume ? find_presets(*piece.volume) : std::vector<Preset>();
-  fields.parts("presets", most_piece_layers,
-               "what may be seen of a volume, the first at first; without them they are found",
-               [&](FieldReader& one) { read_preset(one, found, piece); });
   if (!piece.volume) return;
   if (!fields.has("presets"))
-    for (const Preset& preset : found) {
+    for (const Preset& preset : read.found) {
       PieceLayer layer;
       layer.id = preset.name, layer.label = label_of(preset.name), layer.preset = preset;
       piece.layers.push_back(std::move(layer));

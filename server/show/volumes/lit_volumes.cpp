@@ -42,8 +42,9 @@ struct KnownRoom {
 
 struct Wanted {
   LitKey key;
-  std::shared_ptr<const ShownVolume> volume;
-  std::shared_ptr<const PieceNebula> nebula;  // null: `volume` is drawn
+  std::shared_ptr<const ShownVolume> own;     // the layer's; null: the piece's is drawn
+  std::shared_ptr<const ShownVolume> volume;  // the piece's
+  std::shared_ptr<const PieceNebula> nebula;  // null: it is a scan
   Preset preset;
   VolumeLight light;
 };
@@ -145,7 +146,7 @@ void LitVolumes::Impl::make_wanted() {
       wanted.erase(wanted.begin());
     }
     if (find(next->key)) continue;
-    std::shared_ptr<const ShownVolume> volume;
+    std::shared_ptr<const ShownVolume> volume = next->own;
     if (next->nebula && next->key.tilt != 0) {
       volume = find_tilted(next->key);
       if (!volume) volume = solve_nebula(*next->nebula, glm::radians(float(next->key.tilt)));
@@ -191,7 +192,8 @@ void LitVolumes::show(const Exhibit& exhibit, const PieceChoices& choices, const
       VolumeLight light = impl_->light_of(number, placed, lights, technique, world);
       light.to_lamp =
           mat3(glm::rotate(mat4(1), -step_angle(key.turn), vec3(0, 1, 0))) * light.to_lamp;
-      impl_->want({key, piece.volume, piece.nebula, *piece.layers[size_t(layer)].preset, light});
+      const PieceLayer& of = piece.layers[size_t(layer)];
+      impl_->want({key, of.volume, piece.volume, piece.nebula, *of.preset, light});
       return impl_->find_like(key);
     };
     VolumeLook look = placed.look;

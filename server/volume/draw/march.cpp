@@ -138,7 +138,8 @@ class March {
     follow(0, [&](const LaneMask& full) {
       const Lanes3 p = at(place_);
       Lanes light;
-      const Lanes3 color = preset_.table.look(samples_.value(p, full), light) * own_color(level_, p);
+      const Lanes3 color =
+          preset_.table.look(samples_.value(p, full), light) * own_color(level_, p);
       found.color = found.color + color * keep_lanes(full, light * step_);
     });
   }

@@ -117,6 +117,28 @@ ShownVolume make_shown_volume(const Volume& volume) {
   return shown;
 }
 
+ShownVolume coarser(const ShownVolume& volume, int level) {
+  ShownVolume shown;
+  static_cast<CodeScale&>(shown) = volume;
+  const double apart = std::ldexp(1.0, level);
+  shown.to_metres = volume.to_metres;
+  shown.to_metres[3] = volume.to_metres * glm::dvec4(glm::dvec3(0.5 * apart - 0.5), 1);
+  for (int axis = 0; axis < 3; axis++) shown.to_metres[axis] *= apart;
+  shown.voxel = volume.voxel * apart;
+  shown.levels.assign(volume.levels.begin() + level, volume.levels.end());
+  shown.code_counts = volume.code_counts;
+  return shown;
+}
+
+void set_colors(std::array<std::vector<uint16_t>, 3> planes, ShownVolume& volume) {
+  for (size_t channel = 0; channel < 3; channel++) {
+    volume.levels.front().colors[channel] = std::move(planes[channel]);
+    for (size_t k = 1; k < volume.levels.size(); k++)
+      volume.levels[k].colors[channel] = halve(volume.levels[k - 1].colors[channel],
+                                               volume.levels[k - 1].size, volume.levels[k].size);
+  }
+}
+
 ShownVolume open_shown_volume(const std::string& path, std::shared_ptr<BrickPool> pool) {
   if (is_brick_file(path)) return show_bricks(open_bricks(path), std::move(pool));
   const Volume volume = open_volume(path);

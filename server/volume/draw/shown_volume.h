@@ -3,6 +3,7 @@
 // detail, whole in memory or in bricks that come when they are looked for; and the range of codes
 // in each cell of 8 x 8 x 8, so that rays leap over what is empty.
 #pragma once
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,6 +46,12 @@ struct ShownVolume : CodeScale {
 // least finite one. Takes about 7 bytes a sample.
 // Throws std::length_error beyond 2^31 samples.
 ShownVolume make_shown_volume(const Volume& volume);
+
+// Returns a copy that begins with a level, whole_level or a coarser one.
+ShownVolume coarser(const ShownVolume& volume, int level);
+// Gives a whole volume colours: red, green and blue of the finest level's samples, as codes of the
+// square roots of linear light. Coarser levels get means.
+void set_colors(std::array<std::vector<uint16_t>, 3> planes, ShownVolume& volume);
 
 // Opens a file of bricks (bricks/brick_file.h) at once, to be shown out of this pool; any other
 // file is read as open_volume() does, and is whole in memory. Throws LoadError that names file and
