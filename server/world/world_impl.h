@@ -94,7 +94,10 @@ struct World::Impl {
   bool is_occluded(const Ray& ray, PanesPassed* panes) const;
   // Return whether a volume is in the way of it, or of those rays of a packet.
   bool is_shaded(const Ray& ray) const { return !tracked.empty() && shades(tracked, ray); }
-  uint32_t shaded(const RayPacket& rays, uint32_t active) const;
+  uint32_t shaded(const RayPacket& rays, uint32_t active) const {
+    return tracked.empty() || active == 0 ? 0 : shaded_lanes(rays, active);
+  }
+  uint32_t shaded_lanes(const RayPacket& rays, uint32_t active) const;
   RTCGeometry make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
                             RTCBuildQuality);
   RTCGeometry make_apart(uint32_t instance, RTCBuildQuality quality);

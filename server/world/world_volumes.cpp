@@ -35,8 +35,7 @@ vec3 World::volume_glow(const Ray& ray, float t_end) const {
   return impl_->tracked.empty() ? vec3(0) : glow(impl_->tracked, ray, t_end);
 }
 
-uint32_t World::Impl::shaded(const RayPacket& rays, uint32_t active) const {
-  if (tracked.empty()) return 0;
+uint32_t World::Impl::shaded_lanes(const RayPacket& rays, uint32_t active) const {
   Query query;
   query.packet = &rays;
   uint32_t blocked = 0;

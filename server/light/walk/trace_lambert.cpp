@@ -134,7 +134,9 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
     sample = trace_sample(transport, batch.rules, request, hit);
     return false;
   }
-  if (see_volume(transport, begin_walk(transport, request), hit.t, vec3(1), 0, sample = Sample()))
+  sample = Sample();
+  if (transport.sees_volumes &&
+      see_volume(transport, begin_walk(transport, request), hit.t, vec3(1), 0, sample))
     return false;
   KnownLight& known = walks.map[lane];
   known = find_known_light(transport, request.ray, hit,

@@ -282,5 +282,39 @@ TEST(VolumesInLight, SamplesAreReplayed) {
   }
 }
 
+// Samples side by side have the light of those that are traced in the way that knows all materials.
+TEST(VolumesInLight, BothWaysThroughAWalkAgree) {
+  Scene scene = make_cornell_box();
+  World world(scene);
+  const Lights lights = make_lights(world);
+  const View view = cornell_view(scene, 64, 64);
+  std::vector<Request> requests;
+  for (int k = 0; k < 24; k++)
+    for (int i = 0; i < view.width * view.height; i++)
+      requests.push_back(pixel_request(view, 1, i % view.width, i / view.width, k));
+  Mean open;
+  for (const bool sees : {false, true}) {
+    for (const bool placed : {false, true}) {
+      // Bright matter in the middle of the box, whose light walks alone find.
+      world.place_volumes({});
+      if (placed) world.place_volumes({slab(3, {0, 0.3f, -0.28f}, 12, 30)});
+      Transport transport{world, *lights.tables};
+      transport.sees_volumes = sees;
+      WalkRules rules;
+      rules.max_depth = 4;
+      std::vector<Sample> samples(requests.size());
+      trace_samples(transport, rules, requests, samples);
+      Mean together, alone;
+      for (size_t i = 0; i < requests.size(); i++) {
+        together.add(double(luminance(samples[i].radiance())));
+        alone.add(double(luminance(trace_sample(transport, rules, requests[i]).radiance())));
+      }
+      expect_same_mean(together, alone, sees ? "seen" : "not seen");
+      if (!placed) open = together;
+      else EXPECT_GT(together.mean(), 1.3 * open.mean());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace wellspring::test
