@@ -61,9 +61,14 @@ TEST(DrawBricks, AllPlacesAreInterpolatedAsInTheWholeVolume) {
         bricked.load_all();
         const LanesLit a = read(BrickSamples(bricked.shown, level), place);
         const LanesLit b = read(WholeSamples(whole, level), place);
+        PlaceSamples one(bricked.shown, level), one_whole(whole, level);
         for (int k = 0; k < lane_count; k++)
-          most = std::max({most, std::abs(a.value[k] - b.value[k]) / most_code,
-                           length(a.normal.at(k) - b.normal.at(k))});
+          most =
+              std::max({most, std::abs(a.value[k] - b.value[k]) / most_code,
+                        length(a.normal.at(k) - b.normal.at(k)),
+                        std::abs(one.value(place.at(k)) - b.value[k]) / most_code,
+                        std::abs(one_whole.value(place.at(k)) - b.value[k]) / most_code,
+                        length(one.value_and_normal(place.at(k)).normal.at(0) - b.normal.at(k))});
       }
       EXPECT_LT(most, 1e-6f) << size.x << " x " << size.y << " x " << size.z << ", " << level;
     }
@@ -145,6 +150,9 @@ TEST(DrawBricks, CoarserBricksAreContinuousWhereTheyMeet) {
     for (float x = 8; x < 122; x += 0.37f) {
       const vec3 at(x, 64 + 0.1f * (x - 64), 122 - x + 8);
       EXPECT_NEAR(value_at(at), 100 * (at.x + at.y + at.z), 1) << x;
+      EXPECT_NEAR(PlaceSamples(bricked.shown, 0).value(at) / most_code * 100 * 3 * 129,
+                  100 * (at.x + at.y + at.z), 1)
+          << x;
     }
     bricked.load_all();
   }
