@@ -68,4 +68,27 @@ LanesCell BrickSamples::coarser_cell(const Lanes3& place) const {
           stored_slice};
 }
 
+PlaceSamples::PlaceSamples(const ShownVolume& volume, int level)
+    : bricks_(volume.bricks.get()), number_(level), size_(volume.levels[size_t(level)].size) {
+  const VolumeLevel& of = volume.levels[size_t(level)];
+  if (bricks_) reader_.emplace(*bricks_);
+  else box_ = of.box(), normals_ = of.normals.words.data();
+}
+
+vec3 PlaceSamples::enter_brick(vec3 place) {
+  const glm::ivec3 brick =
+      glm::ivec3(place_on_axis(place.x, size_.x).at, place_on_axis(place.y, size_.y).at,
+                 place_on_axis(place.z, size_.z).at) >>
+      brick_bits;
+  if (brick != brick_) {
+    brick_ = brick, found_ = reader_->find(number_, brick);
+    box_ = whole_box(bricks_->pool().codes() + found_.place, glm::ivec3(stored_side));
+    normals_ = bricks_->pool().normals() + found_.place;
+  }
+  if (found_.level > number_)
+    place = (place + 0.5f) * std::ldexp(1.0f, number_ - found_.level) - 0.5f;
+  const vec3 last(bricks_->file().levels[size_t(found_.level)].size - 1);
+  return glm::clamp(place, vec3(0), last) - vec3(found_.brick * inner_side) + 1.0f;
+}
+
 }  // namespace wellspring::volume

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a level of a volume at eight places at a time: whole, or out of bricks.
+// Reads a level of a volume at eight places at a time, or at one: whole, or out of bricks.
 #pragma once
+#include <optional>
+
 #include "volume/draw/shown_volume.h"
 #include "volume/reconstruct/trilinear.h"
 
 namespace wellspring::volume {
+
+inline constexpr int brick_bits = 5;
+static_assert(1 << brick_bits == inner_side);
 
 // Both have value() and value_and_normal(): places of lanes outside the mask may be anywhere, and
 // their values mean nothing.
@@ -63,8 +68,6 @@ class BrickSamples {
   void put(int lane, const FoundBrick& found);
   LanesCell coarser_cell(const Lanes3& place) const;
 
-  static constexpr int brick_bits = 5;
-  static_assert(1 << brick_bits == inner_side);
   const BrickReader reader_;
   const BrickFile& file_;
   const int number_;  // of the level
@@ -79,6 +82,35 @@ class BrickSamples {
   // samples are `last`; the brick begins at sample `begin`.
   Lanes scale_;
   Lanes3 last_, begin_;
+};
+
+// Reads any volume at one place after the other; lives as long as a BrickReader does: for a ray.
+class PlaceSamples {
+ public:
+  PlaceSamples(const ShownVolume& volume, int level);
+  float value(vec3 place) {
+    const vec3 in = enter(place);
+    return linear_value(box_, in);
+  }
+  // All lanes have the same.
+  LanesLit value_and_normal(vec3 place) {
+    const vec3 in = enter(place);
+    return linear_value_and_normal(box_, normals_, all_lanes(in));
+  }
+
+ private:
+  // Returns the place in the box, which becomes that of the brick around it.
+  vec3 enter(vec3 place) { return bricks_ ? enter_brick(place) : place; }
+  vec3 enter_brick(vec3 place);
+
+  const ResidentBricks* const bricks_;
+  const int number_;  // of the level
+  const glm::ivec3 size_;
+  std::optional<BrickReader> reader_;
+  SampleBox<uint16_t> box_;
+  const uint32_t* normals_ = nullptr;
+  glm::ivec3 brick_{-1};
+  FoundBrick found_;
 };
 
 }  // namespace wellspring::volume

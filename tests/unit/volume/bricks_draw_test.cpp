@@ -45,7 +45,7 @@ TEST(DrawBricks, AllPlacesAreInterpolatedAsInTheWholeVolume) {
     const Bricked bricked(volume, plenty);
     for (int level = 0; level < int(whole.levels.size()); level++) {
       const vec3 last(whole.levels[size_t(level)].size - 1);
-      float most = 0;
+      float most = 0, most_one = 0;
       for (int i = 0; i < 4000; i++) {
         Lanes3 place;
         for (int k = 0; k < lane_count; k++) {
@@ -61,11 +61,19 @@ TEST(DrawBricks, AllPlacesAreInterpolatedAsInTheWholeVolume) {
         bricked.load_all();
         const LanesLit a = read(BrickSamples(bricked.shown, level), place);
         const LanesLit b = read(WholeSamples(whole, level), place);
-        for (int k = 0; k < lane_count; k++)
+        PlaceSamples one(bricked.shown, level), one_whole(whole, level);
+        for (int k = 0; k < lane_count; k++) {
           most = std::max({most, std::abs(a.value[k] - b.value[k]) / most_code,
                            length(a.normal.at(k) - b.normal.at(k))});
+          const vec3 at = place.at(k);
+          most_one = std::max({most_one, std::abs(one.value(at) - b.value[k]) / most_code,
+                               std::abs(one_whole.value(at) - b.value[k]) / most_code,
+                               length(one.value_and_normal(at).normal.at(k) - b.normal.at(k))});
+        }
       }
       EXPECT_LT(most, 1e-6f) << size.x << " x " << size.y << " x " << size.z << ", " << level;
+      // One place is counted from the brick's skirt, so its last bit is another one.
+      EXPECT_LT(most_one, 1e-5f) << size.x << " x " << size.y << " x " << size.z << ", " << level;
     }
   }
 }
@@ -145,6 +153,9 @@ TEST(DrawBricks, CoarserBricksAreContinuousWhereTheyMeet) {
     for (float x = 8; x < 122; x += 0.37f) {
       const vec3 at(x, 64 + 0.1f * (x - 64), 122 - x + 8);
       EXPECT_NEAR(value_at(at), 100 * (at.x + at.y + at.z), 1) << x;
+      EXPECT_NEAR(PlaceSamples(bricked.shown, 0).value(at) / most_code * 100 * 3 * 129,
+                  100 * (at.x + at.y + at.z), 1)
+          << x;
     }
     bricked.load_all();
   }
