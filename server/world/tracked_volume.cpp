@@ -36,6 +36,8 @@ std::vector<TrackedVolume> track_volumes(std::span<const PlacedVolume> volumes) 
     const VolumeLook& look = placed.look;
     if (!placed.volume || !look.preset) continue;
     TrackSettings settings;
+    // Light asks for no bricks of what is larger than memory.
+    settings.level = placed.shown().whole_level;
     settings.cuts = look.cuts;
     TrackedVolume one{bounds_of(placed), ToVolume(placed),
                       Tracker(placed.shown(), *look.preset, settings)};

@@ -4,21 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volume/draw/level_samples.h"
 #include "volume/draw/matter_light.h"
-#include "volume/reconstruct/trilinear.h"
 
 namespace wellspring::volume {
 namespace {
 
 constexpr int refinements = 3;  // halvings of the step in which a surface is crossed
-
-// All reading of samples is here.
-
-float code_at(const VolumeLevel& level, vec3 place) { return linear_value(level.box(), place); }
-
-LanesLit code_and_normal_at(const VolumeLevel& level, vec3 place) {
-  return linear_value_and_normal(level.box(), level.normals.words.data(), all_lanes(place));
-}
 
 }  // namespace
 
@@ -27,7 +19,8 @@ LanesLit code_and_normal_at(const VolumeLevel& level, vec3 place) {
 class Tracker::Flight {
  public:
   Flight(const Tracker& tracker, const VolumeRay& ray, Rng& random)
-      : level_(*tracker.level_),
+      : level_(tracker.volume_->levels[size_t(tracker.settings_.level)]),
+        samples_(*tracker.volume_, tracker.settings_.level),
         table_(tracker.preset_->table),
         settings_(tracker.settings_),
         tracker_(tracker),
@@ -113,7 +106,7 @@ class Tracker::Flight {
     found.reads++;
     Lanes light;
     const Lanes3 color =
-        table_.look(all_lanes(code_at(level_, place)), light) * own_color(level_, all_lanes(place));
+        table_.look(all_lanes(samples_.value(place)), light) * own_color(level_, all_lanes(place));
     found.color = (color * (light * length_)).at(0);
   }
 
@@ -121,7 +114,7 @@ class Tracker::Flight {
   void light_up() {
     if (!found.is_stopped()) return;
     const vec3 place = at(stopped_);
-    LanesLit there = code_and_normal_at(level_, place);
+    LanesLit there = samples_.value_and_normal(place);
     const VolumeMode mode = table_.mode();
     if (mode == VolumeMode::surface)
       there.value = lanes_max(there.value, all_lanes(table_.threshold()));
@@ -139,6 +132,7 @@ class Tracker::Flight {
 
  private:
   const VolumeLevel& level_;
+  PlaceSamples samples_;
   const TransferTable& table_;
   const TrackSettings& settings_;
   const Tracker& tracker_;
@@ -156,7 +150,7 @@ class Tracker::Flight {
   vec3 at(float place) const { return start_ + way_ * place; }
   float read(float place) {
     found.reads++;
-    return code_at(level_, at(place));
+    return samples_.value(at(place));
   }
   void stop(float place) { stopped_ = place, found.distance = near_ + place; }
   float draw_thickness() { return -std::log(1 - random_.uniform()); }
@@ -210,13 +204,11 @@ class Tracker::Flight {
 
 Tracker::Tracker(const ShownVolume& volume, const DrawnPreset& preset,
                  const TrackSettings& settings)
-    : level_(&volume.levels[size_t(std::max(settings.level, volume.whole_level))]),
+    : volume_(&volume),
       preset_(&preset),
       settings_(settings),
-      to_samples_(volume, std::max(settings.level, volume.whole_level)),
-      empty_(preset.table.is_empty({0, uint16_t(most_code)})) {
-  settings_.level = std::max(settings.level, volume.whole_level);
-}
+      to_samples_(volume, settings.level),
+      empty_(preset.table.is_empty({0, uint16_t(most_code)})) {}
 
 vec3 Tracker::glow(const VolumeRay& ray, Rng& random) const {
   if (empty_ || mode() != VolumeMode::glow) return vec3(0);

@@ -52,7 +52,7 @@ class Tracker {
 
  private:
   class Flight;
-  const VolumeLevel* level_;
+  const ShownVolume* volume_;
   const DrawnPreset* preset_;
   TrackSettings settings_;
   ToSamples to_samples_;
