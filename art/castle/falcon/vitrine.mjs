@@ -103,7 +103,7 @@ export function make_vitrine() {
       rotation: [-Math.sin(half), 0, 0, Math.cos(half)],
       extensions: { KHR_lights_punctual: { light: 0 } } }],
     extras: { extensions: { KHR_lights_punctual: { lights: [{ name: 'Lamp Falcon 1', type: 'spot',
-      color: [1, 0.93, 0.82], intensity: 2.4,
+      color: [1, 0.93, 0.82], intensity: 0.9,
       spot: { innerConeAngle: 0.5, outerConeAngle: 0.76 } }] } } },
   };
 }
