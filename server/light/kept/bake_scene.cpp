@@ -117,10 +117,9 @@ void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span
       return;
     }
     vec3 of_volume(0);
-    if (ends_in_volume(any, walk, hit.t, of_volume)) {
-      if (scattered_once) light[0] += of_volume;
-      return;
-    }
+    const bool ends = ends_in_volume(any, walk, hit.t, of_volume);
+    if (scattered_once) light[0] += of_volume;
+    if (ends) return;
     if (!hit.valid()) {
       if (!scattered_once) return;
       weigh_for(0);

@@ -339,10 +339,9 @@ bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, LambertWalks&
     if (batch.volumes) {
       vec3 more(0);
       const Walk walk = lone_walk(transport.tables, walks, rays, i);
-      if (ends_in_volume(transport, walk, hit.t, more)) {
-        walks.smooth.set(i, walks.smooth.at(i) + more);
-        return false;
-      }
+      const bool ends = ends_in_volume(transport, walk, hit.t, more);
+      walks.smooth.set(i, walks.smooth.at(i) + more);
+      if (ends) return false;
     }
     return lambertian && walks.depth[i] <= batch.rules.scatterings &&
            walks.depth[i] < batch.rules.max_depth;

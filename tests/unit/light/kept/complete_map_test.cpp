@@ -15,7 +15,7 @@ using namespace scenes;
 // A floor of 12 x 2 m with lamps above both of its ends.
 Scene make_corridor() {
   Scene scene = empty_scene();
-  add_fan(scene, diffuse(vec3(0.5f)), {0, 0, 0}, {0, 0, 2}, {12, 0, 0});
+  add_fan(scene, add_material(scene, diffuse(vec3(0.5f))), {0, 0, 0}, {0, 0, 2}, {12, 0, 0});
   for (float x : {1.0f, 11.0f}) scene.lights.push_back(point_light({x, 2, 1}, vec3(4)));
   return scene;
 }
@@ -42,7 +42,7 @@ struct Added {
     Bake first = begin_bake(old, std::vector{vec3(6, 1.6f, 1)}, small());
     bake_passes(make_bake_scene(old, {}), first, 4);
     EXPECT_TRUE(save_map(old, *finish_map(first), file, 1));
-    add_fan(after, diffuse(vec3(0.7f)), {0.5f, 0, 0.5f}, {0, 0, 1}, {0, 1, 0});
+    add_fan(after, add_material(after, diffuse(vec3(0.7f))), {0.5f, 0, 0.5f}, {0, 0, 1}, {0, 1, 0});
     world = std::make_unique<World>(after);
     known = load_map(*world, file, 2);
     BakeSettings alike = small();

@@ -292,12 +292,17 @@ TEST(VolumesInLight, BothWaysThroughAWalkAgree) {
   for (int k = 0; k < 24; k++)
     for (int i = 0; i < view.width * view.height; i++)
       requests.push_back(pixel_request(view, 1, i % view.width, i / view.width, k));
+  // Bright matter in the middle of the box, whose light walks alone find.
+  const PlacedVolume lit = slab(3, {0, 0.3f, -0.28f}, 12, 30);
+  PlacedVolume glowing = lit;
+  glowing.look.preset = std::make_shared<const DrawnPreset>(
+      *lit.volume, Preset{"glow", VolumeMode::glow, {{0.0, vec3(1), 0.3}}}, VolumeLight());
   Mean open;
   for (const bool sees : {false, true}) {
-    for (const bool placed : {false, true}) {
-      // Bright matter in the middle of the box, whose light walks alone find.
+    for (const PlacedVolume* placed :
+         std::initializer_list<const PlacedVolume*>{nullptr, &lit, &glowing}) {
       world.place_volumes({});
-      if (placed) world.place_volumes({slab(3, {0, 0.3f, -0.28f}, 12, 30)});
+      if (placed) world.place_volumes({*placed});
       Transport transport{world, *lights.tables};
       transport.sees_volumes = sees;
       WalkRules rules;
