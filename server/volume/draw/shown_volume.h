@@ -31,7 +31,7 @@ struct ShownVolume : CodeScale {
   std::vector<VolumeLevel> levels;         // the finest first; never empty
   glm::dmat4 to_metres{1};                 // as Volume's, of the finest level
   double voxel = 1;                        // the smallest distance of samples, metres
-  std::vector<uint64_t> code_counts;       // of the finest level, in code_bins even bins
+  std::vector<uint64_t> code_counts;       // the finest level has so many, by code_bins even bins
   std::shared_ptr<ResidentBricks> bricks;  // null: levels are whole
 
   // Returns how many bricks that pictures looked for have come so far. Any thread.
@@ -43,9 +43,9 @@ struct ShownVolume : CodeScale {
 // Throws std::length_error beyond 2^31 samples.
 ShownVolume make_shown_volume(const Volume& volume);
 
-// Opens a file of bricks (bricks/brick_file.h) at once, to be shown out of this pool; any other
-// file is read as open_volume() does, and is whole in memory. Throws LoadError that names file and
-// place.
+// Opens a file of bricks (volume/bricks/brick_file.h) at once, to be shown out of this pool; any
+// other file is read as open_volume() does, and is whole in memory. Throws LoadError that names
+// file and place.
 ShownVolume open_shown_volume(const std::string& path,
                               std::shared_ptr<BrickPool> pool = shared_brick_pool());
 
