@@ -13,7 +13,7 @@ namespace wellspring::volume {
 
 inline constexpr int cell_side = 8;
 inline constexpr float most_code = 65535;
-inline constexpr int code_bins = 128;  // of the histogram of codes
+inline constexpr int code_bins = 128;  // the histogram of codes has so many
 
 struct CodeRange {
   uint16_t least = 65535, most = 0;
@@ -40,7 +40,7 @@ void color_row(const Volume& volume, int channel, int y, int z, uint16_t* to);
 // ((x, y, z) + 0.5) * 2^k - 0.5 of the finest level.
 std::vector<glm::ivec3> level_sizes(glm::ivec3 finest);
 // Writes row `y` of the next coarser level, of two slices of a level: means of 2 x 2 x 2 samples.
-// Where a side is odd, the last sample counts twice, so `behind` may be `front`.
+// The last sample of an odd side counts twice, so `behind` may be `front`.
 void halve_row(const uint16_t* front, const uint16_t* behind, glm::ivec2 size, int y, uint16_t* to);
 
 inline glm::ivec3 cells_of(glm::ivec3 size) { return (size + cell_side - 1) / cell_side; }

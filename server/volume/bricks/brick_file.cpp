@@ -163,8 +163,8 @@ std::vector<uint16_t> read_level_codes(const BrickFile& file, int level) {
       for (int bx = 0; bx < of.bricks.x; bx++) {
         file.read(file.entries[of.number_of({bx, by, bz})], brick.data(), nullptr);
         const glm::ivec3 from = inner_side * glm::ivec3(bx, by, bz);
-        // The last bricks have the samples at the end, too. What two have is the same; each writes
-        // its own part.
+        // The last bricks have the samples at the end, too. Each writes its own part of what two
+        // have.
         const glm::ivec3 last = glm::ivec3(bx, by, bz) + 1;
         glm::ivec3 count = glm::min(of.size - from, inner_side);
         for (int axis = 0; axis < 3; axis++)

@@ -39,7 +39,7 @@ struct BrickLevel {
 std::vector<BrickLevel> brick_levels(glm::ivec3 finest);
 
 struct BrickEntry {
-  uint16_t least = 0, most = 0;  // of its codes, with the skirt
+  uint16_t least = 0, most = 0;  // its codes, with the skirt, are these and between
   uint32_t record = no_record;   // none: all codes are `least`, and no normal is anywhere
 };
 
@@ -60,10 +60,10 @@ struct BrickFile {
   std::string path;
   CodeScale scale;
   glm::dmat4 to_metres{1};
-  std::vector<uint64_t> code_counts;           // of the finest level, in code_bins even bins
-  std::vector<BrickLevel> levels;              // the finest first
-  std::vector<BrickEntry> entries;             // of all levels' bricks
-  std::vector<std::vector<CodeRange>> ranges;  // of each level's cells
+  std::vector<uint64_t> code_counts;  // the finest level has so many, by code_bins even bins
+  std::vector<BrickLevel> levels;     // the finest first
+  std::vector<BrickEntry> entries;    // all levels' bricks, in turn
+  std::vector<std::vector<CodeRange>> ranges;  // each level's cells'
   std::shared_ptr<const int> descriptor;
 
   // Reads a brick's codes and, unless null, its normals; x fastest, with the skirt. Throws

@@ -70,7 +70,7 @@ class BrickSamples {
 
   const BrickReader reader_;
   const BrickFile& file_;
-  const int number_;  // of the level
+  const int number_;  // the level
   const BrickLevel& level_;
   SampleBox<uint16_t> box_;  // all slots of the pool
   const uint32_t* normals_;
@@ -104,7 +104,7 @@ class PlaceSamples {
   vec3 enter_brick(vec3 place);
 
   const ResidentBricks* const bricks_;
-  const int number_;  // of the level
+  const int number_;  // the level
   const glm::ivec3 size_;
   std::optional<BrickReader> reader_;
   SampleBox<uint16_t> box_;

@@ -71,7 +71,7 @@ LightGrid make_light_grid(const ShownVolume& volume, const TransferTable& table,
   const size_t nodes = size_t(grid.size.x) * size_t(grid.size.y) * size_t(grid.size.z);
   grid.lamp.assign(nodes, 255), grid.around.assign(nodes, 255);
   if (table.mode() == VolumeMode::maximum || table.mode() == VolumeMode::glow) return grid;
-  // A level about as coarse as the grid.
+  // The level is about as coarse as the grid.
   const float apart = 1 / std::min({grid.scale.x, grid.scale.y, grid.scale.z});
   const int level =
       std::max(std::min(std::max(2, int(std::log2(apart))), int(volume.levels.size()) - 1),

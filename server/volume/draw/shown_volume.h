@@ -34,7 +34,7 @@ struct ShownVolume : CodeScale {
   std::vector<VolumeLevel> levels;         // the finest first; never empty
   glm::dmat4 to_metres{1};                 // as Volume's, of the finest level
   double voxel = 1;                        // the smallest distance of samples, metres
-  std::vector<uint64_t> code_counts;       // of the finest level, in code_bins even bins
+  std::vector<uint64_t> code_counts;       // the finest level has so many, by code_bins even bins
   std::shared_ptr<ResidentBricks> bricks;  // null: all levels are whole
   int whole_level = 0;                     // the finest of those that are whole
 
@@ -53,9 +53,9 @@ ShownVolume coarser(const ShownVolume& volume, int level);
 // square roots of linear light. Coarser levels get means.
 void set_colors(std::array<std::vector<uint16_t>, 3> planes, ShownVolume& volume);
 
-// Opens a file of bricks (bricks/brick_file.h) at once, to be shown out of this pool; any other
-// file is read as open_volume() does, and is whole in memory. Throws LoadError that names file and
-// place.
+// Opens a file of bricks (volume/bricks/brick_file.h) at once, to be shown out of this pool; any
+// other file is read as open_volume() does, and is whole in memory. Throws LoadError that names
+// file and place.
 ShownVolume open_shown_volume(const std::string& path,
                               std::shared_ptr<BrickPool> pool = shared_brick_pool());
 

@@ -124,7 +124,7 @@ TEST(BrickPool, VolumesShareItAndLeaveNothing) {
     EXPECT_EQ(pool.stats().used, 4);
   }
   EXPECT_EQ(pool.stats().used, 1);
-  // What stays of two volumes is more than one slot.
+  // Two volumes have two bricks that stay, and there is one slot.
   Bricked small(volume_of(glm::ivec3(40), rough), 1);
   EXPECT_THROW(open_shown_volume(small.file(), small.pool), LoadError);
   EXPECT_EQ(level_of(small, {0, 0, 0}), 1);
