@@ -284,6 +284,7 @@ uint32_t do_step(const BakeScene& scene, Bake& bake) {
   parallel_for(int(end - first), [&](int i) {
     const uint32_t tile = first + uint32_t(i);
     if (tile % shards != shard || bake.gather.tiles[tile].first == no_tile) return;
+    if (!bake.sampled.empty() && !bake.sampled[tile]) return;
     if (!pilot) pass_tile(scene, bake, tile);
     else if (bake.direct.asked[tile]++ == 0) bake.pilots[tile] = look_ahead(scene, bake, tile);
   });
@@ -335,7 +336,7 @@ void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop
     bake.cursor = 0;
     if (!bake.pilot()) {
       bake.passes++;
-      sample_held_out(scene, held_out_samples, bake.held_out);
+      if (bake.sampled.empty()) sample_held_out(scene, held_out_samples, bake.held_out);
     } else if (bake.refined++ < refine_rounds) {
       refine(scene, bake);
     } else {

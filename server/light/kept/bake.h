@@ -42,6 +42,7 @@ struct Bake {
   std::vector<TilePlace> places;  // one for each tile
   BakeField direct, gather;
   std::vector<PilotTile> pilots;  // one for each tile, while nodes may become finer
+  std::vector<char> sampled;      // for each tile; empty: all. Not kept on disk
   HeldOut held_out;
   std::vector<int> shards_done;  // shards whose tiles are here: its own, and merged ones
   float tile = 0;                // metres, as given to make_charts()

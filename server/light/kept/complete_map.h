@@ -15,11 +15,11 @@ namespace wellspring::light {
 // reflect.
 inline constexpr float reach_of_new = 1.5f;
 
-// Returns the bake's tiles for which `known` has no light, and those within reach_of_new of such
-// things. `known`: load_map() of another scene (light/kept/map_file.h), whose tiles have the size
-// of the bake's (BakeSettings::tile).
-std::vector<uint32_t> find_new_tiles(const World& world, const Bake& bake,
-                                     const IlluminationMap& known);
+// Returns for each of the bake's tiles whether `known` has no light for it, or it lies within
+// `reach` metres of such a thing. `known`: load_map() of another scene (light/kept/map_file.h),
+// whose tiles have the size of the bake's (BakeSettings::tile).
+std::vector<char> find_new_tiles(const World& world, const Bake& bake, const IlluminationMap& known,
+                                 float reach = reach_of_new);
 
 // Returns a map that has `fresh` light, finish_map() of the bake, in those tiles, and known light
 // in all others. Its error is that of the known light.
