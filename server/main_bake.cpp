@@ -2,6 +2,7 @@
 // Runs `wellspring bake content/ID`: bakes illumination maps of an exhibit, and keeps them for its
 // server. Exit status: 0 done, 1 the input is wrong, 2 the command line is wrong.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <charconv>
@@ -169,24 +170,21 @@ void add_to_map(const Bakery& bakery, const BakeSettings& settings, double secon
   alike.tile = known.map->places->tile;
   const std::vector<vec3> places = eye_places(bakery.exhibit);
   Bake bake = begin_bake(bakery.world, places, alike);
-  const std::vector<uint32_t> tiles = find_new_tiles(bakery.world, bake, *known.map);
-  std::cout << tiles.size() << " of " << bake.charts.tiles << " tiles are new or near new things\n";
+  bake.sampled = find_new_tiles(bakery.world, bake, *known.map, reach_of_neighbours);
+  std::cout << std::ranges::count(bake.sampled, char(1)) << " of " << bake.charts.tiles
+            << " tiles are new or near new things\n";
   const BakeScene scene = make_bake_scene(bakery.world, places);
   Progress progress("bake", say_elsewhere);
   const double began = seconds_now();
-  double now = began;
-  // All tiles are refined and sampled once; then those that count.
-  for (uint32_t ahead = 1; !interrupted && (bake.passes == 0 || now - began < seconds);
+  for (double now = began; !interrupted && (bake.passes == 0 || now - began < seconds);
        now = seconds_now()) {
-    if (bake.passes == 0)
-      go_on(scene, bake,
-            [&] { return interrupted || bake.passes > 0 || seconds_now() >= now + look_every; });
-    else if (!go_ahead(scene, bake, tiles, ahead)) ahead++;
-    progress.tell((now - began) / seconds, fmt::format("{} passes of them", ahead));
+    go_on(scene, bake, [&] { return interrupted || seconds_now() >= now + look_every; });
+    progress.tell((now - began) / seconds, fmt::format("{} passes", bake.passes));
   }
   const auto fresh = finish_map(bakery.world, all_eye_places(bakery.exhibit), bake);
   if (!fresh) throw Failure("interrupted too early: " + bakery.light + " is as it was");
-  const auto map = complete_map(bakery.world, bake, *known.map, *fresh, tiles);
+  const auto map = complete_map(bakery.world, bake, *known.map, *fresh,
+                                find_new_tiles(bakery.world, bake, *known.map));
   if (!save_map(bakery.world, *map, bakery.light, bakery.key))
     throw Failure(bakery.light + ": cannot be written");
   std::cout << bakery.light << ": " << std::filesystem::file_size(bakery.light) << " bytes\n";

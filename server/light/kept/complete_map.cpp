@@ -55,29 +55,27 @@ void add_nodes(const IlluminationNodes& from, const IlluminationTile& tile, bool
 
 }  // namespace
 
-std::vector<uint32_t> find_new_tiles(const World& world, const Bake& bake,
-                                     const IlluminationMap& known) {
+std::vector<char> find_new_tiles(const World& world, const Bake& bake, const IlluminationMap& known,
+                                 float reach) {
   const std::vector<Bounds> boxes = new_things(world, bake, known);
-  std::vector<uint32_t> tiles;
-  for (uint32_t t = 0; t < known.tiles.size(); t++) {
+  std::vector<char> is_new(known.tiles.size(), 0);
+  for (size_t t = 0; t < is_new.size(); t++) {
     if (!is_there(bake.gather.tiles[t])) continue;
     const vec3 middle = middle_of(bake, t);
     const bool near = std::ranges::any_of(
-        boxes, [&](const Bounds& box) { return distance_to(box, middle) < reach_of_new; });
-    if (near || !is_there(known.tiles[t])) tiles.push_back(t);
+        boxes, [&](const Bounds& box) { return distance_to(box, middle) < reach; });
+    is_new[t] = near || !is_there(known.tiles[t]);
   }
-  return tiles;
+  return is_new;
 }
 
 std::shared_ptr<const IlluminationMap> complete_map(const World& world, const Bake& bake,
                                                     const IlluminationMap& known,
                                                     const IlluminationMap& fresh,
-                                                    const std::vector<uint32_t>& tiles) {
+                                                    const std::vector<char>& is_new) {
   IlluminationMap map;
   map.places = bake.charts.places;
   map.tiles.resize(known.tiles.size());
-  std::vector<char> is_new(map.tiles.size(), 0);
-  for (uint32_t tile : tiles) is_new[tile] = 1;
   const bool sloped = bake.charts.sloped;
   auto layers = std::make_shared<std::vector<IlluminationNodes>>(fresh.layers->size());
   uint32_t nodes = 0;

@@ -13,7 +13,7 @@ namespace wellspring::light {
 
 // Metres around new things in which the light of others is found anew: their shadow and what they
 // reflect.
-inline constexpr float reach_of_new = 1.5f;
+inline constexpr float reach_of_new = 1.5f, reach_of_neighbours = 2.2f;
 
 // Returns for each of the bake's tiles whether `known` has no light for it, or it lies within
 // `reach` metres of such a thing. `known`: load_map() of another scene (light/kept/map_file.h),
@@ -21,11 +21,12 @@ inline constexpr float reach_of_new = 1.5f;
 std::vector<char> find_new_tiles(const World& world, const Bake& bake, const IlluminationMap& known,
                                  float reach = reach_of_new);
 
-// Returns a map that has `fresh` light, finish_map() of the bake, in those tiles, and known light
-// in all others. Its error is that of the known light.
+// Returns a map that has `fresh` light, finish_map() of the bake, in the tiles that are new, and
+// known light in all others. Its error is that of the known light. The bake has sampled these and
+// their neighbours at least, since borders are made to agree.
 std::shared_ptr<const IlluminationMap> complete_map(const World& world, const Bake& bake,
                                                     const IlluminationMap& known,
                                                     const IlluminationMap& fresh,
-                                                    const std::vector<uint32_t>& tiles);
+                                                    const std::vector<char>& is_new);
 
 }  // namespace wellspring::light

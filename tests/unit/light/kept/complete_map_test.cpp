@@ -34,7 +34,7 @@ struct Added {
   std::unique_ptr<World> world;
   LoadedMap known;
   Bake bake;
-  std::vector<uint32_t> tiles;
+  std::vector<char> is_new;
   std::shared_ptr<const IlluminationMap> fresh, whole;
 
   Added() {
@@ -48,10 +48,11 @@ struct Added {
     BakeSettings alike = small();
     alike.tile = known.map->places->tile;
     bake = begin_bake(*world, std::vector{vec3(6, 1.6f, 1)}, alike);
+    bake.sampled = find_new_tiles(*world, bake, *known.map, reach_of_neighbours);
     bake_passes(make_bake_scene(*world, {}), bake, 3);
-    tiles = find_new_tiles(*world, bake, *known.map);
+    is_new = find_new_tiles(*world, bake, *known.map);
     fresh = finish_map(bake);
-    whole = complete_map(*world, bake, *known.map, *fresh, tiles);
+    whole = complete_map(*world, bake, *known.map, *fresh, is_new);
   }
   uint32_t instance_of(uint32_t tile) const {
     return bake.charts.surfaces[bake.places[tile].chart].instance;
@@ -71,16 +72,25 @@ TEST(CompleteMap, OnlyNewThingsAndTheirSurroundingsAreFoundAnew) {
   int on_floor = 0, on_screen = 0, floor = 0;
   for (uint32_t t = 0; t < added.bake.charts.tiles; t++)
     floor += added.instance_of(t) == 0 && added.bake.gather.tiles[t].first != no_tile;
-  for (uint32_t tile : added.tiles) (added.instance_of(tile) == 0 ? on_floor : on_screen)++;
+  for (uint32_t t = 0; t < added.is_new.size(); t++)
+    if (added.is_new[t]) (added.instance_of(t) == 0 ? on_floor : on_screen)++;
   EXPECT_GT(on_screen, 0);
   EXPECT_GT(on_floor, 0);
   EXPECT_LT(on_floor, floor / 2) << "the corridor's other end lies far away";
 }
 
+TEST(CompleteMap, TilesFarAwayAreNotSampled) {
+  const Added added;
+  for (uint32_t t = 0; t < added.is_new.size(); t++) {
+    const bool sampled = added.bake.gather.asked[t] > 0;
+    EXPECT_EQ(sampled, added.bake.sampled[t] != 0) << t;
+    EXPECT_TRUE(!added.is_new[t] || sampled) << t;
+  }
+}
+
 TEST(CompleteMap, EachTileHasTheLightOfOneOfBothMaps) {
   const Added added;
-  std::vector<char> is_new(added.whole->tiles.size(), 0);
-  for (uint32_t tile : added.tiles) is_new[tile] = 1;
+  const std::vector<char>& is_new = added.is_new;
   int kept = 0, found = 0;
   for (uint32_t t = 0; t < is_new.size(); t++) {
     if (added.whole->tiles[t].first == no_tile) continue;
