@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "picture/drawn_planes.h"
 #include "picture/keyframe.h"
 
 namespace wellspring::picture {

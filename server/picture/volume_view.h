@@ -6,12 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "cache/project.h"
 #include "frame/frame.h"
-#include "picture/drawn_planes.h"
 #include "world/placed_volume.h"
 #include "world/view.h"
 
 namespace wellspring::picture {
+
+struct Shown;  // picture/drawn_planes.h
 
 // Holds what volumes add to eight pixels.
 struct LaidVolumes {
