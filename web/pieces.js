@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Offers on the card of a piece all that can be done with it: of a very large picture the year of a
-// map, another layer, two of them compared, a glass over it; of a scanned volume see volume.js.
+// Offers on the card of a piece all that can be done with it: of a very large picture the year of
+// a map, another layer, two of them compared, a glass over it; of a scanned volume see volume.js.
 import { by_id, element } from './element.js';
 import { make_choice, make_slider } from './piece_choice.js';
 import { as_at_first, make_volume } from './volume.js';
@@ -11,7 +11,8 @@ const blends = ['curtain', 'fade', 'difference'];
 // Milliseconds after a choice in which the server may still tell of an earlier one.
 const settles = 1000;
 
-// orders: {piece({name, layer, over, by, share, turn, low, high, plane})}; glass, ruler: as of make_glass(), make_ruler().
+// orders: {piece({name, layer, over, by, share, turn, low, high, plane})}; glass, ruler: as of
+// make_glass(), make_ruler().
 export function make_pieces(orders, glass, ruler) {
   const room = by_id('card-piece');
   let pieces = [], lang = 'en', shown = null, choice = null, name = '', seen = '';

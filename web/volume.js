@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Offers on the card of a scanned volume all that can be done with it: another preset, one unwrapped
-// to another, a turntable, cuts from three sides, a glass that shows another preset or cuts into it.
+// Offers on the card of a scanned volume all that can be done with it: another preset, one that is
+// unwrapped to another, a turntable, cuts from three sides, a glass that shows another preset or
+// cuts into it.
 import { element } from './element.js';
 import { make_choice, make_slider } from './piece_choice.js';
 import { say_length } from './ruler.js';
@@ -35,8 +36,8 @@ function make_valued(label, most, step, value, say, on_value) {
 }
 
 // piece: as the welcome says; name: its object's. choice(): what is seen of it. orders:
-// {change(fields), say(layer)}. kept: what the card remembers between two calls: {unwrap_to: id of a
-// preset, cuts_open}. Returns elements.
+// {change(fields), say(layer)}. kept: {unwrap_to: id of a preset, cuts_open}, which the card
+// remembers between two calls. Returns elements.
 export function make_volume({ piece, name, lang, choice, orders, glass, kept }) {
   const layer_of = (id) => piece.layers.find((layer) => layer.id === id) ?? piece.layers[0];
   const others = () => piece.layers.filter(({ id }) => id !== choice().layer)

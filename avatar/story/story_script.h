@@ -30,13 +30,12 @@ struct Speech;
 
 enum class StoryMarkKind : uint8_t { emotion, gesture, look, point, hold, view, show, beat, mark };
 
-// Says how a piece of the exhibit is seen from a mark on. What is left out stays as it is.
+// Says how a piece of the exhibit is seen from a mark on. All that is left out stays as it is.
 struct PieceMark {
-  std::string layer;                   // id of what is seen of it; empty: left out
-  std::string over;                    // id of what is mixed in; empty: nothing
-  float share = 0.5f;                  // 0..1, of `over`
-  std::optional<float> turn{}, cut{};  // of a volume: degrees to the left; 0..1 of its depth, cut
-                                       // away from the front
+  std::string layer, over;      // ids of layers; `over` is mixed in, empty: none is
+  float share = 0.5f;           // 0..1, how much is seen of `over`
+  std::optional<float> turn{};  // degrees to the left, by which a volume is turned
+  std::optional<float> cut{};   // 0..1, share of its depth that is cut away from the front
 };
 
 struct StoryMark {
@@ -46,7 +45,7 @@ struct StoryMark {
   std::string name;   // emotion, gesture, object, prop, viewpoint, piece or mark; empty: none
   float weight = 1;   // 0..1
   MarkupPlace place;  // in the file
-  PieceMark piece{};  // of show
+  PieceMark piece{};  // says more where kind is show
 };
 
 // This is a sentence: one subtitle, spoken in one breath.
