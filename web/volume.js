@@ -8,12 +8,13 @@ import { say_length } from './ruler.js';
 import { word } from './words.js';
 
 const key_turn = 10;          // degrees a press of an arrow key, 1 with Shift
+const most_tilt = 75;         // degrees
 const most_cut = 0.95;        // share of it that a slider cuts away: something is left to be seen
 const first_depth = 0.35;     // share of it that a glass cuts away at first
 const keys = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 
 export const as_at_first = { over: '', by: 'none', share: 0.5, turn: 0, low: [0, 0, 0],
-  high: [1, 1, 1], plane: [0, 0, 0, 0] };
+  high: [1, 1, 1], plane: [0, 0, 0, 0], tilt: 0 };
 
 // Whether the window has room for the cuts at first.
 const is_roomy = () => innerHeight > 760 && innerWidth > 640;
@@ -132,15 +133,38 @@ export function make_volume({ piece, name, lang, choice, orders, glass, kept }) 
     return element('div.glass-choice', {}, list, row);
   }
 
-  let unwrap = make_unwrap(), glass_choice = make_glass_choice();
+  // Of a nebula only: how its axis leans to the eye; at first as it was found.
+  function make_tilt() {
+    const { tilt } = piece.volume;
+    if (tilt === undefined) return null;
+    return make_valued(word(lang, 'tilt'), most_tilt, 1,
+        Math.round(choice().tilt || Math.abs(tilt)), (degrees) => `${degrees}°`,
+        (degrees) => orders.change({ tilt: Math.max(1, degrees) })).row;
+  }
+
+  // Says what the colours of a comparison with a model mean.
+  function make_scale() {
+    const { scale } = layer_of(choice().layer);
+    if (!scale) return element('figure.scale', { hidden: true });
+    const number = new Intl.NumberFormat(lang, { signDisplay: 'exceptZero' });
+    return element('figure.scale', {},
+        element('i', { style: `background: linear-gradient(90deg, ${scale.colors.join(', ')})` }),
+        element('div', {}, ...scale.ticks.map(({ value, at }) => element('span',
+            { textContent: number.format(value), style: `left: ${100 * at}%` }))),
+        element('figcaption', { textContent: word(lang, 'scale').replace('{unit}', scale.unit)
+            .replace('{mean}', say_length(scale.mean / 1000, lang)) }));
+  }
+
+  let unwrap = make_unwrap(), glass_choice = make_glass_choice(), scale = make_scale();
   const layers = make_choice(word(lang, 'preset'), piece.layers.map(({ id, label }) => [id, label]),
       choice().layer, (layer) => {
         orders.say(layer_of(layer));
         orders.change({ layer, over: '', by: 'none', share: 0.5 });
         unwrap.replaceWith(unwrap = make_unwrap());
         glass_choice.replaceWith(glass_choice = make_glass_choice());
+        scale.replaceWith(scale = make_scale());
       });
   const several = piece.layers.length > 1;
-  return [several ? layers : null, make_turntable(), several ? unwrap : null, make_cuts(),
-    glass_choice].filter(Boolean);
+  return [several ? layers : null, scale, make_turntable(), make_tilt(), several ? unwrap : null,
+    make_cuts(), glass_choice].filter(Boolean);
 }

@@ -99,4 +99,7 @@ export default {
   preset: 'Mostrar', turntable: 'Girar', unwrap: 'Desenvolver hasta', cut_away: 'Cortar',
   from_left: 'desde la izquierda', from_above: 'desde arriba', from_front: 'desde delante',
   glass_cuts: 'corta hacia dentro', glass_depth: 'Profundidad', as_at_first: 'Como al principio',
+  tilt: 'Inclinar',
+  scale: 'En {unit}: azul, demasiado grueso; amarillo, demasiado fino.'
+    + ' En promedio {mean} de diferencia.',
 };

@@ -99,4 +99,6 @@ export default {
   preset: 'Montrer', turntable: 'Tourner', unwrap: 'Déballer jusqu’à', cut_away: 'Couper',
   from_left: 'par la gauche', from_above: 'par le haut', from_front: 'par l’avant',
   glass_cuts: 'coupe dedans', glass_depth: 'Profondeur', as_at_first: 'Comme au début',
+  tilt: 'Incliner',
+  scale: 'En {unit} : bleu, trop épais ; jaune, trop mince. En moyenne {mean} d’écart.',
 };
