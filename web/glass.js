@@ -138,7 +138,7 @@ export function make_glass(canvas, send, label) {
   }
 
   return {
-    // fields: zoom, name, layer, difference, as the message has them. text: what it shows.
+    // fields: zoom, name, layer, difference, depth, as the message has them. text: what it shows.
     hold(fields, text) {
       const { at, radius } = held ?? { at: [0.5, 0.5], radius: 0.18 };
       if (!held) {
@@ -154,8 +154,8 @@ export function make_glass(canvas, send, label) {
     // As still.jpg asks for it.
     looks() {
       if (!held) return {};
-      const { at, radius, zoom: large, name, layer, difference } = held;
-      return { lens: [...at, radius, large].join(','),
+      const { at, radius, zoom: large, name, layer, difference, depth } = held;
+      return { lens: [...at, radius, large].join(','), ...(depth && { lens_depth: depth }),
         ...(name && { lens_layer: `${name}:${layer}${difference ? ':difference' : ''}` }) };
     },
     // Returns whether the message is what the glass shows.

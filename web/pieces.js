@@ -1,30 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Offers on the card of a very large picture all that can be done with it: the year of a map,
-// another layer, two of them compared, a glass over it.
+// Offers on the card of a piece all that can be done with it: of a very large picture the year of
+// a map, another layer, two of them compared, a glass over it; of a scanned volume see volume.js.
 import { by_id, element } from './element.js';
+import { make_choice, make_slider } from './piece_choice.js';
+import { as_at_first, make_volume } from './volume.js';
 import { word } from './words.js';
 
 const blends = ['curtain', 'fade', 'difference'];
 
-// Makes a list of choices with a label before it.
-function make_choice(label, options, chosen, on_choice) {
-  const select = element('select', { onchange: () => on_choice(select.value) },
-      ...options.map(([value, textContent]) =>
-        element('option', { value, textContent, selected: value === chosen })));
-  return element('label', {}, `${label} `, select);
-}
+// Milliseconds after a choice in which the server may still tell of an earlier one.
+const settles = 1000;
 
-function make_slider(label, most, step, value, on_value) {
-  const slider = element('input', { type: 'range', min: '0', max: String(most), step: String(step),
-    ariaLabel: label, oninput: () => on_value(Number(slider.value)) });
-  slider.value = String(value);
-  return slider;
-}
-
-// orders: {piece({name, layer, over, by, share})}; glass, ruler: as of make_glass(), make_ruler().
+// orders: {piece({name, layer, over, by, share, turn, low, high, plane})}; glass, ruler: as of
+// make_glass(), make_ruler().
 export function make_pieces(orders, glass, ruler) {
   const room = by_id('card-piece');
   let pieces = [], lang = 'en', shown = null, choice = null, name = '', seen = '';
+  let changed_at = -settles, held = false, kept = {};
 
   const first = () => shown.layers[0];
   const dated = () => shown.layers.every((layer) => layer.year !== undefined);
@@ -35,6 +27,7 @@ export function make_pieces(orders, glass, ruler) {
 
   function change(fields) {
     choice = { ...choice, ...fields };
+    changed_at = performance.now();
     orders.piece({ name: shown.id, ...choice });
   }
 
@@ -106,10 +99,29 @@ export function make_pieces(orders, glass, ruler) {
     return button;
   }
 
+  function make_reset_button() {
+    return element('button', { type: 'button', textContent: word(lang, 'as_at_first'), onclick() {
+      glass.put_down();
+      say(null);
+      kept = { cuts_open: kept.cuts_open };
+      change({ layer: first().id, ...as_at_first });
+      fill();
+      by_id('card-piece').querySelector('.row button:last-child').focus();
+    } });
+  }
+
   function fill() {
     room.replaceChildren();
     room.hidden = !shown;
+    room.classList.toggle('volume', Boolean(shown?.volume));
+    held = Boolean(glass.held());
     if (!shown) return;
+    if (shown.volume) {
+      room.append(...make_volume({ piece: shown, name, lang, choice: () => choice,
+        orders: { change, say }, glass, kept }),
+      element('div.row', {}, make_ruler_button(), make_reset_button()));
+      return;
+    }
     if (dated()) room.append(make_dial());
     else room.append(make_choice(word(lang, 'layer'), titles(null), choice.layer, (layer) => {
       say(layer_of(layer));
@@ -129,16 +141,21 @@ export function make_pieces(orders, glass, ruler) {
       const view = JSON.stringify([message.position, message.yaw, message.pitch, message.fov]);
       if (shown && view !== seen) ruler.scale(true);
       seen = view;
-      if (!shown || room.contains(document.activeElement)) return;
+      if (!shown || room.contains(document.activeElement) || room.matches(':active')) return;
+      if (performance.now() - changed_at < settles) return;
       const told = message.pieces?.[shown.id];
-      if (!told || JSON.stringify(told) === JSON.stringify(choice)) return;
-      choice = told;
+      const is_new = told && JSON.stringify(told) !== JSON.stringify(choice);
+      if (!is_new && held === Boolean(glass.held())) return;
+      if (is_new) choice = told;
       fill();
     },
     // As still.jpg asks for them.
     looks(state) {
-      const chosen = Object.entries(state?.pieces ?? {}).map(([id, { layer, over, by, share }]) =>
-        [id, layer, ...(by === 'none' ? [] : [over, by, share])].join(':'));
+      const chosen = Object.entries(state?.pieces ?? {}).map(([id, one]) => {
+        const mixed = one.by === 'none' ? ['', '', ''] : [one.over, one.by, one.share];
+        const turned = one.low ? [one.turn, one.low.join(';'), one.high.join(';')] : [];
+        return [id, one.layer, ...mixed, ...turned].join(':').replace(/:+$/, '');
+      });
       return chosen.length ? { pieces: chosen.join(',') } : {};
     },
     // The card of an object was opened; null: closed.
@@ -147,7 +164,9 @@ export function make_pieces(orders, glass, ruler) {
       name = object?.title ?? '';
       say(null);
       choice = shown && (state?.pieces?.[shown.id]
-        ?? { layer: first().id, over: '', by: 'none', share: 0.5 });
+        ?? { layer: first().id, over: '', by: 'none', share: 0.5,
+          ...(shown.volume && as_at_first) });
+      kept = {};
       glass.put_down();
       ruler.use(false);
       seen = '';

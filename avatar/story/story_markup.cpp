@@ -429,6 +429,13 @@ std::optional<float> read_weight(const std::string& text) {
   return weight >= 0 && weight <= 1 ? std::optional(weight) : std::nullopt;
 }
 
+std::optional<float> read_turn(const std::string& text) {
+  std::string_view unit;
+  const std::optional<float> degrees = read_number(text, unit);
+  const bool fits = degrees && std::abs(*degrees) <= 720 && (unit.empty() || unit == "deg");
+  return fits ? degrees : std::nullopt;
+}
+
 std::optional<int> read_emphasis(const std::string& text) {
   auto word =
       find_word(text, {{"none", 0.0f}, {"reduced", -1.0f}, {"moderate", 1.0f}, {"strong", 2.0f}});

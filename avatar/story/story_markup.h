@@ -53,6 +53,7 @@ std::optional<float> read_rate(const std::string& text);
 std::optional<float> read_pitch(const std::string& text);
 std::optional<float> read_volume(const std::string& text);  // "+6dB", "loud", "80%"
 std::optional<float> read_weight(const std::string& text);  // 0 .. 1, or "60%"
+std::optional<float> read_turn(const std::string& text);    // degrees, -720 .. 720: "90", "-45deg"
 std::optional<int> read_emphasis(const std::string& text);  // -1 .. 2
 
 }  // namespace wellspring::avatar

@@ -269,6 +269,22 @@ struct Builder {
             piece.place};
   }
 
+  PieceMark piece_mark_of(const MarkupPiece& piece) const {
+    auto id = [&](const char* name) {
+      const std::string* value = find_attribute(piece, name);
+      return value ? *value : "";
+    };
+    auto number = [&](const char* name, std::optional<float> (*read)(const std::string&)) {
+      std::optional<float> given;
+      if (find_attribute(piece, name)) given = value<float>(piece, name, read, 0);
+      return given;
+    };
+    PieceMark mark{.layer = id("layer"), .over = id("over")};
+    mark.share = value<float>(piece, "share", read_weight, 0.5f);
+    mark.turn = number("turn", read_turn), mark.cut = number("cut", read_weight);
+    return mark;
+  }
+
   void set_emotion(StoryMark mark) {
     mark.at = paragraph.here();
     emotion = mark;
@@ -295,6 +311,9 @@ struct Builder {
       paragraph.marks.push_back(mark_of(piece, StoryMarkKind::hold, prop == "nothing" ? "" : prop));
     } else if (name == "view") {
       paragraph.marks.push_back(mark_of(piece, StoryMarkKind::view, need(piece, "name")));
+    } else if (name == "show") {
+      paragraph.marks.push_back(mark_of(piece, StoryMarkKind::show, need(piece, "piece")));
+      paragraph.marks.back().piece = piece_mark_of(piece);
     } else if (name == "mark") {
       paragraph.marks.push_back(mark_of(piece, StoryMarkKind::mark, need(piece, "name")));
     } else {

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,15 +28,24 @@ std::vector<TextSpan> find_sentences(std::string_view text);
 
 struct Speech;
 
-enum class StoryMarkKind : uint8_t { emotion, gesture, look, point, hold, view, beat, mark };
+enum class StoryMarkKind : uint8_t { emotion, gesture, look, point, hold, view, show, beat, mark };
+
+// Says how a piece of the exhibit is seen from a mark on. All that is left out stays as it is.
+struct PieceMark {
+  std::string layer, over;      // ids of layers; `over` is mixed in, empty: none is
+  float share = 0.5f;           // 0..1, how much is seen of `over`
+  std::optional<float> turn{};  // degrees to the left, by which a volume is turned
+  std::optional<float> cut{};   // 0..1, share of its depth that is cut away from the front
+};
 
 struct StoryMark {
   StoryMarkKind kind = StoryMarkKind::mark;
   // byte of StoryLine::text before which it stands; the text's size: after the last word
   uint32_t at = 0;
-  std::string name;   // emotion, gesture, object, prop, viewpoint or mark; empty: back to none
+  std::string name;   // emotion, gesture, object, prop, viewpoint, piece or mark; empty: none
   float weight = 1;   // 0..1
   MarkupPlace place;  // in the file
+  PieceMark piece{};  // says more where kind is show
 };
 
 // This is a sentence: one subtitle, spoken in one breath.

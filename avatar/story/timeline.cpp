@@ -21,7 +21,9 @@ double word_time(const StoryLine& line, const Speech* speech, double seconds, ui
   return speech->words.back().end;
 }
 
-ActionEvent event_of(const StoryMark& mark) { return {mark.kind, mark.name, mark.weight, 0}; }
+ActionEvent event_of(const StoryMark& mark) {
+  return {mark.kind, mark.name, mark.weight, 0, mark.piece};
+}
 
 // Returns how long before its word a mark begins, so that its action is there with the word.
 double lead_of(const StoryMark& mark) {

@@ -40,6 +40,7 @@ struct ActionEvent {
   std::string name;
   float weight = 1;
   float lead = 0;  // seconds from the event to the word it belongs to
+  PieceMark piece{};
 };
 
 struct TimelineAction {

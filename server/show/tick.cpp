@@ -122,16 +122,19 @@ void show_subtitles(Show& show, const Teller& teller, const Utterance* utterance
       show_subtitle(show, visitor, utterance, true);
 }
 
-// Moves the camera of whoever asked for the story to where its marks want it.
-void follow_story(ShowVisits& visits, const ExhibitStage& stage, const Teller& teller,
+// Moves the camera of whoever asked for the story to where its marks want it, and shows pieces as
+// they say.
+void follow_story(ShowVisits& visits, const ExhibitStage& stage, double time, const Teller& teller,
                   const VoiceEvents& events) {
   for (const ActionEvent& act : events.acts) {
     int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(stage.exhibit, act.name) : -1;
-    if (viewpoint < 0) continue;
-    for (Visitor& visitor : visits.visitors)
-      if (visitor.link->id == teller.voice.asked_by && visitor.place.tour.tour < 0 &&
-          visitor.place.move == vec3(0))
+    for (Visitor& visitor : visits.visitors) {
+      if (visitor.link->id != teller.voice.asked_by) continue;
+      if (act.kind == StoryMarkKind::show)
+        see_told(stage.exhibit, time, act.name, act.piece, visitor);
+      if (viewpoint >= 0 && visitor.place.tour.tour < 0 && visitor.place.move == vec3(0))
         glide_to(visitor.place.tour, viewpoint, visitor.place.view);
+    }
   }
 }
 
@@ -151,6 +154,8 @@ void narrate(Show& show, float dt) {
       int viewpoint =
           act.kind == StoryMarkKind::view ? find_viewpoint(show.stage.exhibit, act.name) : -1;
       if (viewpoint >= 0) glide_to(visitor.place.tour, viewpoint, visitor.place.view);
+      if (act.kind == StoryMarkKind::show)
+        see_told(show.stage.exhibit, show.time, act.name, act.piece, visitor);
     }
   }
 }
@@ -198,7 +203,7 @@ void behave(Show& show, Teller& teller, float dt) {
   if (said.fell_silent && !story.empty()) count(show, "stories_heard", story);
   if (said.begun) show_subtitles(show, teller, said.begun);
   else if (said.fell_silent) show_subtitles(show, teller, nullptr);
-  follow_story(show.visits, show.stage, teller, said);
+  follow_story(show.visits, show.stage, show.time, teller, said);
 
   StorytellerInput input;
   input.time = show.time;

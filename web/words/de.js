@@ -95,4 +95,8 @@ export default {
     + '] ändern seine Größe.',
   read_seen: 'Hier zu sehen',
   ruler: 'Messen', ruler_hint: 'Ziehen Sie eine Linie über das Bild.',
+  preset: 'Zeigen', turntable: 'Drehen', unwrap: 'Auswickeln bis', cut_away: 'Wegschneiden',
+  from_left: 'von links', from_above: 'von oben', from_front: 'von vorn',
+  glass_cuts: 'schneidet hinein', glass_depth: 'Wie tief', as_at_first: 'Wie zu Anfang',
+  tilt: 'Neigen', scale: 'In {unit}: Blau ist zu dick, Gelb zu dünn. Im Mittel {mean} daneben.',
 };

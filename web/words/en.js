@@ -94,4 +94,8 @@ export default {
     + 'its size.',
   read_seen: 'To be seen here',
   ruler: 'Measure', ruler_hint: 'Draw a line over the picture.',
+  preset: 'Show', turntable: 'Turn', unwrap: 'Unwrap to', cut_away: 'Cut away',
+  from_left: 'from the left', from_above: 'from above', from_front: 'from the front',
+  glass_cuts: 'cuts into it', glass_depth: 'How deep', as_at_first: 'As at first',
+  tilt: 'Tilt', scale: 'In {unit}: blue is too thick, yellow too thin. {mean} off on average.',
 };

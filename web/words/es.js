@@ -96,4 +96,10 @@ export default {
     + 'cambian su tamaño.',
   read_seen: 'Para ver aquí',
   ruler: 'Medir', ruler_hint: 'Trace una línea sobre la imagen.',
+  preset: 'Mostrar', turntable: 'Girar', unwrap: 'Desenvolver hasta', cut_away: 'Cortar',
+  from_left: 'desde la izquierda', from_above: 'desde arriba', from_front: 'desde delante',
+  glass_cuts: 'corta hacia dentro', glass_depth: 'Profundidad', as_at_first: 'Como al principio',
+  tilt: 'Inclinar',
+  scale: 'En {unit}: azul, demasiado grueso; amarillo, demasiado fino.'
+    + ' En promedio {mean} de diferencia.',
 };

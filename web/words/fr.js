@@ -96,4 +96,9 @@ export default {
     + ': sa taille.',
   read_seen: 'À voir ici',
   ruler: 'Mesurer', ruler_hint: 'Tracez une ligne sur l’image.',
+  preset: 'Montrer', turntable: 'Tourner', unwrap: 'Déballer jusqu’à', cut_away: 'Couper',
+  from_left: 'par la gauche', from_above: 'par le haut', from_front: 'par l’avant',
+  glass_cuts: 'coupe dedans', glass_depth: 'Profondeur', as_at_first: 'Comme au début',
+  tilt: 'Incliner',
+  scale: 'En {unit} : bleu, trop épais ; jaune, trop mince. En moyenne {mean} d’écart.',
 };

@@ -91,4 +91,9 @@ export default {
     + 'menia veľkosť.',
   read_seen: 'Čo tu vidno',
   ruler: 'Merať', ruler_hint: 'Ťahaním nakreslite čiaru cez obraz.',
+  preset: 'Ukázať', turntable: 'Otáčať', unwrap: 'Rozbaliť po', cut_away: 'Odrezať',
+  from_left: 'zľava', from_above: 'zhora', from_front: 'spredu', glass_cuts: 'reže dovnútra',
+  glass_depth: 'Ako hlboko', as_at_first: 'Ako na začiatku',
+  tilt: 'Nakloniť',
+  scale: 'V {unit}: modrá je príliš hrubá, žltá príliš tenká. V priemere {mean} vedľa.',
 };

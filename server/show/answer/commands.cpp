@@ -208,6 +208,7 @@ Answer handle_one(Show& show, Visitor& visitor, const PieceOrder& order) {
   if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
   const std::string wrong = choose_piece(show.stage.exhibit, order, visitor.pieces.wish);
   if (!wrong.empty()) return WireError{"unknown_piece", wrong};
+  visitor.pieces.told_at = -1e9;  // who chooses sees it at once
   visitor.state_sent_at = -1e9;
   return {};
 }

@@ -2,6 +2,7 @@
 #include "show/answer/orders.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <type_traits>
@@ -12,6 +13,7 @@
 #include "show/answer/commands.h"
 #include "show/answer/events.h"
 #include "show/answer/groups.h"
+#include "show/state/visitor_world.h"
 #include "wire/json.h"
 
 namespace wellspring::show {
@@ -34,6 +36,9 @@ constexpr OrderBound bounds[] = {
     {Ask::type, 2, 4},               // an answer is looked for and spoken
     {Settings::type, 5, 8},          // another size: nothing is known of it
 };
+
+constexpr double within_reach = 2.5;  // metres at which a swipe turns a volume
+constexpr float swiped_turn = 30;     // degrees
 
 // ---- overrule(newer, older): takes from the older order what the newer one says anew. True:
 // nothing is left of it.
@@ -385,6 +390,34 @@ StorytellerOrder order_of(const ExhibitStage& stage, const ShowCast& cast, const
   return order;
 }
 
+// Returns the volume that is nearest before the visitor's eyes, within reach; -1: none is.
+int volume_before(const Exhibit& exhibit, const Viewpoint& eye) {
+  int nearest = -1;
+  double least = within_reach;
+  for (size_t i = 0; i < exhibit.pieces.size(); i++) {
+    dvec3 way = exhibit.pieces[i].position - eye.position;
+    way.y = 0;
+    const dvec3 ahead(-std::sin(eye.yaw), 0, -std::cos(eye.yaw));
+    if (!exhibit.pieces[i].volume || glm::length(way) >= least || dot(way, ahead) <= 0) continue;
+    nearest = int(i), least = glm::length(way);
+  }
+  return nearest;
+}
+
+// Turns the volume that a guest who walks stands before. Returns false: there is none.
+bool turn_volume(const Show& show, const Kiosk& kiosk, const std::string& gesture, Visitor& page) {
+  const bool left = gesture == "swipe_left";
+  if (kiosk.showing != Showing::walk || !(left || gesture == "swipe_right")) return false;
+  const Exhibit& exhibit = show.stage.exhibit;
+  const int piece = volume_before(exhibit, page.place.view);
+  if (piece < 0) return false;
+  PieceMark mark;
+  const float turn = glm::degrees(choice_of(page.pieces.wish, size_t(piece)).turn);
+  mark.turn = std::remainder(turn + (left ? -swiped_turn : swiped_turn), 360.0f);
+  see_told(exhibit, show.time, exhibit.pieces[size_t(piece)].id, mark, page);
+  return true;
+}
+
 }  // namespace
 
 void follow_gestures(Show& show, Kiosk& kiosk) {
@@ -399,6 +432,10 @@ void follow_gestures(Show& show, Kiosk& kiosk) {
     if (turns_pages(kiosk.showing)) {
       kiosk.gesture = one.second;
       kiosk.gesture_number++;
+      show.totals.gestures++;
+      continue;
+    }
+    if (turn_volume(show, kiosk, one.second, *page)) {
       show.totals.gestures++;
       continue;
     }

@@ -11,6 +11,7 @@
 #include "base/load_error.h"
 #include "base/unicode.h"
 #include "show/exhibit/exhibit_files.h"
+#include "show/exhibit/piece_choices.h"
 
 namespace wellspring::show {
 
@@ -109,6 +110,12 @@ struct Checker {
          "there is no emotion '" + mark.name + "'" + did_you_mean(mark.name, names));
   }
 
+  void check_show(const StoryLine& line, const StoryMark& mark) {
+    PieceChoices choices;
+    const std::string wrong = choose_told(exhibit, mark.name, mark.piece, choices);
+    if (!wrong.empty()) note(line, mark.place, wrong);
+  }
+
   void check_mark(const StoryLine& line, const StoryMark& mark) {
     if (mark.name.empty()) return;
     bool object = mark.kind == StoryMarkKind::look || mark.kind == StoryMarkKind::point;
@@ -118,6 +125,7 @@ struct Checker {
       note(line, mark.place, unknown_prop(exhibit, mark.name));
     if (mark.kind == StoryMarkKind::view && find_viewpoint(exhibit, mark.name) < 0)
       note(line, mark.place, unknown_viewpoint(exhibit, mark.name));
+    if (mark.kind == StoryMarkKind::show) check_show(line, mark);
     if (mark.kind == StoryMarkKind::emotion) check_emotion(line, mark);
     if (mark.kind == StoryMarkKind::gesture) check_gesture(line, mark);
   }

@@ -20,9 +20,9 @@ LocalText read_sounds(const Exhibit& exhibit, FieldReader& fields, const char* n
 
 VoiceManner read_manner(FieldReader& fields, const char* name, const VoiceManner& otherwise);
 
-// Checks, after everything is read, whether emotions, gestures, objects, props and viewpoints of
-// all marks are there, and whether languages have as many sentences as each other. A fault is not
-// fatal.
+// Checks, after everything is read, whether emotions, gestures, objects, props, viewpoints and
+// pieces of all marks are there, and whether languages have as many sentences as each other. A
+// fault is not fatal.
 void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems);
 
 // Questions that a curator has answered, out of exhibit.json: see content/README.md.

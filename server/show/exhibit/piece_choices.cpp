@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/unicode.h"
 #include "wire/messages.h"
 
 namespace wellspring::show {
@@ -20,6 +21,34 @@ int find_layer(const ExhibitPiece& piece, const std::string& id) {
   if (id.empty()) return 0;
   const auto found = std::ranges::find(piece.layers, id, &PieceLayer::id);
   return found == piece.layers.end() ? -1 : int(found - piece.layers.begin());
+}
+
+template <class Named>
+std::vector<std::string> ids_of(const std::vector<Named>& all) {
+  std::vector<std::string> ids;
+  for (const Named& one : all) ids.push_back(one.id);
+  return ids;
+}
+
+// Returns how much of its second layer a choice mixes in.
+float mixed_in(const PieceChoice& choice) { return choice.by == Blend::none ? 0 : choice.share; }
+bool is_mixture(const PieceChoice& choice) {
+  return choice.by == Blend::none || choice.by == Blend::fade;
+}
+
+// Lets layers fade into one another, where that is what the two choices differ by.
+void glide_layers(const PieceChoice& from, const PieceChoice& to, float share, PieceChoice& now) {
+  if (!is_mixture(from) || !is_mixture(to)) return;
+  const float before = mixed_in(from), after = mixed_in(to);
+  auto mix_in = [&](int layer, int over, float most) {
+    now.layer = layer, now.over = over, now.by = Blend::fade;
+    now.share = std::lerp(before, most, share);
+  };
+  const bool same_over = before == 0 || after == 0 || from.over == to.over;
+  if (from.layer == to.layer && before + after > 0 && same_over)
+    mix_in(to.layer, after > 0 ? to.over : from.over, after);
+  else if (from.layer != to.layer && after == 0 && (before == 0 || from.over == to.layer))
+    mix_in(from.layer, to.layer, 1);
 }
 
 std::string no_layer(const std::string& piece, const std::string& id) {
@@ -67,6 +96,41 @@ std::string choose_piece(const Exhibit& exhibit, const PieceOrder& order, PieceC
   choices.resize(exhibit.pieces.size());
   choices[size_t(number)] = choice;
   return {};
+}
+
+std::string choose_told(const Exhibit& exhibit, const std::string& id, const PieceMark& mark,
+                        PieceChoices& choices) {
+  const int number = find_piece(exhibit, id);
+  if (number < 0)
+    return "there is no piece '" + id + "'" + did_you_mean(id, ids_of(exhibit.pieces));
+  const ExhibitPiece& piece = exhibit.pieces[size_t(number)];
+  for (const std::string& layer : {mark.layer, mark.over})
+    if (find_layer(piece, layer) < 0)
+      return no_layer(id, layer) + did_you_mean(layer, ids_of(piece.layers));
+  if ((mark.turn || mark.cut) && !piece.volume)
+    return "the piece '" + id + "' is no volume: only these are turned and cut";
+  const PieceChoice before = choice_of(choices, size_t(number));
+  PieceOrder order{.name = id, .layer = mark.layer, .over = mark.over, .share = mark.share};
+  if (order.layer.empty() && before.layer > 0) order.layer = piece.layers[size_t(before.layer)].id;
+  if (!order.over.empty()) order.by = PieceBlend::fade;
+  order.turn = mark.turn.value_or(glm::degrees(before.turn));
+  order.low = before.low, order.high = before.high, order.plane = before.plane;
+  if (mark.cut) order.high.z = 1 - *mark.cut;
+  return choose_piece(exhibit, order, choices);
+}
+
+PieceChoices glide(const PieceChoices& from, const PieceChoices& to, float share) {
+  PieceChoices all(std::max(from.size(), to.size()));
+  for (size_t i = 0; i < all.size(); i++) {
+    const PieceChoice before = choice_of(from, i), after = choice_of(to, i);
+    PieceChoice& now = all[i] = after;
+    if (before == after) continue;
+    now.turn = before.turn + share * std::remainder(after.turn - before.turn, 2 * pi);
+    now.low = glm::mix(before.low, after.low, share);
+    now.high = glm::mix(before.high, after.high, share);
+    glide_layers(before, after, share, now);
+  }
+  return all;
 }
 
 std::string look_through(const Exhibit& exhibit, const LensOrder& order, PieceChoices& choices) {

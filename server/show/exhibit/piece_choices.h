@@ -41,6 +41,8 @@ struct ShownPieces {
 
 struct VisitorPieces {
   PieceChoices wish;
+  PieceChoices before;    // a story's mark lets what is seen glide from these to the wish
+  double told_at = -1e9;  // seconds of the show; when it came
   ShownPieces shown;      // in the pictures that are drawn from now on
   uint64_t arrivals = 0;  // LitVolumes::arrivals() of these
 };
@@ -53,6 +55,11 @@ const std::shared_ptr<const LargePicture>& picture_in(const PieceLayer& layer,
 
 // Changes a choice as ordered. Returns what is wrong with the order; empty: nothing.
 std::string choose_piece(const Exhibit& exhibit, const PieceOrder& order, PieceChoices& choices);
+// Changes a choice as a story's mark says. Returns what is wrong with the mark; empty: nothing.
+std::string choose_told(const Exhibit& exhibit, const std::string& id, const PieceMark& mark,
+                        PieceChoices& choices);
+// Returns what is seen on the way from one choice to another, of which `share` (0 to 1) is done.
+PieceChoices glide(const PieceChoices& from, const PieceChoices& to, float share);
 // Changes a choice to what a glass shows. Returns what is wrong with the order; empty: nothing.
 std::string look_through(const Exhibit& exhibit, const LensOrder& order, PieceChoices& choices);
 // Returns whether a volume is seen otherwise by one choice than by the other.

@@ -331,6 +331,22 @@ constexpr int max_still_side = 3840;
 constexpr double min_still_seconds = 0.1, max_still_seconds = 3600;
 constexpr double min_still_fov = 0.02, max_still_fov = 3;  // radians, vertical
 
+// Returns `count` numbers with a character between, each in [low, high]; otherwise none.
+std::vector<double> read_numbers(const std::string& text, char between, size_t count, double low,
+                                 double high) {
+  std::vector<double> values;
+  const char *at = text.data(), *end = at + text.size();
+  for (;;) {
+    double value = 0;
+    auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !(value >= low && value <= high)) return {};
+    values.push_back(value);
+    if (next == end && values.size() == count) return values;
+    if (next == end || *next != between) return {};
+    at = next + 1;
+  }
+}
+
 // Reads fields until one is wrong; that one it names.
 struct QueryReader {
   const std::map<std::string, std::string>& query;
@@ -360,17 +376,8 @@ struct QueryReader {
   std::vector<double> numbers(const char* name, size_t count, double low, double high) {
     const std::string read = text(name);
     if (read.empty()) return {};
-    std::vector<double> values;
-    const char *at = read.data(), *end = at + read.size();
-    for (;;) {
-      double value = 0;
-      auto [next, error] = std::from_chars(at, end, value);
-      if (error != std::errc() || !(value >= low && value <= high)) break;
-      values.push_back(value);
-      if (next == end && values.size() == count) return values;
-      if (next == end || *next != ',') break;
-      at = next + 1;
-    }
+    std::vector<double> values = read_numbers(read, ',', count, low, high);
+    if (!values.empty()) return values;
     char range[64];
     std::snprintf(range, sizeof(range), " from %g to %g", low, high);
     const std::string what =
@@ -386,7 +393,33 @@ struct QueryReader {
 
 }  // namespace
 
-// Reads "map:1850" or "valley:paint:xray:curtain:0.5"; several have commas between.
+// Reads how a piece is seen out of "map", "1850" or "valley", "paint", "xray", "curtain", "0.5" or,
+// of a volume, "falcon", "inside", "", "", "", "90", "0;0;0", "1;1;0.5". Returns none if it is
+// wrong.
+static std::optional<PieceOrder> read_piece(std::vector<std::string> parts) {
+  if (parts.size() > 8) return {};
+  parts.resize(8);
+  PieceOrder order{.name = parts[0], .layer = parts[1], .over = parts[2]};
+  const auto by = std::ranges::find(piece_blends, parts[3].empty() ? "none" : parts[3]);
+  if (by == std::end(piece_blends)) return {};
+  order.by = PieceBlend(by - std::begin(piece_blends));
+  // Reads as many numbers as are there, if they are.
+  auto read = [&](size_t part, size_t count, double most, auto... to) {
+    if (parts[part].empty()) return true;
+    const double least = part == 5 ? -most : 0;
+    const std::vector<double> values = read_numbers(parts[part], ';', count, least, most);
+    size_t i = 0;
+    if (!values.empty()) ((*to = std::remove_pointer_t<decltype(to)>(values[i++])), ...);
+    return !values.empty();
+  };
+  if (!read(4, 1, 1, &order.share) || !read(5, 1, 720, &order.turn) ||
+      !read(6, 3, 1, &order.low.x, &order.low.y, &order.low.z) ||
+      !read(7, 3, 1, &order.high.x, &order.high.y, &order.high.z))
+    return {};
+  return order;
+}
+
+// Reads what is seen of pieces; several have commas between.
 static void read_pieces(const Exhibit& exhibit, QueryReader& fields, StillJob& job) {
   auto split = [](const std::string& text, char at) {
     std::vector<std::string> parts(1);
@@ -400,25 +433,22 @@ static void read_pieces(const Exhibit& exhibit, QueryReader& fields, StillJob& j
   };
   if (const std::string text = fields.text("pieces"); !text.empty())
     for (const std::string& one : split(text, ',')) {
-      std::vector<std::string> parts = split(one, ':');
-      parts.resize(5);
-      PieceOrder order{.name = parts[0], .layer = parts[1], .over = parts[2]};
-      const auto by = std::ranges::find(piece_blends, parts[3].empty() ? "none" : parts[3]);
-      order.by = PieceBlend(by - std::begin(piece_blends));
-      const char *begin = parts[4].data(), *end = begin + parts[4].size();
-      const auto [after, error] = std::from_chars(begin, end, order.share);
-      const bool is_share = after == end && order.share >= 0 && order.share <= 1;
-      if (by == std::end(piece_blends) || (begin != end && !(error == std::errc() && is_share)))
+      const std::optional<PieceOrder> order = read_piece(split(one, ':'));
+      if (order) take(choose_piece(exhibit, *order, job.pieces));
+      else
         fields.refuse(400, "bad_parameter",
-                      "pieces: must be PIECE:LAYER:OVER:BY:SHARE, BY none, curtain, fade or "
-                      "difference, SHARE 0 to 1, of which the end may be left out");
-      else take(choose_piece(exhibit, order, job.pieces));
+                      "pieces: must be PIECE:LAYER:OVER:BY:SHARE:TURN:LOW:HIGH, BY none, curtain, "
+                      "fade or difference, SHARE 0 to 1, TURN degrees, LOW and HIGH as 0;0;0.5, of "
+                      "which the end may be left out");
     }
   const std::vector<double> glass = fields.numbers("lens", 4, 0, 64);
   if (glass.empty()) return;
   LensOrder& lens = job.lens;
   lens.at = vec2(std::min(glass[0], 1.0), std::min(glass[1], 1.0));
   lens.radius = float(std::clamp(glass[2], 0.02, 0.5)), lens.zoom = float(glass[3]);
+  std::optional<float> depth;
+  fields.number("lens_depth", 0, 1000, depth);
+  lens.depth = depth.value_or(0);
   if (const std::string text = fields.text("lens_layer"); !text.empty()) {
     std::vector<std::string> parts = split(text, ':');
     parts.resize(3);

@@ -13,6 +13,15 @@ uint64_t number_who_touched(const ShowVisits& visits, const Visitor& visitor) {
   return who ? who->link->id : 0;
 }
 
+// Returns what the visitor sees of pieces by now: on the way to the wish, after a story's mark.
+PieceChoices pieces_now(const Show& show, const Visitor& visitor) {
+  const Visitor* leader = leader_of(show.visits, visitor);
+  const VisitorPieces& pieces = (leader ? *leader : visitor).pieces;
+  const double done = (show.time - pieces.told_at) / glide_seconds;
+  if (!(done < 1)) return pieces.wish;
+  return glide(pieces.before, pieces.wish, float(glm::smoothstep(0.0, 1.0, done)));
+}
+
 }  // namespace
 
 void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& teller,
@@ -38,9 +47,17 @@ const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor) 
   return (leader ? *leader : visitor).pieces.wish;
 }
 
+void see_told(const Exhibit& exhibit, double time, const std::string& piece, const PieceMark& mark,
+              Visitor& visitor) {
+  VisitorPieces& pieces = visitor.pieces;
+  if (!choose_told(exhibit, piece, mark, pieces.wish).empty()) return;
+  pieces.before = pieces.shown.choices, pieces.told_at = time;
+  visitor.state_sent_at = -1e9;
+}
+
 void follow_wish(const Show& show, Visitor& visitor) {
   const Exhibit& exhibit = show.stage.exhibit;
-  ShownPieces wish{pieces_of(show.visits, visitor), piece_language(exhibit, visitor.lang)};
+  ShownPieces wish{pieces_now(show, visitor), piece_language(exhibit, visitor.lang)};
   VisitorPieces& pieces = visitor.pieces;
   const uint64_t arrivals = show.stage.volumes.arrivals();
   if (pieces.shown == wish && pieces.arrivals == arrivals) return;

@@ -16,6 +16,10 @@ const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor);
 // Makes the visitor's pictures follow that wish and the visitor's language from the next one on, if
 // they have changed, or volumes in new light. Call it while none is drawn for that visitor.
 void follow_wish(const Show& show, Visitor& visitor);
+// Lets a piece of the visitor's become what a mark says, within glide_seconds.
+void see_told(const Exhibit& exhibit, double time, const std::string& piece, const PieceMark& mark,
+              Visitor& visitor);
+inline constexpr double glide_seconds = 1.5;
 // Puts what is shown of pieces into the world, while nothing reads it.
 void show_pieces_of(ExhibitStage& stage, const ShownPieces& shown);
 // Prepares the world for a new picture: the visitor's lamps, and the storyteller and the visitor's

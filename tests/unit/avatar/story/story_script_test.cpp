@@ -94,6 +94,30 @@ TEST(StoryScript, MarksStandBeforeTheirWords) {
   EXPECT_EQ(third.pause, 0);
 }
 
+TEST(StoryScript, PiecesAreShownAsMarksSay) {
+  StoryScript script = read_story(
+      "<show piece='falcon' layer='inside'/>Look. It <show piece=\"falcon\" layer=\"outside\" "
+      "over=\"bone\" share=\"30%\" turn=\"-90\" cut=\"0.5\"/>turns.",
+      "a");
+  ASSERT_EQ(texts(script), (Texts{"Look.", "It turns."}));
+  const StoryMark *first = find(script.lines[0], StoryMarkKind::show),
+                  *second = find(script.lines[1], StoryMarkKind::show);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->name, "falcon");
+  EXPECT_EQ(first->piece.layer, "inside");
+  EXPECT_EQ(first->piece.over, "");
+  EXPECT_FALSE(first->piece.turn || first->piece.cut);
+  EXPECT_EQ(after(script.lines[1], *second), "turns.");
+  EXPECT_EQ(second->piece.over, "bone");
+  EXPECT_FLOAT_EQ(second->piece.share, 0.3f);
+  EXPECT_EQ(second->piece.turn, -90);
+  EXPECT_EQ(second->piece.cut, 0.5f);
+  for (const char* wrong :
+       {"<show/>x", "<show piece='a' turn='north'/>x", "<show piece='a' turn='1000'/>x",
+        "<show piece='a' cut='2'/>x", "<show piece='a' share='-1'/>x"})
+    EXPECT_THROW(read_story(wrong, "a"), LoadError) << wrong;
+}
+
 TEST(StoryScript, AnEmotionAroundWordsEndsWithThem) {
   StoryScript script =
       read_story("<emotion name='joy'/>Ant. <emotion name='fear'>Bee. Cow.</emotion> Dog.", "a");

@@ -67,6 +67,17 @@ TEST(Timeline, WhatIsHeldIsThereWithItsWordAndUntilItIsPutAway) {
   EXPECT_THROW(read_story("One <hold/>two.", "a"), LoadError);
 }
 
+TEST(Timeline, ShowsPiecesWithTheirWords) {
+  const StoryLine line =
+      read_story_line("One <show piece='falcon' layer='bone' turn='40'/>two.", "a").lines[0];
+  const Timeline timeline = make_timeline(line, nullptr, 8);
+  ASSERT_EQ(timeline.actions.size(), 1u);
+  EXPECT_NEAR(timeline.actions[0].time, 4, 1e-6);
+  EXPECT_EQ(timeline.actions[0].event.name, "falcon");
+  EXPECT_EQ(timeline.actions[0].event.piece.layer, "bone");
+  EXPECT_EQ(timeline.actions[0].event.piece.turn, 40);
+}
+
 TEST(Timeline, EventsDoNotDependOnTheStep) {
   StoryLine line =
       read_story_line("<gesture name='a'/>One <gesture name='b'/>two <gesture name='c'/>three.",

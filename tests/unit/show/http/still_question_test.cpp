@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "show/state/make_show.h"
+#include "unit/show/ball_piece.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {
@@ -52,12 +53,42 @@ TEST(StillQuestion, NamesTheFieldThatIsWrong) {
                                                         {"pieces", "map:1850:1650:curtian"},
                                                         {"pieces", "map:1850:1650:fade:2"},
                                                         {"pieces", "map:1850:1650:fade:half"},
+                                                        {"pieces", "ball:core::::north"},
+                                                        {"pieces", "ball:core::::90:0;0"},
+                                                        {"pieces", "ball:core::::90:0;0;2"},
+                                                        {"pieces", "ball:core::::90:0;0;0:1;1;1:"},
                                                         {"width", "1e3"}}) {
     StillQuestion asked = read_still_question(exhibit, {{name, text}});
     EXPECT_EQ(asked.status, 400) << name << "=" << text;
     EXPECT_TRUE(asked.problem.starts_with(name + ": ")) << asked.problem;
   }
   EXPECT_EQ(read_still_question(exhibit, {{"viewpoint", "moon"}, {"spp", "0"}}).status, 404);
+}
+
+TEST(StillQuestion, AsksForAVolumeTurnedAndCut) {
+  Exhibit exhibit = make_tiny_exhibit();
+  add_ball(exhibit, dvec3(0));
+  const auto read = [&](const std::string& pieces) {
+    const StillQuestion asked = read_still_question(exhibit, {{"pieces", pieces}});
+    EXPECT_EQ(asked.status, 200) << asked.problem;
+    return choice_of(asked.job.pieces, 0);
+  };
+  const PieceChoice all = read("ball:core:skin:fade:0.25:-90:0.1;0;0:1;0.9;0.5");
+  EXPECT_EQ(all.layer, 1);
+  EXPECT_EQ(all.over, 0);
+  EXPECT_FLOAT_EQ(all.share, 0.25f);
+  EXPECT_NEAR(all.turn, -pi / 2, 1e-6f);
+  EXPECT_EQ(all.low, vec3(0.1f, 0, 0));
+  EXPECT_EQ(all.high, vec3(1, 0.9f, 0.5f));
+  const PieceChoice turned = read("ball:core::::30");
+  EXPECT_EQ(turned.by, Blend::none);
+  EXPECT_NEAR(turned.turn, pi / 6, 1e-6f);
+  EXPECT_EQ(turned.high, vec3(1));
+  const StillQuestion glass =
+      read_still_question(exhibit, {{"lens", "0.5,0.5,0.2,1"}, {"lens_depth", "0.1"}});
+  EXPECT_EQ(glass.job.lens.depth, 0.1f);
+  EXPECT_EQ(read_still_question(exhibit, {{"lens", "0.5,0.5,0.2,1"}, {"lens_depth", "-1"}}).status,
+            400);
 }
 
 TEST(StillQuestion, NoNumberOfSamplesIsTooManyAndTimeIsASettingOfItsOwn) {

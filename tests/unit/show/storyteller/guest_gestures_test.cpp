@@ -2,6 +2,9 @@
 // What a guest before a kiosk does with a hand.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "unit/show/ball_piece.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring::test {
@@ -63,6 +66,38 @@ TEST_F(GuestGestures, SwipesTurnThePages) {
   make("swipe_down", 0.1);
   make("swipe_right", 0.1);
   EXPECT_EQ(told(), "other") << "again";
+}
+
+TEST_F(GuestGestures, SwipesTurnAVolumeThatTheGuestWalksTo) {
+  Exhibit exhibit = make_tiny_exhibit();
+  add_storyteller(exhibit, "anna", {-2, 0, 1});
+  add_ball(exhibit, dvec3(-2, 1, 1.5));
+  browsers.clear();
+  auto eyes = show->kiosks.eyes;
+  begin(std::move(exhibit), settings_for("direct"));
+  show->kiosks.eyes = eyes;
+  join(32, 32, "en", "kiosk");
+  steps(3);
+  const auto turn = [&] { return glm::degrees(choice_of(visitor().pieces.wish, 0).turn); };
+  visitor().place.view.position = dvec3(-2, 1.6, 3);
+  visitor().place.view.yaw = 0;
+  say(R"({"type":"kiosk","showing":"museum"})");
+  make("swipe_left", 0.1);
+  EXPECT_EQ(turn(), 0) << "only who walks turns it";
+  EXPECT_EQ(told(), "tale");
+  make("swipe_down", 0.1);
+  say(R"({"type":"kiosk","showing":"walk"})");
+  make("swipe_left", 0.1);
+  EXPECT_NEAR(turn(), -30, 1e-3f);
+  make("swipe_right", 0.1), make("swipe_right", 0.1);
+  EXPECT_NEAR(turn(), 30, 1e-3f);
+  EXPECT_EQ(told(), "");
+  run(1.6);
+  EXPECT_NEAR(choice_of(visitor().pieces.shown.choices, 0).turn, glm::radians(30.0f), 1e-4f);
+  visitor().place.view.yaw = pi;
+  make("swipe_left", 0.1);
+  EXPECT_NEAR(turn(), 30, 1e-3f) << "behind one's back";
+  EXPECT_FALSE(told().empty());
 }
 
 TEST_F(GuestGestures, MeanNothingWithoutAScreen) {
