@@ -58,7 +58,8 @@ ShownVolume show_bricks(BrickFile file, std::shared_ptr<BrickPool> pool) {
     level.ranges = std::move(file.ranges[k]);
   }
   file.ranges.clear();
-  shown.bricks = std::make_shared<ResidentBricks>(std::move(file), std::move(pool));
+  shown.bricks =
+      std::make_shared<ResidentBricks>(std::move(file), pool ? pool : shared_brick_pool());
   return shown;
 }
 

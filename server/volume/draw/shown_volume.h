@@ -43,10 +43,9 @@ struct ShownVolume : CodeScale {
 // Throws std::length_error beyond 2^31 samples.
 ShownVolume make_shown_volume(const Volume& volume);
 
-// Opens a file of bricks (volume/bricks/brick_file.h) at once, to be shown out of this pool; any
-// other file is read as open_volume() does, and is whole in memory. Throws LoadError that names
-// file and place.
-ShownVolume open_shown_volume(const std::string& path,
-                              std::shared_ptr<BrickPool> pool = shared_brick_pool());
+// Opens a file of bricks (volume/bricks/brick_file.h) at once, to be shown out of this pool,
+// null: shared_brick_pool(); any other file is read as open_volume() does, and is whole in memory.
+// Throws LoadError that names file and place.
+ShownVolume open_shown_volume(const std::string& path, std::shared_ptr<BrickPool> pool = nullptr);
 
 }  // namespace wellspring::volume
