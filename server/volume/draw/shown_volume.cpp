@@ -79,7 +79,8 @@ ShownVolume show_bricks(BrickFile file, std::shared_ptr<BrickPool> pool) {
     level.codes = read_level_codes(file, k);
     add_normals_and_ranges(level);
   }
-  shown.bricks = std::make_shared<ResidentBricks>(std::move(file), std::move(pool));
+  shown.bricks =
+      std::make_shared<ResidentBricks>(std::move(file), pool ? pool : shared_brick_pool());
   return shown;
 }
 

@@ -53,10 +53,9 @@ ShownVolume coarser(const ShownVolume& volume, int level);
 // square roots of linear light. Coarser levels get means.
 void set_colors(std::array<std::vector<uint16_t>, 3> planes, ShownVolume& volume);
 
-// Opens a file of bricks (volume/bricks/brick_file.h) at once, to be shown out of this pool; any
-// other file is read as open_volume() does, and is whole in memory. Throws LoadError that names
-// file and place.
-ShownVolume open_shown_volume(const std::string& path,
-                              std::shared_ptr<BrickPool> pool = shared_brick_pool());
+// Opens a file of bricks (volume/bricks/brick_file.h) at once, to be shown out of this pool,
+// null: shared_brick_pool(); any other file is read as open_volume() does, and is whole in memory.
+// Throws LoadError that names file and place.
+ShownVolume open_shown_volume(const std::string& path, std::shared_ptr<BrickPool> pool = nullptr);
 
 }  // namespace wellspring::volume

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/load_error.h"
 #include "bricks_made.h"
 #include "volume/draw/level_samples.h"
 #include "volume/draw/preview.h"
@@ -174,6 +175,41 @@ TEST(DrawBricks, HardVolumesAreShown) {
           << preset.name;
     }
   }
+}
+
+TEST(DrawBricks, DamagedFilesAreRefusedOrShownWithTheDamage) {
+  const Bricked good(volume_of({40, 50, 70}, rough), 1);
+  const std::string bytes = good.folder.read("made.bricks");
+  // Head and tables are a small part of the file.
+  BrickHead head;
+  std::memcpy(&head, bytes.data(), sizeof head);
+  const size_t tables = sizeof head + head.records * record_bytes;
+  uint32_t random = 1;
+  const auto next = [&](size_t below) { return (random = random * 1664525 + 1013904223) % below; };
+  int shown = 0, refused = 0;
+  for (int times = 0; times < 80; times++) {
+    std::string damaged = bytes;
+    for (int i = 0; i < 1 + times % 3; i++) {
+      const size_t at = times % 2 ? next(200) : tables + next(bytes.size() - tables);
+      damaged[at] = char(next(256));
+    }
+    try {
+      const ShownVolume volume =
+          open_shown_volume(good.folder.write("damaged.bricks", damaged),
+                            std::make_shared<BrickPool>(plenty * record_bytes, 0));
+      const std::vector<Preset> presets = find_presets(volume);
+      const DrawnPreset preset(volume, presets.back(), {});  // the maximum needs no light
+      draw_volume(volume, preset, {.side = 16});
+      while (volume.bricks->pool().load_some()) {}
+      const VolumePicture picture = draw_volume(volume, preset, {.side = 16});
+      EXPECT_GE(picture.clear[0], 0);
+      shown++;
+    } catch (const LoadError&) {
+      refused++;
+    }
+  }
+  EXPECT_GT(shown, 20);
+  EXPECT_GT(refused, 4);
 }
 
 TEST(DrawBricks, OtherFilesAreOpenedWhole) {
