@@ -115,6 +115,7 @@ std::string choose_told(const Exhibit& exhibit, const std::string& id, const Pie
   if (!order.over.empty()) order.by = PieceBlend::fade;
   order.turn = mark.turn.value_or(glm::degrees(before.turn));
   order.low = before.low, order.high = before.high, order.plane = before.plane;
+  order.tilt = before.tilt;
   if (mark.cut) order.high.z = 1 - *mark.cut;
   return choose_piece(exhibit, order, choices);
 }

@@ -26,7 +26,10 @@ class March {
         preset_(preset),
         seen_(preset.seen[size_t(settings.level)]),
         to_samples_(volume, settings.level),
-        light_(preset.light, preset.grid, to_samples_, settings.level, rays.direction) {
+        light_(preset.light, preset.grid, to_samples_, settings.level, rays.direction),
+        cuts_(settings.cuts),
+        rays_(rays),
+        voxel_(float(volume.voxel)) {
     origin_ = to_samples_.place(rays.origin), way_ = to_samples_.way(rays.direction);
     const Lanes speed = lanes_sqrt(dot(way_, way_));  // samples a metre
     step_ = settings.step / speed;
@@ -49,6 +52,9 @@ class March {
   const std::vector<uint8_t>& seen_;
   const ToSamples to_samples_;
   const MatterLight light_;
+  const std::span<const VolumeCut> cuts_;
+  const VolumeRays& rays_;
+  const float voxel_;  // metres
   Lanes3 origin_, way_;
   Lanes step_, near_, far_, place_;
 
@@ -66,6 +72,9 @@ class March {
   void clip_to(const VolumeRays& rays, const VolumeCut& cut) {
     clip(dot(rays.origin, all_lanes(cut.normal)) - cut.offset,
          dot(rays.direction, all_lanes(cut.normal)));
+  }
+  Lanes exposed(const Lanes& place) const {
+    return cuts_.empty() ? Lanes{} : laid_open(cuts_, rays_.origin, rays_.direction, place, voxel_);
   }
   Lanes3 at(const Lanes& place) const { return origin_ + way_ * place; }
 
@@ -127,7 +136,7 @@ class March {
       const LaneMask some = full & (density > 0.0f);
       if (!any_lane(some)) return;
       const Lanes share = keep_lanes(some, found.clear * (1.0f - through));
-      found.color = found.color + light_.lit(color, p, sample.normal) * share;
+      found.color = found.color + light_.lit(color, p, sample.normal, exposed(place_)) * share;
       const Lanes after = some ? found.clear * through : found.clear;
       found.depth = (found.clear > 0.5f) & (after <= 0.5f) ? place_ : found.depth;
       found.clear = after;
@@ -160,7 +169,7 @@ class March {
         Lanes density;
         const Lanes3 color =
             preset_.table.look(lanes_max(there.value, all_lanes(threshold)), density);
-        found.color = choose(hit, light_.lit(color, p, there.normal), found.color);
+        found.color = choose(hit, light_.lit(color, p, there.normal, exposed(place)), found.color);
         found.depth = hit ? place : found.depth;
         found.clear = hit ? Lanes{} : found.clear;
       }

@@ -3,9 +3,11 @@
 // tracked.
 #pragma once
 #include <cmath>
+#include <span>
 
 #include "volume/draw/along_ray.h"
 #include "volume/draw/light_grid.h"
+#include "volume/draw/march.h"
 #include "volume/reconstruct/trilinear.h"
 
 namespace wellspring::volume {
@@ -20,6 +22,20 @@ inline Lanes3 own_color(const VolumeLevel& level, const Lanes3& p) {
   return {channel(level.colors[0]), channel(level.colors[1]), channel(level.colors[2])};
 }
 
+// Returns how much cuts expose places on rays, 0 to 1: what lies right behind a cut is as bright as
+// what was outside before. `place`: metres along the rays.
+inline Lanes laid_open(std::span<const VolumeCut> cuts, const Lanes3& origin,
+                       const Lanes3& direction, const Lanes& place, float voxel) {
+  constexpr float depth = 6;  // voxels in which light from a cut fades
+  Lanes most{};
+  for (const VolumeCut& cut : cuts) {
+    const Lanes3 normal = all_lanes(cut.normal);
+    const Lanes behind = dot(origin, normal) - cut.offset + dot(direction, normal) * place;
+    most = lanes_max(most, fade(positive_lanes(behind) * (1 / (depth * voxel))));
+  }
+  return most;
+}
+
 // Eight rays of these directions meet matter in a level.
 class MatterLight {
  public:
@@ -32,8 +48,10 @@ class MatterLight {
   }
 
   // Returns the light that matter of this colour sends to the eye. `p` is its place in the level,
-  // in samples, `stored` its normal as linear_value_and_normal() gives it.
-  Lanes3 lit(const Lanes3& color, const Lanes3& p, const Lanes3& stored) const {
+  // in samples, `stored` its normal as linear_value_and_normal() gives it. `exposed`: the share of
+  // all light that comes there at least, since a cut has laid it open (laid_open()).
+  Lanes3 lit(const Lanes3& color, const Lanes3& p, const Lanes3& stored,
+             const Lanes& exposed) const {
     const Lanes3 n = {stored.x * normal_[0].x + stored.y * normal_[0].y + stored.z * normal_[0].z,
                       stored.x * normal_[1].x + stored.y * normal_[1].y + stored.z * normal_[1].z,
                       stored.x * normal_[2].x + stored.y * normal_[2].y + stored.z * normal_[2].z};
@@ -51,9 +69,11 @@ class MatterLight {
         0.15f * eight * eight * four * surface * (facing > 0.0f ? all_lanes(1) : Lanes{});
     const Lanes3 fine = (p + all_lanes(vec3(0.5f))) * all_lanes(to_finest_) - all_lanes(vec3(0.5f));
     const Lanes3 node = fine * all_lanes(grid_.scale);
-    const Lanes lamp = linear_value(whole_box(grid_.lamp.data(), grid_.size), node) * (1 / 255.0f);
-    const Lanes around =
-        linear_value(whole_box(grid_.around.data(), grid_.size), node) * (1 / 255.0f);
+    const auto share_at = [&](const std::vector<uint8_t>& shares) {
+      return lanes_max(linear_value(whole_box(shares.data(), grid_.size), node) * (1 / 255.0f),
+                       exposed);
+    };
+    const Lanes lamp = share_at(grid_.lamp), around = share_at(grid_.around);
     const Lanes3 from_lamp = all_lanes(light_.lamp) * lamp;
     return color * (from_lamp * diffuse + all_lanes(light_.around) * around) + from_lamp * shine;
   }

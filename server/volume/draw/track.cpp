@@ -110,6 +110,11 @@ class Tracker::Flight {
     found.color = (color * (light * length_)).at(0);
   }
 
+  Lanes exposed() const {
+    return laid_open(settings_.cuts, all_lanes(ray_.origin), all_lanes(ray_.direction),
+                     all_lanes(found.distance), float(tracker_.volume_->voxel));
+  }
+
   // Sets the colour of the place where the ray was stopped.
   void light_up() {
     if (!found.is_stopped()) return;
@@ -124,7 +129,8 @@ class Tracker::Flight {
     const MatterLight light(preset.light, preset.grid, tracker_.to_samples_, settings_.level,
                             all_lanes(ray_.direction));
     found.color =
-        (mode == VolumeMode::maximum ? color : light.lit(color, all_lanes(place), there.normal))
+        (mode == VolumeMode::maximum ? color
+                                     : light.lit(color, all_lanes(place), there.normal, exposed()))
             .at(0);
   }
 

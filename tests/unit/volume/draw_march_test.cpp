@@ -277,5 +277,19 @@ TEST(VolumeMarch, AVolumeOfColorsKeepsThem) {
   }
 }
 
+TEST(VolumeMarch, ACutFaceIsLitAsTheOutsideWas) {
+  const ShownVolume volume =
+      make_shown_volume(made_volume({40, 40, 40}, [](glm::vec3 p) { return ball_of(p, 18); }));
+  const VolumeLight light{.to_lamp = {0, 0, 1}, .lamp = vec3(1), .around = vec3(0.5f)};
+  const Preset opaque{"opaque", VolumeMode::density, {{0.3, vec3(1), 0}, {0.6, vec3(1), 5}}};
+  const DrawnPreset preset(volume, opaque, light);
+  const VolumeCut cut{{0, 0, -1}, 0};
+  const MarchedLight whole = march(volume, preset, rays_at({0, 0, 1}), {.step = 0.5f});
+  const MarchedLight face =
+      march(volume, preset, rays_at({0, 0, 1}), {.step = 0.5f, .cuts = std::span(&cut, 1)});
+  EXPECT_NEAR(face.depth[0], 1, 0.001);
+  EXPECT_GT(face.color.x[0], 0.5f * whole.color.x[0]);
+}
+
 }  // namespace
 }  // namespace wellspring::test
