@@ -20,7 +20,7 @@ struct LaidVolumes {
   Lanes3 light;                       // linear
   Lanes clear = all_lanes(1);         // share of the light behind that comes through
   Lanes depth = all_lanes(INFINITY);  // metres along the axis until half is absorbed
-  LaneBits object{};                  // what is seen there, where `depth` is finite
+  LaneBits object{};                  // seen there, where `depth` is finite
 };
 
 class VolumeView {
@@ -54,7 +54,7 @@ class VolumeView {
     Lanes near, far;  // metres
     Lanes jitter;
   };
-  float step_in_samples() const;          // of the level
+  float step_in_samples() const;          // counted in the level
   float step_of(const Seen& seen) const;  // metres
   MarchedLight march_one(const Seen& seen, const Rays& rays) const;
   void add(const Seen& seen, const Rays& rays, LaidVolumes& laid) const;
@@ -81,7 +81,7 @@ class VolumeLayer {
   View view_;
   std::vector<VolumeLook> looks_;
   PictureWindow window_;
-  uint64_t arrivals_ = 0;  // of all volumes' bricks
+  uint64_t arrivals_ = 0;  // bricks that have come, of all volumes
   uint32_t pictures_ = 0;
   // Sums for each pixel of the window.
   std::vector<vec3> color_;

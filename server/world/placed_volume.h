@@ -16,7 +16,7 @@ namespace wellspring::world {
 struct VolumeLook {
   std::shared_ptr<const DrawnPreset> preset, over;  // null `preset`: nothing; null `over`: it alone
   std::shared_ptr<const ShownVolume> volume;        // null: PlacedVolume::volume
-  float share = 0;                                  // of `over`, 0 to 1
+  float share = 0;                                  // share of `over`, 0 to 1
   std::vector<VolumeCut> cuts;                      // in the frame of Volume::to_metres
   float turn = 0;  // radians to the left, around the upright axis through its middle
   bool operator==(const VolumeLook& other) const {
@@ -37,10 +37,10 @@ VolumeBox box_of(const ShownVolume& volume);
 
 struct PlacedVolume {
   std::shared_ptr<const ShownVolume> volume;
-  vec3 position{0};     // of its middle, scene coordinates
+  vec3 position{0};     // its middle, scene coordinates
   float yaw = 0;        // radians; as a storyteller's: 0 faces -Z
   float scale = 1;      // metres of the scene to one of the scan
-  uint32_t object = 0;  // id of what is seen there
+  uint32_t object = 0;  // seen there
   VolumeLook look;
   const ShownVolume& shown() const { return look.volume ? *look.volume : *volume; }
 };
@@ -48,8 +48,8 @@ struct PlacedVolume {
 // Leads from the scene to the frame of a volume (Volume::to_metres), in which one metre is
 // 1 / scale of the scene's.
 struct ToVolume {
-  mat3 turn{1};    // of directions; both frames' are unit vectors
-  vec3 middle{0};  // of the volume, in its own frame
+  mat3 turn{1};    // turns directions, which stay unit vectors
+  vec3 middle{0};  // the volume's, in its own frame
   vec3 position{0};
   float scale = 1;
 

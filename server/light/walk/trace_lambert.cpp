@@ -147,7 +147,7 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
   walks.direction.set(lane, request.ray.direction);
   walks.throughput.set(lane, vec3(1));
   walks.smooth.set(lane, vec3(0));
-  walks.rest.set(lane, sample.rest);  // of volumes that glow before it
+  walks.rest.set(lane, sample.rest);  // volumes that glow before it
   return true;
 }
 

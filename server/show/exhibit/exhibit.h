@@ -144,10 +144,10 @@ struct PieceLayer {
   std::string id, source;  // source: of the package, as exhibit.json names it
   LocalText label, text;
   std::optional<int> year;               // year of a map
-  PictureLayer shown;                    // of a volume: nothing
-  std::optional<volume::Preset> preset;  // of a volume
-  // Of a volume that is compared with a model: the volume in colours, and what they mean. Null: the
-  // piece's volume as it is.
+  PictureLayer shown;                    // nothing for a volume
+  std::optional<volume::Preset> preset;  // a volume's
+  // Hold a volume in colours that compare it with a model, and their meaning. Null: the piece's
+  // volume is shown as it is.
   std::shared_ptr<const volume::ShownVolume> volume;
   std::shared_ptr<const volume::Comparison> comparison;  // without its points
   // The same with words in another language, by its tag.

@@ -20,12 +20,12 @@ struct PieceChoice {
   int layer = 0, over = 0;
   Blend by = Blend::none;
   float share = 0.5f;
-  // Of a volume: radians to the left; corners of the part of its box that is kept, 0 to 1; planes
-  // before which nothing is kept, as [x, y, z, metres from its middle], 0: none.
+  // How a volume is seen: radians to the left; corners of the part of its box that is kept, 0 to 1;
+  // planes before which nothing is kept, as [x, y, z, metres from its middle], 0: none.
   float turn = 0;
   vec3 low{0}, high{1};
   vec4 plane{0}, glass_plane{0};
-  int tilt = 0;  // of a nebula's axis, degrees; 0: as at first
+  int tilt = 0;  // a nebula's axis leans so, degrees; 0: as at first
   bool operator==(const PieceChoice&) const = default;
 };
 using PieceChoices = std::vector<PieceChoice>;  // for each piece; empty: each as it is at first

@@ -30,7 +30,7 @@ namespace {
 constexpr size_t most_kept_bytes = size_t(16) << 20;
 constexpr int still_jpeg_quality = 90;
 constexpr NetSize still_net = NetSize::base;
-constexpr int volume_places = 16;  // of a pixel at which volumes are looked at
+constexpr int volume_places = 16;  // places in a pixel at which volumes are looked at
 constexpr int most_brick_rounds = 20;
 constexpr auto time_of_bricks = std::chrono::milliseconds(20);
 constexpr double slice = 0.02;  // seconds of the network, between looks whether it is given up

@@ -70,7 +70,7 @@ bool is_figure(const World& world, uint32_t instance) {
 
 // Adds parts of the boxes around volumes.
 void add_volumes(const World& world, const Objects& objects, std::vector<SurfaceSample>& samples) {
-  constexpr int parts = 3;  // of a side
+  constexpr int parts = 3;  // parts a side
   for (const PlacedVolume& placed : world.volumes()) {
     if (!has(objects, placed.object)) continue;
     const Bounds box = bounds_of(placed);

@@ -16,7 +16,7 @@
 namespace wellspring::show {
 namespace {
 
-constexpr int turns = 24;         // of a volume for which light is kept apart
+constexpr int turns = 24;         // turns of a volume for which light is kept apart
 constexpr size_t most_kept = 64;  // lit presets of an exhibit
 constexpr size_t most_lights = 256;
 
@@ -58,17 +58,16 @@ int step_of(float turn) {
 }  // namespace
 
 struct LitVolumes::Impl {
-  std::vector<int> pieces;  // of the exhibit, for each volume of the world
-  std::vector<std::shared_ptr<const ShownVolume>> volumes;  // of these
+  std::vector<int> pieces;  // numbers in the exhibit, for each volume of the world
+  std::vector<std::shared_ptr<const ShownVolume>> volumes;  // theirs
   std::list<KnownRoom> rooms;
-  mutable std::mutex guard;    // of what follows
+  mutable std::mutex guard;    // guards what follows
   std::list<LitPreset> kept;   // the one used last comes first
   std::vector<Wanted> wanted;  // at most one a piece and use: the newest
   std::atomic<uint64_t> made{0};
   Worker worker;  // the last member: it is waited for before the others end
 
-  const VolumeLight& light_of(int piece, const PlacedVolume& placed, const Lights& lights,
-                              const Technique& technique, const World& world);
+  VolumeLight light_of(int number, const Lights& lights, const Technique& technique, World& world);
   std::optional<LitPreset> find(const LitKey& key);
   std::optional<LitPreset> find_like(const LitKey& key) const;
   std::shared_ptr<const ShownVolume> find_tilted(const LitKey& key) const;
@@ -77,16 +76,20 @@ struct LitVolumes::Impl {
   void make_wanted();
 };
 
-const VolumeLight& LitVolumes::Impl::light_of(int piece, const PlacedVolume& placed,
-                                              const Lights& lights, const Technique& technique,
-                                              const World& world) {
+// Returns the light that falls on volume `number` of the world while it is not turned. Its own
+// matter is not in the way: a light grid tells that.
+VolumeLight LitVolumes::Impl::light_of(int number, const Lights& lights, const Technique& technique,
+                                       World& world) {
+  const int piece = pieces[size_t(number)];
   for (const KnownRoom& room : rooms)
     if (room.piece == piece && room.lamps == world.lamp_levels()) return room.light;
-  PlacedVolume unturned = placed;
-  unturned.look = {};
-  rooms.push_front({piece, world.lamp_levels(), room_light(world, lights, technique, unturned)});
+  const VolumeLook look = world.volumes()[size_t(number)].look;
+  world.show_volume(number, {});
+  const VolumeLight light = room_light(world, lights, technique, world.volumes()[size_t(number)]);
+  world.show_volume(number, look);
+  rooms.push_front({piece, world.lamp_levels(), light});
   if (rooms.size() > most_lights) rooms.pop_back();
-  return rooms.front().light;
+  return light;
 }
 
 std::optional<LitPreset> LitVolumes::Impl::find(const LitKey& key) {
@@ -185,11 +188,11 @@ void LitVolumes::show(const Exhibit& exhibit, const PieceChoices& choices, const
     const ExhibitPiece& piece = exhibit.pieces[size_t(number)];
     const PieceChoice choice = choice_of(choices, size_t(number));
     const PlacedVolume& placed = world.volumes()[i];
-    // What is not made yet is wanted, and the look before stays as far as there is one.
+    // A look that is not made yet is wanted, and the one before stays meanwhile.
     auto lit = [&](int layer) {
       const LitKey key{number, layer, step_of(choice.turn), choice.tilt, world.lamp_levels()};
       if (auto found = impl_->find(key)) return found;
-      VolumeLight light = impl_->light_of(number, placed, lights, technique, world);
+      VolumeLight light = impl_->light_of(int(i), lights, technique, world);
       light.to_lamp =
           mat3(glm::rotate(mat4(1), -step_angle(key.turn), vec3(0, 1, 0))) * light.to_lamp;
       const PieceLayer& of = piece.layers[size_t(layer)];

@@ -12,7 +12,8 @@ namespace wellspring::show {
 // Returns the light at the volume's middle, directions in the volume's own frame. Both parts
 // together bring as much light, and push as much to one side, as the room does: the lamp stands
 // where the vector irradiance comes from (Gershun 1939, "The Light Field"). Traces a few hundred
-// rays by the technique, which ends them on illumination maps where there are any.
+// rays by the technique, which ends them on illumination maps where there are any. The volume's own
+// matter stops light, too, unless it is hidden.
 VolumeLight room_light(const World& world, const Lights& lights, const Technique& technique,
                        const PlacedVolume& placed);
 

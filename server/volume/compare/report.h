@@ -7,7 +7,6 @@
 
 #include "volume/compare/deviation_colors.h"
 #include "volume/compare/lens.h"
-#include "volume/compare/ray_profile.h"
 #include "volume/compare/registration.h"
 #include "volume/compare/statistics.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays through a volume share this: places in samples, and the exponential.
+// Rays through a volume share this: cuts, places in samples, and the exponential.
 #pragma once
 #include <cmath>
 
@@ -7,6 +7,12 @@
 #include "volume/draw/shown_volume.h"
 
 namespace wellspring::volume {
+
+// A half-space that is kept: places p with dot(normal, p) >= offset, metres.
+struct VolumeCut {
+  vec3 normal{1, 0, 0};
+  float offset = 0;
+};
 
 // Leads from metres to places in a level, in samples: `turn` times a place plus `shift`.
 struct ToSamples {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "volume/draw/along_ray.h"
 #include "volume/draw/light_grid.h"
 #include "volume/draw/preset.h"
 #include "volume/draw/shown_volume.h"
@@ -28,12 +29,6 @@ struct DrawnPreset {
 struct VolumeRays {
   Lanes3 origin, direction;
   Lanes near{}, far{};
-};
-
-// A half-space that is kept: places p with dot(normal, p) >= offset, metres.
-struct VolumeCut {
-  vec3 normal{1, 0, 0};
-  float offset = 0;
 };
 
 struct MarchSettings {

@@ -7,7 +7,6 @@
 
 #include "volume/draw/along_ray.h"
 #include "volume/draw/light_grid.h"
-#include "volume/draw/march.h"
 #include "volume/reconstruct/trilinear.h"
 
 namespace wellspring::volume {

@@ -107,7 +107,7 @@ std::vector<int> split_bins(const Histogram& histogram, int classes) {
   return firsts;
 }
 
-constexpr double brightness = 1.5;  // of a ray through a nebula, over that of its picture
+constexpr double brightness = 1.5;  // a ray through a nebula is so much brighter than its picture
 const vec3 linen(0.62f, 0.47f, 0.29f), bone(0.84f, 0.77f, 0.6f), gold(0.9f, 0.6f, 0.18f);
 
 }  // namespace

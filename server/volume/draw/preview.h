@@ -25,7 +25,7 @@ struct PreviewView {
 // Holds where the eye stands, in the frame of Volume::to_metres.
 struct PreviewEye {
   vec3 eye, from, right, above;  // `from`: from the volume's middle to the eye
-  float half, pixel;             // of the picture and of a pixel, at a depth of 1
+  float half, pixel;             // the picture's and a pixel's, at a depth of 1
   int level;                     // whose samples are about as far apart as pixels
 
   PreviewEye(const ShownVolume& volume, const PreviewView& view);

@@ -23,7 +23,8 @@ struct VolumeLevel {
   NormalGrid normals;
   glm::ivec3 cells{0};
   std::vector<CodeRange> ranges;  // one for each cell, x fastest (find_ranges())
-  // Of a volume of colours: color_row() of red, green and blue. Empty: tables alone give colour.
+  // Hold color_row() of red, green and blue of a volume of colours. Empty: tables alone give
+  // colour.
   std::vector<uint16_t> colors[3];
 
   // Only of whole levels.

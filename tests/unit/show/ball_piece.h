@@ -2,7 +2,7 @@
 // A piece that is a scanned volume: a ball of 20 mm with a core of 8 mm, ten times as large.
 #pragma once
 #include "show/exhibit/exhibit.h"
-#include "unit/volume/made_volume.h"
+#include "unit/volume/draw_made.h"
 
 namespace wellspring::test {
 

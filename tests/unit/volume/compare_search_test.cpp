@@ -6,7 +6,7 @@
 #include "compare_solids.h"
 #include "base/rng.h"
 #include "volume/compare/cone_search.h"
-#include "volume/compare/ray_profile.h"
+#include "volume/compare/lens.h"
 
 namespace wellspring::test {
 namespace {

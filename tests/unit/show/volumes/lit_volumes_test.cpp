@@ -7,6 +7,7 @@
 #include "show/exhibit/exhibit_volumes.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/volume/draw_made.h"
+#include "wire/messages.h"
 #include "world/world.h"
 
 namespace wellspring::test {
@@ -16,6 +17,12 @@ namespace {
 Exhibit open_exhibit() {
   Exhibit exhibit;
   exhibit.scene.objects = {"", "ball"};
+  // Something far away that light falls on, or lights would not count.
+  Mesh speck;
+  add_quad(speck, {0, -100, 0}, {0.001f, 0, 0}, {0, 0, -0.001f});
+  exhibit.scene.materials.emplace_back().metallic = 0;
+  exhibit.scene.meshes.push_back(speck);
+  exhibit.scene.instances.push_back({0, mat4(1), 0});
   ExhibitPiece piece;
   piece.id = "ball", piece.object = 1;
   piece.volume =
@@ -64,6 +71,7 @@ TEST(RoomLight, ASunIsALamp) {
   room.exhibit.scene.lights = {sun_from(side)};
   room.exhibit.pieces[0].yaw = pi;  // axes are the scene's
   room.begin();
+  room.world->show_volume(0, {});
   const VolumeLight light =
       room_light(*room.world, room.lights, room.technique, room.world->volumes()[0]);
   EXPECT_NEAR(distance(light.to_lamp, side), 0, 1e-4f);
