@@ -190,6 +190,11 @@ Bounds object_bounds(const World& world, const PointOfInterest& point) {
       bounds.low = min(bounds.low, p), bounds.high = max(bounds.high, p);
     }
   }
+  for (const PlacedVolume& placed : world.volumes()) {
+    if (std::ranges::find(point.objects, placed.object) == point.objects.end()) continue;
+    const Bounds around = bounds_of(placed);
+    bounds.low = min(bounds.low, around.low), bounds.high = max(bounds.high, around.high);
+  }
   return bounds;
 }
 

@@ -5,6 +5,7 @@
 
 #include "light/sample/lights.h"
 #include "show/exhibit/exhibit_volumes.h"
+#include "show/visit/place.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/volume/draw_made.h"
 #include "wire/messages.h"
@@ -171,6 +172,18 @@ TEST(LitVolumes, AGlassCutsFromTheSideThatIsSeen) {
   ASSERT_EQ(cuts.size(), 1u);
   EXPECT_NEAR(cuts[0].normal.z, -1, 1e-6f);
   EXPECT_NEAR(cuts[0].offset, -0.014f, 1e-5f) << "10 of the 24 mm before the middle are gone";
+}
+
+TEST(LitVolumes, AVolumeIsAThingThatVisitorsLookAtFromAllSides) {
+  Room room;
+  room.exhibit.pieces[0].position = {2, 1, 3};
+  room.begin();
+  PointOfInterest point;
+  point.objects = {1};
+  const Bounds bounds = object_bounds(*room.world, point);
+  const vec3 middle = 0.5f * (bounds.low + bounds.high);
+  EXPECT_NEAR(distance(middle, vec3(2, 1.024f, 3)), 0, 1e-4f);
+  EXPECT_NEAR(bounds.high.y - bounds.low.y, 0.048f, 1e-4f);
 }
 
 }  // namespace
