@@ -66,6 +66,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
   const bool hurried = place.camera_cuts != picture.job.camera_cuts &&
                        count_moving(show.visits, show.time) > int(!stands(show.time, visitor));
   job.dynamic = visitor.dynamic;
+  job.pieces = visitor.pieces.shown;
   // Over pictures at rest, the light of dynamic lights is put with moving things
   // (show/draw/still_pass.h).
   const bool put_over = show.stage.visibility->rasterises(now);
@@ -137,7 +138,7 @@ bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor
       visitor.picture->drawn_at >= 0 && visitor.picture->job.camera_cuts == job.camera_cuts;
   return has_one && is_still(job) &&
          (visitor.place.last_view != job.expected || lamps_wait(show, visitor) ||
-          moves_lens(show.time, visitor) ||
+          moves_lens(show.time, visitor) || job.pieces != visitor.pieces.shown ||
           job.sees_moving != sees_moving(show.cast, show.visits, visitor, visitor.place.last_view));
 }
 

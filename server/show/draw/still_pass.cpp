@@ -46,12 +46,16 @@ void go_on_with_pass(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& v
     double seconds = std::clamp(drawing.renderer.until_moving, least_step, slice);
     if (!pass.denoiser->advance(seconds, &pass.given_up)) pass.step = StillPass::Step::finish;
   } else if (pass.step == StillPass::Step::finish) {
-    finish_reconstruction(visitor.picture->compositor.samples(), *pass.denoiser, pass.work,
-                          pass.frame);
-    visitor.picture->compositor.lay_volumes_over(pass.job.view, pass.frame);
-    tonemap(pass.frame, Tonemap{stage.exhibit.exposure}, pass.picture);
-    make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
-    pass.step = StillPass::Step::done;
+    Compositor& compositor = visitor.picture->compositor;
+    if (compositor.samples().count.size() != pass.frame.color.size()) {
+      pass.given_up = true;  // its samples were forgotten meanwhile, as the visitor sees others
+    } else {
+      finish_reconstruction(compositor.samples(), *pass.denoiser, pass.work, pass.frame);
+      compositor.lay_volumes_over(pass.job.view, pass.frame);
+      tonemap(pass.frame, Tonemap{stage.exhibit.exposure}, pass.picture);
+      make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
+      pass.step = StillPass::Step::done;
+    }
   }
   pass.seconds += seconds_now() - began;
 }

@@ -31,6 +31,7 @@
 #include "picture/keyframe.h"
 #include "picture/still/reconstruct_still.h"
 #include "picture/warp_picture.h"
+#include "show/exhibit/piece_choices.h"
 #include "show/state/visitor_attention.h"
 #include "world/view.h"
 
@@ -85,6 +86,7 @@ struct PictureJob {
   std::optional<View> around;
   int samples = 0;
   DynamicLights dynamic;  // lights that move or change, as they are at that time
+  ShownPieces pieces;     // seen by the visitor
 };
 
 // Returns whether it is drawn in steps for a visitor who stands.
