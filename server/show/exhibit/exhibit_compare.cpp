@@ -60,7 +60,7 @@ void compare_model(const std::string& model, const std::string& scan, const Exhi
   const int coarse = std::clamp(1, piece.volume->whole_level, int(piece.volume->levels.size()) - 1);
   ShownVolume volume = coarser(*piece.volume, coarse);
   set_colors(spread(comparison, volume), volume);
-  comparison.points = {}, comparison.deviations = {};
+  comparison.points = std::vector<SurfacePoint>(), comparison.deviations = std::vector<Deviation>();
   Preset preset{layer.id, VolumeMode::surface, {{outside.points.front().value, vec3(1), 1}}};
   layer.preset = std::move(preset);
   layer.volume = std::make_shared<ShownVolume>(std::move(volume));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double most_density = 1e6;  // per millimetre
 constexpr size_t most_points = 64;
-constexpr int nebula_side = 160;  // voxels
+constexpr int nebula_side = 96;  // voxels
 
 // Returns what a preset that was found (volume/draw/preset.h) is called.
 LocalText label_of(const std::string& found) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/log.h"
+#include "base/memory.h"
 #include "base/worker.h"
 #include "light/kept/bake_file.h"
 #include "light/kept/map_file.h"
@@ -145,6 +146,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   begin_maps(*show, std::move(maps));
   show->stage.volumes.begin(show->stage.exhibit, show->stage.lights, *show->stage.technique,
                             *show->stage.world);
+  return_memory();  // what loading needed
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->stage.exhibit.id,
             triangle_count(scene), show->stage.exhibit.viewpoints.size(), scene.materials.size());
   return show;
