@@ -146,7 +146,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   begin_maps(*show, std::move(maps));
   show->stage.volumes.begin(show->stage.exhibit, show->stage.lights, *show->stage.technique,
                             *show->stage.world);
-  return_memory();  // what loading needed
+  return_memory();  // loading needed more
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->stage.exhibit.id,
             triangle_count(scene), show->stage.exhibit.viewpoints.size(), scene.materials.size());
   return show;
