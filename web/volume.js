@@ -133,7 +133,7 @@ export function make_volume({ piece, name, lang, choice, orders, glass, kept }) 
     return element('div.glass-choice', {}, list, row);
   }
 
-  // Of a nebula only: how its axis leans to the eye; at first as it was found.
+  // A nebula has a slider for how its axis leans to the eye; at first it is as it was found.
   function make_tilt() {
     const { tilt } = piece.volume;
     if (tilt === undefined) return null;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a volume is drawn from: 16-bit codes of what its samples measure, in levels of detail, and
+// A volume is drawn from 16-bit codes of what its samples measure, in levels of detail, and from
 // the range of codes in each cell of 8 x 8 x 8, so that rays leap over what is empty. Functions
 // take rows and slices, so that volumes larger than memory go through them piece by piece.
 #pragma once

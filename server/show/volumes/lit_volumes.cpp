@@ -7,9 +7,9 @@
 #include <list>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "base/memory.h"
 #include "base/worker.h"
 #include "show/exhibit/exhibit_volumes.h"
 
@@ -63,7 +63,8 @@ struct LitVolumes::Impl {
   std::list<KnownRoom> rooms;
   mutable std::mutex guard;    // guards what follows
   std::list<LitPreset> kept;   // the one used last comes first
-  std::vector<Wanted> wanted;  // at most one a piece and use: the newest
+  std::vector<Wanted> wanted;  // at most one a piece and layer: the newest
+  bool working = false;        // the worker goes on until nothing is wanted
   std::atomic<uint64_t> made{0};
   Worker worker;  // the last member: it is waited for before the others end
 
@@ -128,6 +129,7 @@ void LitVolumes::Impl::keep(LitPreset made_now) {
 }
 
 void LitVolumes::Impl::want(Wanted wish) {
+  bool begins = false;
   {
     std::lock_guard lock(guard);
     const auto same = std::ranges::find_if(wanted, [&](const Wanted& one) {
@@ -135,8 +137,9 @@ void LitVolumes::Impl::want(Wanted wish) {
     });
     if (same != wanted.end()) *same = std::move(wish);
     else wanted.push_back(std::move(wish));
+    begins = !std::exchange(working, true);
   }
-  if (!worker.busy()) worker.run([this] { make_wanted(); });
+  if (begins) worker.run([this] { make_wanted(); });
 }
 
 void LitVolumes::Impl::make_wanted() {
@@ -144,7 +147,10 @@ void LitVolumes::Impl::make_wanted() {
     std::optional<Wanted> next;
     {
       std::lock_guard lock(guard);
-      if (wanted.empty()) return;
+      if (wanted.empty()) {
+        working = false;
+        return;
+      }
       next = std::move(wanted.front());
       wanted.erase(wanted.begin());
     }
@@ -218,14 +224,6 @@ void LitVolumes::wait() { impl_->worker.wait(); }
 uint64_t LitVolumes::arrivals() const {
   uint64_t sum = impl_->made;
   for (const auto& volume : impl_->volumes) sum += volume->arrivals();
-  return sum;
-}
-
-size_t LitVolumes::memory_bytes() const {
-  std::lock_guard lock(impl_->guard);
-  size_t sum = 0;
-  for (const LitPreset& one : impl_->kept)
-    sum += bytes_of(one.drawn->grid.lamp, one.drawn->grid.around);
   return sum;
 }
 

@@ -29,7 +29,6 @@ class LitVolumes {
   // Returns how often something was made since the beginning, or read of volumes that are larger
   // than memory: then pictures may show it.
   uint64_t arrivals() const;
-  size_t memory_bytes() const;
 
  private:
   struct Impl;

@@ -45,9 +45,20 @@ VolumeLevel halve_level(const VolumeLevel& from, glm::ivec3 size) {
   VolumeLevel to;
   to.size = size;
   to.codes = halve(from.codes, from.size, size);
-  for (size_t channel = 0; !from.colors[0].empty() && channel < 3; channel++)
-    to.colors[channel] = halve(from.colors[channel], from.size, size);
   return to;
+}
+
+std::array<std::vector<uint16_t>, 3> color_planes(const Volume& volume) {
+  std::array<std::vector<uint16_t>, 3> planes;
+  for (int channel = 0; channel < 3; channel++) {
+    std::vector<uint16_t>& plane = planes[size_t(channel)];
+    plane.resize(volume.samples());
+    parallel_each(volume.size.z * volume.size.y, [&](int row) {
+      color_row(volume, channel, row % volume.size.y, row / volume.size.y,
+                &plane[size_t(row) * size_t(volume.size.x)]);
+    });
+  }
+  return planes;
 }
 
 size_t sample_count(const VolumeLevel& level) {
@@ -101,19 +112,12 @@ ShownVolume make_shown_volume(const Volume& volume) {
     for (int y = 0; y < volume.size.y; y++, index += size_t(volume.size.x))
       code_row(volume, shown, y, z, &finest.codes[index]);
   });
-  for (int channel = 0; volume.channels == 3 && channel < 3; channel++) {
-    std::vector<uint16_t>& plane = finest.colors[channel];
-    plane.resize(volume.samples());
-    parallel_each(volume.size.z * volume.size.y, [&](int row) {
-      color_row(volume, channel, row % volume.size.y, row / volume.size.y,
-                &plane[size_t(row) * size_t(volume.size.x)]);
-    });
-  }
   shown.code_counts.resize(code_bins);
   for (const uint16_t code : finest.codes) shown.code_counts[code * size_t(code_bins) / 65536]++;
   const std::vector<glm::ivec3> sizes = level_sizes(volume.size);
   for (size_t k = 1; k < sizes.size(); k++)
     shown.levels.push_back(halve_level(shown.levels.back(), sizes[k]));
+  if (volume.channels == 3) set_colors(color_planes(volume), shown);
   for (VolumeLevel& level : shown.levels) add_normals_and_ranges(level);
   return shown;
 }
