@@ -13,6 +13,8 @@ namespace ledger {}
 namespace image {}
 namespace store {}
 namespace volume {}
+namespace scan {}
+namespace lawn {}
 namespace frame {}
 namespace attention {}
 namespace denoise {}
@@ -42,6 +44,18 @@ using namespace image;
 using namespace json;
 }  // namespace volume
 
+namespace scan {
+using namespace gltf;
+using namespace store;
+using namespace image;
+using namespace json;
+}  // namespace scan
+
+namespace lawn {
+using namespace image;
+using namespace json;
+}  // namespace lawn
+
 namespace wire {
 using namespace json;
 }  // namespace wire
@@ -55,12 +69,16 @@ using namespace gltf;
 using namespace image;
 using namespace store;
 using namespace volume;
+using namespace scan;
+using namespace lawn;
 }  // namespace world
 
 namespace light {
 using namespace world;
 using namespace store;
 using namespace volume;
+using namespace scan;
+using namespace lawn;
 using namespace frame;
 }  // namespace light
 
@@ -87,6 +105,8 @@ namespace show {
 using namespace picture;
 using namespace store;
 using namespace volume;
+using namespace scan;
+using namespace lawn;
 using namespace cache;
 using namespace denoise;
 using namespace light;
@@ -126,6 +146,8 @@ using namespace ledger;
 using namespace image;
 using namespace store;
 using namespace volume;
+using namespace scan;
+using namespace lawn;
 using namespace frame;
 using namespace attention;
 using namespace denoise;

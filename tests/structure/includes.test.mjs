@@ -40,6 +40,13 @@ const may_enter = {
     bricks: ['reconstruct', 'format', ''],
     draw: ['bricks', 'reconstruct', 'format', ''],
   },
+  scan: {
+    '': [],
+    format: [''],
+    tree: [''],
+    splats: ['format', ''],
+    draw: ['tree', ''],
+  },
   world: {
     '': [],
     motion: [''],
