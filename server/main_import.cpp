@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs `wellspring import picture FILE...`: makes tiled TIFFs with smaller versions inside of
 // pictures of any format that vips reads, for `pieces` of exhibit.json; and `wellspring import
-// volume PATH`: reads a scanned volume, of DICOM by dcm2niix, and puts it into an exhibit. Exit
-// status: 0 done, 1 the input is wrong, 2 the command line is wrong.
+// volume PATH`: reads a scanned volume, of DICOM by dcm2niix, and puts it into an exhibit; and
+// `wellspring import scan FILE...`: makes a tree of the points of a place or thing. Exit status: 0
+// done, 1 the input is wrong, 2 the command line is wrong.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -15,6 +16,7 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "main_import_scan.h"
 #include "main_import_volume.h"
 #include "store/open/open_picture.h"
 #include "volume/format/raw_json.h"
@@ -140,6 +142,26 @@ int main(int argc, char** argv) {
         throw CLI::Success();
       },
       "print the JSON Schema of the file that describes raw samples");
+  ScanImport place;
+  CLI::App& points = *app.add_subcommand(
+      "scan", "points of a place or thing, as a tree that is larger than memory; prints a piece");
+  points
+      .add_option("files", place.files,
+                  "LAS, LAZ, COPC, EPT, E57, PLY, PTS, XYZ, PCD or glTF; all of one scan")
+      ->required();
+  points.add_option("--out", place.out, "folder for the tree")->capture_default_str();
+  points.add_option("--name", place.name, "of the tree; without it that of the first file");
+  points.add_option("--up", place.up, "axis of the files that points up")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  points.add_option("--unit", place.unit, "metres of a unit of the files; without it as they say")
+      ->check(CLI::Range(1e-6, 1e6));
+  points.add_option("--turn", place.turn, "degrees by which it is turned to the left")
+      ->check(CLI::Range(-360.0, 360.0));
+  points.add_option("--memory", place.memory, "MiB that may be used")
+      ->check(CLI::Range(64, 1 << 20))
+      ->capture_default_str();
+  points.add_flag("--overwrite", place.overwrite, "replace what is there");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -147,6 +169,7 @@ int main(int argc, char** argv) {
   }
   try {
     if (volume.parsed()) return import_volume(scan), 0;
+    if (points.parsed()) return import_scan(place), 0;
     fs::create_directories(options.out);
     for (const std::string& file : options.files) import_picture(options, file);
     return 0;

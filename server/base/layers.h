@@ -93,6 +93,8 @@ using namespace cache;
 using namespace denoise;
 using namespace light;
 using namespace world;
+using namespace scan;
+using namespace lawn;
 using namespace frame;
 }  // namespace picture
 

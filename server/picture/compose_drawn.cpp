@@ -10,9 +10,9 @@
 #include "light/sample/illumination_map.h"
 #include "picture/drawn_planes.h"
 #include "picture/drawn_run.h"
+#include "picture/laid_view.h"
 #include "picture/pixel_light.h"
 #include "picture/soften_edges.h"
-#include "picture/volume_view.h"
 
 namespace wellspring::picture {
 namespace {
@@ -133,7 +133,6 @@ struct Composer {
   KeptLight kept = {};
   bool passing = false;  // the picture is soon replaced: maps light what they can alone
   Shade shade = {};
-  VolumeView volumes = {};
 
   // Returns the light of surfaces of which nothing is known.
   vec3 usual_light() const { return vec3(kept.maps ? kept.maps->usual : 0); }
@@ -288,8 +287,9 @@ auto taker(const Composer& composer, const Planes& planes) {
       int i = n * lane_count - half_cell;
       LanePart part{std::max(-i, 0), std::min(run.count - i, lane_count)};
       Shown shown = composer.light_part(run, p, emitting, moving, mapped, dynamic, rows, n, part);
-      if (composer.volumes.shows(run.x + i, run.y, lane_count))
-        composer.volumes.lay_over(run.x + i, run.y, composer.offset, shown);
+      const LaidView* laid = composer.passing ? composer.kept.laid : nullptr;
+      if (laid && laid->shows(run.x + i, run.y, lane_count))
+        laid->lay_over(run.x + i, run.y, shown);
       planes.put(row + size_t(i + part.begin), part, shown);
     }
   };
@@ -311,7 +311,6 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view,
   composer.kept = kept;
   composer.passing = true;
   composer.shade = Shade(view, visibility.moving_bounds());
-  composer.volumes = VolumeView(kept.volumes, view, false, 0);
   auto differ = [&planes](uint32_t pixel, uint32_t step, int count) {
     return planes.differ(pixel, step, count);
   };

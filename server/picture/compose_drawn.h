@@ -7,7 +7,6 @@
 #include "frame/tonemap.h"
 #include "light/visible/visibility.h"
 #include "picture/keyframe.h"
-#include "world/placed_volume.h"
 
 namespace wellspring::light {
 struct DynamicImage;     // light/virtual/dynamic_image.h
@@ -17,6 +16,8 @@ struct SkinLight;        // light/kept/skin_light.h
 
 namespace wellspring::picture {
 
+class LaidView;  // picture/laid_view.h
+
 // Holds borrowed light that need not be found; with null pointers, points light everything.
 struct KeptLight {
   const SkinLight* skin = nullptr;  // light of moving meshes
@@ -24,8 +25,9 @@ struct KeptLight {
   const IlluminationMap* maps = nullptr;  // unit of the light in still surfaces' points
   // Dynamic light, computed for pictures of the view that is drawn.
   const DynamicImage* dynamic = nullptr;
-  // Volumes that a picture which is soon replaced shows; others get them later (volume_view.h).
-  std::span<const PlacedVolume> volumes;
+  // Is laid over a picture which is soon replaced; others get it later (laid_view.h). Null:
+  // nothing.
+  const LaidView* laid = nullptr;
 };
 
 // Overwrites all planes of `frame`. `light`: its planes are packed as read_surface() leaves them,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <optional>
 
 #include "base/clock.h"
 #include "base/memory.h"
@@ -109,7 +110,8 @@ void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tone
 static constexpr int few_samples = 4;
 
 size_t memory_bytes(const CompositorWork& work) {
-  return memory_bytes(work.light) + bytes_of(work.peaks, work.shares);
+  return memory_bytes(work.light) + bytes_of(work.peaks, work.shares, work.depth) +
+         work.laid.memory_bytes();
 }
 
 Compositor::Compositor(std::shared_ptr<CompositorWork> shared)
@@ -157,22 +159,37 @@ void Compositor::draw(RenderCache& cache, const View& view, const Compose& compo
   cache.end_frame(shown);
 }
 
+// Does the same for a picture that is soon replaced, in which things are laid.
+template <class Compose>
+void Compositor::draw_laid(RenderCache& cache, const View& view, const Compose& compose) {
+  draw(cache, view, [&](float) {
+    KeptLight kept = kept_;
+    std::optional<LaidView> laid;
+    if (!laid_.empty()) kept.laid = &laid.emplace(laid_, view, vec2(0.5f), false, 0, work_->laid);
+    compose(kept);
+  });
+}
+
 void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                       Frame& frame) {
   if (!cache.has_projected(view)) cache.project(view);
   begin(cache);
   fit_frame(view.width, view.height, frame);
-  draw(cache, view,
-       [&](float) { compose_drawn(view, visibility, cells_, known_, work_->light, kept_, frame); });
+  draw_laid(cache, view, [&](const KeptLight& kept) {
+    compose_drawn(view, visibility, cells_, known_, work_->light, kept, frame);
+  });
 }
 
 void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                       const Tonemap& tonemap, Image8& image, std::vector<float>* depth) {
   if (!cache.has_projected(view)) cache.project(view);
   begin(cache);
-  draw(cache, view, [&](float) {
-    compose_drawn(view, visibility, cells_, known_, work_->light, kept_, tonemap, work_->peaks,
+  const std::span<const PlacedScan> scans = laid_.scans.all();
+  if (!depth && has_splats(scans)) depth = &work_->depth;
+  draw_laid(cache, view, [&](const KeptLight& kept) {
+    compose_drawn(view, visibility, cells_, known_, work_->light, kept, tonemap, work_->peaks,
                   image, depth);
+    if (has_splats(scans)) lay_splats_over(scans, view, work_->laid.splats, image, *depth);
   });
 }
 
@@ -255,7 +272,7 @@ void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
 }
 
 size_t Compositor::memory_bytes() const {
-  size_t sum = bytes_of(still_.count) + samples_bytes(samples_) + volumes_.memory_bytes();
+  size_t sum = bytes_of(still_.count) + samples_bytes(samples_) + layer_.memory_bytes();
   for (const auto& plane : still_.mean) sum += bytes_of(plane);
   return sum + (shares_ ? 0 : wellspring::picture::memory_bytes(*work_));
 }

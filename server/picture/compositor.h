@@ -17,7 +17,7 @@
 #include "picture/keyframe.h"
 #include "picture/still/still_samples.h"
 #include "picture/surface_image.h"
-#include "picture/volume_view.h"
+#include "picture/laid_view.h"
 
 namespace wellspring::picture {
 
@@ -55,6 +55,8 @@ struct CompositorWork {
   Frame light;                 // packed (picture/surface_image.h)
   std::vector<uint8_t> peaks;  // light beyond white of a picture for the eye
   std::vector<float> shares;   // shares of means in a picture at rest (mix_in_means())
+  LaidWork laid;
+  std::vector<float> depth;  // of a picture for the eye whose caller wants none
 };
 size_t memory_bytes(const CompositorWork& work);
 
@@ -73,8 +75,8 @@ class Compositor {
     kept_.maps = maps.get();
     maps_ = std::move(maps);
   }
-  // Shows these volumes from now on (borrowed).
-  void set_volumes(std::span<const PlacedVolume> volumes) { kept_.volumes = volumes; }
+  // Lays these things over pictures from now on (borrowed).
+  void set_laid(const LaidThings& things) { laid_ = things; }
   // Adds dynamic light to pictures from now on (borrowed; null: none); `image` has to be computed
   // for each view before. Pictures at rest, which become means, are drawn without it.
   void set_dynamic(const DynamicImage* image) { kept_.dynamic = image; }
@@ -88,9 +90,9 @@ class Compositor {
   // pixels each time.
   void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                   Frame& frame, StillShows shows = StillShows::all);
-  // Lays the volumes over a picture at rest, the better the more often it is done for a view.
-  void lay_volumes_over(const View& view, Frame& frame) {
-    volumes_.lay_over(kept_.volumes, view, 1, frame);
+  // Lays them over a picture at rest, the better the more often it is done for a view.
+  void lay_over_still(const View& view, Frame& frame) {
+    layer_.lay_over(laid_, view, 1, work_->laid, frame);
   }
   // Forgets the samples of pixels at which RenderCache::remember(), called before at rest, has
   // found changed light since the last picture.
@@ -124,6 +126,8 @@ class Compositor {
  private:
   template <class Compose>
   void draw(RenderCache& cache, const View& view, const Compose& compose);
+  template <class Compose>
+  void draw_laid(RenderCache& cache, const View& view, const Compose& compose);
   void begin(const RenderCache& cache);
   void begin_still(const RenderCache& cache);
 
@@ -136,7 +140,8 @@ class Compositor {
   StillImage still_;
   StillSamples samples_;
   View sampled_;  // the view of samples_
-  VolumeLayer volumes_;
+  LaidThings laid_;
+  LaidLayer layer_;
   bool reconstructed_ = false;
   uint64_t projection_ = 0;  // RenderCache::projection() of the means that are kept
   uint32_t pictures_ = 0;

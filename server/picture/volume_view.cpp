@@ -5,10 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "base/memory.h"
-#include "base/parallel.h"
 #include "base/rng.h"
-#include "picture/drawn_planes.h"
 #include "picture/keyframe.h"
 
 namespace wellspring::picture {
@@ -19,7 +16,6 @@ constexpr float moving_step = 1, settled_step = 0.5f;  // samples of the level
 // Volumes that overlap are marched in turn through parts of at least so many steps.
 constexpr int most_slabs = 32;
 constexpr float slab_steps = 4;
-constexpr uint32_t most_pictures = 64;  // whose mean is shown at rest
 constexpr float half_seen = 0.5f;  // share of the light behind that a volume keeps, to be there
 
 constexpr float golden = 0.618034f;
@@ -130,7 +126,7 @@ MarchedLight VolumeView::march_one(const Seen& seen, const Rays& rays) const {
   return found;
 }
 
-void VolumeView::add(const Seen& seen, const Rays& rays, LaidVolumes& laid) const {
+void VolumeView::add(const Seen& seen, const Rays& rays, Laid& laid) const {
   const MarchedLight found = march_one(seen, rays);
   laid.light = laid.light + found.color * laid.clear;
   const Lanes after = laid.clear * found.clear;
@@ -140,8 +136,7 @@ void VolumeView::add(const Seen& seen, const Rays& rays, LaidVolumes& laid) cons
   laid.clear = after;
 }
 
-void VolumeView::add_jointly(std::span<const Seen> group, const Rays& rays,
-                             LaidVolumes& laid) const {
+void VolumeView::add_jointly(std::span<const Seen> group, const Rays& rays, Laid& laid) const {
   Lanes enter = all_lanes(INFINITY), leave{};
   float step = INFINITY;  // metres
   for (const Seen& seen : group) {
@@ -168,7 +163,7 @@ void VolumeView::add_jointly(std::span<const Seen> group, const Rays& rays,
   }
 }
 
-LaidVolumes VolumeView::look(int x, int y, vec2 offset, const Lanes& surface) const {
+Laid VolumeView::look(int x, int y, vec2 offset, const Lanes& surface) const {
   const vec2 axis = axis_place(view_);
   const float pixel = 2 * view_.tan_half_fov / float(view_.height);
   const Lanes right = (lane + (float(x) + offset.x - axis.x)) * pixel;
@@ -180,7 +175,7 @@ LaidVolumes VolumeView::look(int x, int y, vec2 offset, const Lanes& surface) co
   rays.near = view_.near * rays.length;
   rays.far = surface * rays.length;
   rays.jitter = spread_steps(x, y, turn_);
-  LaidVolumes laid;
+  Laid laid;
   for (size_t i = 0; i < seen_.size(); i++) {
     size_t last = i;
     while (seen_[last].joint) last++;
@@ -196,64 +191,5 @@ LaidVolumes VolumeView::look(int x, int y, vec2 offset, const Lanes& surface) co
   }
   return laid;
 }
-
-void VolumeView::lay_over(int x, int y, vec2 offset, Shown& shown) const {
-  const LaidVolumes laid = look(x, y, offset, shown.depth);
-  shown.color.r = laid.light.x + laid.clear * shown.color.r;
-  shown.color.g = laid.light.y + laid.clear * shown.color.g;
-  shown.color.b = laid.light.z + laid.clear * shown.color.b;
-  const LaneMask there = laid.depth < shown.depth;
-  shown.depth = there ? laid.depth : shown.depth;
-  shown.object = there ? laid.object : shown.object;
-}
-
-void VolumeLayer::lay_over(std::span<const PlacedVolume> volumes, const View& view, int places,
-                           Frame& frame) {
-  if (volumes.empty()) return;
-  std::vector<VolumeLook> looks;
-  uint64_t arrivals = 0;
-  for (const PlacedVolume& placed : volumes)
-    looks.push_back(placed.look), arrivals += placed.shown().arrivals();
-  if (view != view_ || looks != looks_ || arrivals != arrivals_) {
-    view_ = view, looks_ = std::move(looks), arrivals_ = arrivals, pictures_ = 0;
-    window_ = VolumeView(volumes, view, true, 0).window();
-    const size_t pixels = window_.empty() ? 0 : size_t(window_.width) * size_t(window_.height);
-    color_.assign(pixels, vec3(0)), clear_.assign(pixels, 0);
-    depth_.assign(pixels, INFINITY), object_.assign(pixels, 0);
-  }
-  if (window_.empty()) return;
-  std::vector<VolumeView> more;
-  for (; places > 0 && pictures_ < most_pictures; places--)
-    more.emplace_back(volumes, view, true, pictures_++);
-  const uint32_t first = pictures_ - uint32_t(more.size());
-  const float share = 1 / float(pictures_);
-  parallel_each(window_.height, [&](int row) {
-    const int y = window_.top + row;
-    const size_t to = size_t(row) * size_t(window_.width);
-    const size_t from = size_t(y) * size_t(view.width) + size_t(window_.left);
-    for (int x = 0; x < window_.width; x += lane_count) {
-      const int count = std::min(lane_count, window_.width - x);
-      Lanes surface{};
-      for (int k = 0; k < count; k++) surface[k] = frame.depth[from + size_t(x + k)];
-      for (size_t n = 0; n < more.size(); n++) {
-        const vec2 offset = spread_in_pixel(int(first + uint32_t(n)));
-        const LaidVolumes laid = more[n].look(window_.left + x, y, offset, surface);
-        for (int k = 0; k < count; k++) {
-          const size_t i = to + size_t(x + k);
-          color_[i] += laid.light.at(k), clear_[i] += laid.clear[k];
-          depth_[i] = laid.depth[k], object_[i] = laid.object[k];
-        }
-      }
-    }
-    for (int x = 0; x < window_.width; x++) {
-      const size_t i = to + size_t(x), at = from + size_t(x);
-      frame.color[at] = share * (color_[i] + clear_[i] * frame.color[at]);
-      if (!(depth_[i] < frame.depth[at])) continue;
-      frame.depth[at] = depth_[i], frame.object[at] = object_[i];
-    }
-  });
-}
-
-size_t VolumeLayer::memory_bytes() const { return bytes_of(color_, clear_, depth_, object_); }
 
 }  // namespace wellspring::picture

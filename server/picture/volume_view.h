@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lays the volumes of a world over pictures that are drawn without them: marches from the eye to
-// the surface that a pixel shows (volume/draw/march.h).
+// Finds what the volumes of a world add to pictures that are drawn without them: marches from the
+// eye to the surface that a pixel shows (volume/draw/march.h).
 #pragma once
 #include <cstdint>
 #include <span>
@@ -13,10 +13,8 @@
 
 namespace wellspring::picture {
 
-struct Shown;  // picture/drawn_planes.h
-
-// Holds what volumes add to eight pixels.
-struct LaidVolumes {
+// Holds what is laid over eight pixels.
+struct Laid {
   Lanes3 light;                       // linear
   Lanes clear = all_lanes(1);         // share of the light behind that comes through
   Lanes depth = all_lanes(INFINITY);  // metres along the axis until half is absorbed
@@ -35,9 +33,7 @@ class VolumeView {
   PictureWindow window() const { return all_; }  // around all that may show a volume
   // Looks at eight pixels from (x, y) on, at `offset` in each of them, as far as `surface`: metres
   // along the axis, infinity: nothing is there.
-  LaidVolumes look(int x, int y, vec2 offset, const Lanes& surface) const;
-  // Lays volumes over these pixels.
-  void lay_over(int x, int y, vec2 offset, Shown& shown) const;
+  Laid look(int x, int y, vec2 offset, const Lanes& surface) const;
 
  private:
   struct Seen {
@@ -57,37 +53,14 @@ class VolumeView {
   float step_in_samples() const;          // counted in the level
   float step_of(const Seen& seen) const;  // metres
   MarchedLight march_one(const Seen& seen, const Rays& rays) const;
-  void add(const Seen& seen, const Rays& rays, LaidVolumes& laid) const;
-  void add_jointly(std::span<const Seen> group, const Rays& rays, LaidVolumes& laid) const;
+  void add(const Seen& seen, const Rays& rays, Laid& laid) const;
+  void add_jointly(std::span<const Seen> group, const Rays& rays, Laid& laid) const;
 
   View view_;
   bool settled_ = false;
   uint32_t turn_ = 0;
   std::vector<Seen> seen_;  // the nearest first
   PictureWindow all_;
-};
-
-// Keeps the mean of what volumes add to a view that stands still, each time seen at another place
-// of its pixels.
-class VolumeLayer {
- public:
-  // Looks at the volumes from so many more places of the pixels, unless there were enough, and lays
-  // the mean over the frame. Begins anew if the view or the looks have changed, or bricks have
-  // come.
-  void lay_over(std::span<const PlacedVolume> volumes, const View& view, int places, Frame& frame);
-  size_t memory_bytes() const;
-
- private:
-  View view_;
-  std::vector<VolumeLook> looks_;
-  PictureWindow window_;
-  uint64_t arrivals_ = 0;  // bricks that have come, of all volumes
-  uint32_t pictures_ = 0;
-  // Sums for each pixel of the window.
-  std::vector<vec3> color_;
-  std::vector<float> clear_;
-  std::vector<float> depth_;  // the last picture's; infinity: the surface's
-  std::vector<uint32_t> object_;
 };
 
 }  // namespace wellspring::picture

@@ -145,6 +145,9 @@ struct Mesh {
   std::vector<vec4> colors;  // linear, multiply base_color
   std::vector<uvec3> triangles;
   int material = 0;
+  // It stands for something finer that pictures lay over it (world/placed_scan.h): the eye does not
+  // see it, all other rays do.
+  bool stands_in = false;
 };
 
 struct Instance {

@@ -230,6 +230,11 @@ Face bare_face(const PlacedMesh& placed, uint32_t triangle) {
     if (face.normal != vec3(0)) face.extent = dot(glm::abs(face.normal), farthest);
     face.extent = -std::max(placed.steps * 0x1p-23f * face.extent, least_step);
   }
+  if (placed.stands_in) {
+    // Its squares lie across one another: a ray begins beyond the neighbours.
+    constexpr float beyond = 0.25f;  // sides
+    face.extent = -beyond * std::min(length(face.edge1), length(face.edge2));
+  }
   face.flat = 0;  // make_face() finds out
   return face;
 }
@@ -447,14 +452,13 @@ Lanes3 offset_origins(const LambertSurfaceLanes& s, const Lanes3& direction) {
     Lanes stepped = Lanes(LaneMask(p) + (p < zero ? -steps : steps));
     return lanes_abs(p) < near_zero ? p + near_step * normal : stepped;
   };
-  if (negative_lanes(s.extent < zero)) {  // in a scene all or none are below 0
-    Lanes step = lanes_max(-s.extent, zero);
-    return s.position + n * step;
-  }
+  const LaneMask known = s.extent < zero;
+  const Lanes3 apart = s.position + n * lanes_max(-s.extent, zero);
+  if (negative_lanes(~known) == 0) return apart;
   Lanes3 moved{move(s.position.x, n.x), move(s.position.y, n.y), move(s.position.z, n.z)};
   Lanes least = s.extent * 0x1p-20f;
   Lanes short_of = least - dot(moved - s.position, n);
-  return moved + n * (short_of > zero ? short_of : zero);
+  return choose(known, apart, moved + n * (short_of > zero ? short_of : zero));
 }
 
 }  // namespace wellspring::world

@@ -12,8 +12,8 @@ struct SurfacePlace {
   vec3 position{0};
   vec3 geometric_normal{0, 1, 0};  // unit, on the side the ray came from
   // Bounds the error of `position`: the largest coordinate of the triangle's corners; below 0, in
-  // scenes with something small far away: minus the metres by which the next ray starts off the
-  // surface.
+  // scenes with something small far away and on stand-ins: minus the metres by which the next ray
+  // starts off the surface.
   float extent = 0;
 };
 // Returns how far off `position` may be, in metres.

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "world/placed_scan.h"
 #include "world/placed_volume.h"
 #include "world/scene.h"
 
@@ -43,7 +44,8 @@ struct Ray {
   vec3 direction{0, 0, -1};
   float t_max = std::numeric_limits<float>::infinity();
   // The ray comes from the eye, straight or through thin panes: it passes back faces
-  // (PlacedMesh::one_sided). view_ray() sets it; light is stopped by both sides.
+  // (PlacedMesh::one_sided) and what stands in for something else (PlacedMesh::stands_in).
+  // view_ray() sets it; light is stopped by both sides, and by stand-ins.
   bool from_eye = false;
   // The ray stands for a cone: its width at the origin, in metres, and how much wider it becomes a
   // metre. 0: none. Only very large pictures are read by it.
@@ -112,6 +114,7 @@ struct PlacedMesh {
   const Face* faces = nullptr;
   uint32_t paints = 0;     // how often its material was repainted
   bool one_sided = false;  // the eye does not see its back faces (Scene::cull_back_faces)
+  bool stands_in = false;  // the eye does not see it at all (Mesh::stands_in)
   // Its triangles are so small for its place that world coordinates are too coarse for them: the
   // tree and faces have them relative to to_world[3] (world/world_build.h).
   bool apart = false;
@@ -175,6 +178,11 @@ class World {
   void place_volumes(std::vector<PlacedVolume> volumes);
   void show_volume(int volume, VolumeLook look);  // likewise
   std::span<const PlacedVolume> volumes() const;
+  // Scans stand in the scene from now on, in place of those before; their stand-ins are meshes of
+  // the scene. While nothing is drawn.
+  void place_scans(std::vector<PlacedScan> scans);
+  void show_scan(int scan, const ScanLook& look);  // likewise
+  std::span<const PlacedScan> scans() const;
   // Returns where a volume stops the ray before t_end, if one does: a mean of many rays is what
   // pictures march through it. Rays are stopped by chance, decided by a hash of the ray, so that a
   // replay agrees. `maxima`: also by volumes that show the largest value along a ray, which is no

@@ -455,7 +455,8 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
     }
     placed.one_sided =
         scene.cull_back_faces && !material.double_sided && !encloses_medium(material);
-    w.any_one_sided |= placed.one_sided;
+    placed.stands_in = placed.mesh->stands_in;
+    w.any_one_sided |= placed.one_sided || placed.stands_in;
   }
   mark_far(scene, w.placed);
   w.any_apart = std::any_of(w.placed.begin(), w.placed.end(),

@@ -51,6 +51,7 @@ struct World::Impl {
   LampLevels lamp_levels;
   std::vector<ShownPicture> pictures;  // for each of the images; empty: none is very large
   std::vector<PlacedVolume> volumes;
+  std::vector<PlacedScan> scans;
   std::vector<TrackedVolume> tracked;    // those that stop rays
   std::vector<std::vector<Face>> faces;  // for each instance of the scene, if placed points to them
   std::vector<Tag> tags;                 // reserved up front: geometries point into it
@@ -63,9 +64,9 @@ struct World::Impl {
   std::vector<int> moving_tangent_uv;  // texture coordinates of its tangents; -1: it has none
   // Area of each moving mesh's box when its tree was last built anew.
   std::vector<float> built_area;
-  Bounds moving_bounds;     // bounds of all visible moving meshes
-  bool any_moving = false;  // a moving mesh is visible
-  bool any_one_sided = false;
+  Bounds moving_bounds;        // bounds of all visible moving meshes
+  bool any_moving = false;     // a moving mesh is visible
+  bool any_one_sided = false;  // or stands in
   bool any_apart = false;
   bool moved = false;  // something has moved since the last commit
 

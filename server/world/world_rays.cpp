@@ -155,8 +155,9 @@ void World::commit() {
 }
 
 bool World::Impl::is_culled(const Hit& hit, vec3 direction) const {
-  return hit.valid() && placed[hit.instance].one_sided &&
-         is_behind(placed[hit.instance], hit.triangle, direction);
+  if (!hit.valid()) return false;
+  const PlacedMesh& mesh = placed[hit.instance];
+  return mesh.stands_in || (mesh.one_sided && is_behind(mesh, hit.triangle, direction));
 }
 
 Hit World::Impl::nearest(const Ray& ray, RTCFilterFunctionN filter) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The volumes of a World.
+// The volumes and scans of a World.
 #include <algorithm>
 #include <bit>
 
@@ -20,6 +20,14 @@ void World::show_volume(int volume, VolumeLook look) {
 }
 
 std::span<const PlacedVolume> World::volumes() const { return impl_->volumes; }
+
+void World::place_scans(std::vector<PlacedScan> scans) { impl_->scans = std::move(scans); }
+
+void World::show_scan(int scan, const ScanLook& look) {
+  impl_->scans.at(size_t(scan)).look = look;
+}
+
+std::span<const PlacedScan> World::scans() const { return impl_->scans; }
 
 std::optional<VolumeHit> World::meet_volume(const Ray& ray, float t_end, bool maxima) const {
   if (impl_->tracked.empty()) return {};

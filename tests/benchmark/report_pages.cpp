@@ -366,6 +366,7 @@ std::vector<ReportPage> declared_pages() {
           load_visitors_page(),
           load_seats_page(),
           pieces_picture_page(),
+          pieces_scan_page(),
           volume_reconstruct_page(),
           volume_march_page(),
           volume_compressed_page(),

@@ -39,6 +39,7 @@ ReportPage show_rest_page();
 ReportPage show_storyteller_page();
 ReportPage show_load_page();
 ReportPage pieces_picture_page();
+ReportPage pieces_scan_page();
 ReportPage volume_reconstruct_page();
 ReportPage volume_march_page();
 ReportPage volume_compressed_page();

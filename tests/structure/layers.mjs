@@ -21,7 +21,7 @@ export const may_include = {
   world: ['gltf', 'volume', 'scan', 'lawn', 'store', 'image', 'base'],
   light: ['world', 'volume', 'scan', 'lawn', 'store', 'frame', 'base'],
   cache: ['light', 'world', 'frame', 'base'],
-  picture: ['cache', 'denoise', 'light', 'world', 'frame', 'base'],
+  picture: ['cache', 'denoise', 'light', 'world', 'scan', 'lawn', 'frame', 'base'],
   avatar: ['gltf', 'json', 'base'],
   show: ['picture', 'cache', 'denoise', 'light', 'world', 'volume', 'scan', 'lawn', 'store', 'gltf',
     'attention', 'frame', 'image', 'avatar', 'wire', 'json', 'ledger', 'base'],

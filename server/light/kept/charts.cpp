@@ -241,7 +241,8 @@ BakeCharts make_charts(const World& world, float tile) {
         IlluminationChart chart = lay_out(triangles, grown, tile);
         chart.first_tile = charts.tiles;
         chart.bent = is_bent(world.placed(i), grown);
-        chart.sloped = chart.bent || mapped;
+        // Points of a scan face otherwise than the square that stands in for them.
+        chart.sloped = chart.bent || mapped || mesh.stands_in;
         charts.sloped |= chart.sloped;
         charts.tiles += uint32_t(chart.columns) * uint32_t(chart.rows);
         vec3 normal = triangles[seed].face.normal;

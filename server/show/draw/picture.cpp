@@ -125,7 +125,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
     return DrawingStep::guide;
   }
   double painted = seconds_now();
-  if (!passing && !points) compositor.lay_volumes_over(job.view, work.frame);
+  if (!passing && !points) compositor.lay_over_still(job.view, work.frame);
   if (!passing) tonemap(work.frame, curve, work.picture);
   work.seen = job.note_seen ? note_seen(job, work.picture, cache) : nullptr;
   make_keyframe(job.view, work.picture, passing ? work.depth : work.frame.depth, work.keyframe);

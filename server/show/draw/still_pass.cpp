@@ -51,7 +51,7 @@ void go_on_with_pass(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& v
       pass.given_up = true;  // its samples were forgotten meanwhile, as the visitor sees others
     } else {
       finish_reconstruction(compositor.samples(), *pass.denoiser, pass.work, pass.frame);
-      compositor.lay_volumes_over(pass.job.view, pass.frame);
+      compositor.lay_over_still(pass.job.view, pass.frame);
       tonemap(pass.frame, Tonemap{stage.exhibit.exposure}, pass.picture);
       make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
       pass.step = StillPass::Step::done;

@@ -17,6 +17,8 @@
 #include "volume/compare/report.h"
 #include "volume/draw/preset.h"
 #include "volume/nebula/nebula.h"
+#include "scan/tree/coarse_cut.h"
+#include "world/placed_scan.h"
 #include "world/load/scene_join.h"
 #include "world/scene.h"
 
@@ -146,6 +148,7 @@ struct PieceLayer {
   std::optional<int> year;               // year of a map
   PictureLayer shown;                    // nothing for a volume
   std::optional<volume::Preset> preset;  // a volume's
+  ScanColors colors = {};                // a scan's
   // Hold a volume in colours that compare it with a model, and their meaning. Null: the piece's
   // volume is shown as it is.
   std::shared_ptr<const volume::ShownVolume> volume;
@@ -180,8 +183,14 @@ struct ExhibitPiece {
   int image = -1;                                     // index into Scene::images
   std::shared_ptr<const volume::ShownVolume> volume;  // null: it is no volume
   std::shared_ptr<const PieceNebula> nebula;          // null: it is a scan
-  float scale = 1;                                    // metres here to one of the volume
-  uint32_t object = 0;                                // the volume's
+  std::shared_ptr<const PointTree> points;            // null: it is no scan of points
+  std::shared_ptr<const ShownSplats> splats;          // null: it is none of splats
+  PointBounds scan_box;                               // of either
+  quat scan_turn{1, 0, 0, 0};                         // from its file's axes to +Y up
+  bool is_scan() const { return points || splats; }
+  float brightness = 1;  // a scan's, as it was captured
+  float scale = 1;       // metres here to one of volume or scan
+  uint32_t object = 0;   // the volume's or scan's
 };
 inline constexpr size_t most_exhibit_pieces = 500;
 

@@ -11,6 +11,7 @@
 #include "show/exhibit/exhibit_files.h"
 #include "show/exhibit/exhibit_objects.h"
 #include "show/exhibit/exhibit_sources.h"
+#include "show/exhibit/exhibit_scans.h"
 #include "show/exhibit/exhibit_volumes.h"
 #include "store/open/open_picture.h"
 #include "store/open/spoken_picture.h"
@@ -362,17 +363,20 @@ void read_piece(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& pro
       std::ranges::find(scene.objects, piece.id) != scene.objects.end())
     fields.fail("id", "'" + piece.id + "' is taken by another piece or object");
   std::string kind;
-  fields.word("kind", {"picture", "map", "volume"}, kind,
-              "map: the same place at several times; volume: a scan of the inside of something",
+  fields.word("kind", {"picture", "map", "volume", "scan"}, kind,
+              "map: the same place at several times; volume: a scan of the inside of something; "
+              "scan: a place or thing as points",
               Need::required);
-  const bool is_volume = kind == "volume";
-  if (!is_volume || fields.describes()) read_pictures(exhibit, kind, fields, piece, problems);
-  if (is_volume || fields.describes()) read_volume(exhibit, fields, piece, problems);
+  const bool all = fields.describes(), is_picture = kind == "picture" || kind == "map";
+  if (is_picture || all) read_pictures(exhibit, kind, fields, piece, problems);
+  if (kind == "volume" || all) read_volume(exhibit, fields, piece, problems);
+  Mesh stand_in;
+  if (kind == "scan" || all) stand_in = read_scan(exhibit, fields, piece, problems);
   fields.text("material", piece.material, "of the scene that shows it, instead of a place");
   fields.number("width_m", 0.001, 1000, piece.width, "metres, without its frame");
   fields.part("place", "where it hangs or lies", [&](FieldReader& place) {
     place.vector("position", most_metres, piece.position,
-                 "middle of its back, of a volume of its underside", Need::required);
+                 "middle of its back, of a volume or scan of its underside", Need::required);
     place.degrees("yaw_deg", -720, 720, piece.yaw, "0 faces -z, positive turns left");
     place.degrees("pitch_deg", -90, 90, piece.pitch, "positive faces upwards: 90 lies on a table");
     place.degrees("roll_deg", -180, 180, piece.roll, "positive leans to the viewer's left");
@@ -401,19 +405,21 @@ void read_piece(Exhibit& exhibit, FieldReader& fields, std::vector<Problem>& pro
       else fields.fail("material", "nothing in the scene is made of '" + piece.material + "'");
     }
   }
-  if (piece.volume) {
-    if (!fields.has("place")) fields.fail("a volume needs a \"place\"");
+  if (piece.volume || piece.is_scan()) {
+    if (!fields.has("place")) fields.fail("a volume or a scan needs a \"place\"");
     piece.object = add_object(scene, piece.id);
     point.objects = {piece.object};
   }
+  if (piece.is_scan()) add_stand_in(exhibit, piece, std::move(stand_in));
   std::string annotations;
   fields.text("annotations", annotations,
               "file with an AnnotationPage of the W3C, whose notes are "
               "shown as objects");
   const std::string notes = package_file(fields, "annotations", exhibit.folder, annotations);
   if (!point.objects.empty()) {
-    const Bounds bounds = piece.volume ? bounds_of(place_volume(exhibit, piece))
-                                       : object_bounds(scene, point.objects);
+    const Bounds bounds = piece.volume      ? bounds_of(place_volume(exhibit, piece))
+                          : piece.is_scan() ? bounds_of_scan(exhibit, piece)
+                                            : object_bounds(scene, point.objects);
     point.place = scene.origin + dvec3(0.5f * (bounds.low + bounds.high));
     exhibit.points.push_back(point);
     if (!notes.empty() && piece.picture) read_annotations(exhibit, piece, notes, point, problems);

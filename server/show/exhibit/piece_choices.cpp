@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/unicode.h"
+#include "show/exhibit/exhibit_scans.h"
 #include "wire/messages.h"
 
 namespace wellspring::show {
@@ -179,6 +180,10 @@ void show_pieces(const Exhibit& exhibit, const ShownPieces& all, World& world) {
     ShownPicture now = shown_picture(pieces[i], choice_of(choices, i), all.language);
     if (shown[size_t(image)] != now) world.show_picture(image, now);
   }
+  int scan = 0;
+  for (size_t i = 0; i < pieces.size(); i++)
+    if (pieces[i].is_scan())
+      world.show_scan(scan++, look_of(exhibit, pieces[i], choice_of(choices, i).layer));
 }
 
 }  // namespace wellspring::show

@@ -60,7 +60,7 @@ std::string describe_api() {
                 "sounds": "[{id, kind: fire, water, room or wind, or file: address, position: [x, y, z] or left out, gain: 0..1, radius: m}]",
                 "objects": "[{id, title, position, text, story, provenance, manifest, around: true where it may be looked at from all sides, door: {exhibit, viewpoint}}]: what may be looked at closer; but for the first three left out where there is none",
                 "map": "boolean: there is one", "questions": "texts: some to ask",
-                "pieces": "[{id, layers: [{id, label, text, year}], volume: {size: [x, y, z] m} of one}]: very large pictures with several layers or years, and scanned volumes, whose layers are presets; their objects have the same ids",
+                "pieces": "[{id, layers: [{id, label, text, year}], volume: {size: [x, y, z] m} of one}]: very large pictures with several layers or years, scanned volumes, whose layers are presets, and scanned places, whose layers are looks; their objects have the same ids",
                 "watched": "true: a curator works at the exhibit; else left out",
                 "storyteller": "{id, name, visible, position, viewpoint} or null: who is there",
                 "storytellers": "[{id, name, position, viewpoint}]: who may be called"},

@@ -17,8 +17,9 @@
 #include "image/image.h"
 #include "light/technique/technique.h"
 #include "light/visible/guides.h"
-#include "picture/volume_view.h"
+#include "picture/laid_view.h"
 #include "show/exhibit/exhibit_lights.h"
+#include "show/exhibit/exhibit_scans.h"
 #include "show/exhibit/exhibit_volumes.h"
 #include "show/lens/lens.h"
 #include "show/state/show.h"
@@ -30,7 +31,7 @@ namespace {
 constexpr size_t most_kept_bytes = size_t(16) << 20;
 constexpr int still_jpeg_quality = 90;
 constexpr NetSize still_net = NetSize::base;
-constexpr int volume_places = 16;  // places in a pixel at which volumes are looked at
+constexpr int laid_places = 16;  // places in a pixel at which what is laid over is seen
 constexpr int most_brick_rounds = 20;
 constexpr auto time_of_bricks = std::chrono::milliseconds(20);
 constexpr double slice = 0.02;  // seconds of the network, between looks whether it is given up
@@ -48,12 +49,11 @@ struct StillRoom::Scenery {
   std::optional<Frame> render(const StillJob& order, const View& view,
                               const std::function<bool()>& given_up, double denoise_seconds,
                               StillCosts& costs, StillPicture& picture) const;
-  // Does the same without volumes.
+  // Does the same with nothing laid over.
   std::optional<Frame> reconstruct(const StillJob& order, const View& view,
                                    const std::function<bool()>& given_up, double denoise_seconds,
                                    StillCosts& costs, StillPicture& picture) const;
-  void lay_volumes_over(const View& view, const std::function<bool()>& given_up,
-                        Frame& frame) const;
+  void lay_over(const View& view, const std::function<bool()>& given_up, Frame& frame) const;
   bool add_glass(StillJob order, const std::function<bool()>& given_up, double denoise_seconds,
                  StillCosts& costs, StillPicture& picture, Image8& image) const;
   std::string comment(const StillPicture& picture) const;
@@ -111,6 +111,7 @@ StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_cloc
   lights.known = switched ? relit(*show.stage.switches.all.known, levels) : show.stage.lights.known;
   if (!lights.known) transport.clamp = 0;  // it is the reference
   volumes.begin(exhibit, lights, *technique, *world);
+  place_scans(exhibit, *world);
 }
 
 void StillRoom::Scenery::show_chosen(const PieceChoices& choices) const {
@@ -170,19 +171,22 @@ std::optional<Frame> StillRoom::Scenery::render(const StillJob& order, const Vie
                                                 double denoise_seconds, StillCosts& costs,
                                                 StillPicture& picture) const {
   auto frame = reconstruct(order, view, given_up, denoise_seconds, costs, picture);
-  if (frame) lay_volumes_over(view, given_up, *frame);
+  if (frame) lay_over(view, given_up, *frame);
   return frame;
 }
 
-// Waits for the bricks that volumes larger than memory lack, as long as any come.
-void StillRoom::Scenery::lay_volumes_over(const View& view, const std::function<bool()>& given_up,
-                                          Frame& frame) const {
+// Lays volumes and scans over. Waits for the bricks that volumes larger than memory lack, as long
+// as any come.
+void StillRoom::Scenery::lay_over(const View& view, const std::function<bool()>& given_up,
+                                  Frame& frame) const {
   const bool bricks = std::ranges::any_of(
       world->volumes(), [](const PlacedVolume& one) { return one.shown().bricks != nullptr; });
+  LaidWork work;
   for (int round = bricks ? 0 : 1;; round++) {
     Frame laid = frame;
     const uint64_t before = volumes.arrivals();
-    VolumeLayer().lay_over(world->volumes(), view, round == 0 ? 1 : volume_places, laid);
+    LaidLayer().lay_over(laid_things(*world, lights.known, exhibit.exposure), view,
+                         round == 0 ? 1 : laid_places, work, laid);
     if (round == 0) std::this_thread::sleep_for(time_of_bricks);
     const bool more = volumes.arrivals() != before || round == 0;
     if (more && round < most_brick_rounds && !(given_up && given_up())) continue;

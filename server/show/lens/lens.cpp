@@ -112,7 +112,7 @@ void draw_lens(Show& show, Visitor& visitor) {
                           dynamic_splat_settings(), work.dynamic);
   lens.compositor->set_skin(&stage.skin, &stage.lights);
   lens.compositor->set_maps(stage.lights.maps);
-  lens.compositor->set_volumes(stage.world->volumes());
+  lens.compositor->set_laid(laid_things(*stage.world, stage.lights.maps, stage.exhibit.exposure));
   lens.compositor->set_dynamic(lights.empty() ? nullptr : &work.dynamic);
   auto draw = [&](RenderCache& cache) {
     lens.compositor->draw(cache, view, *stage.visibility, Tonemap{stage.exhibit.exposure},

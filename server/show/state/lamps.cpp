@@ -194,7 +194,7 @@ void light_world(ExhibitStage& stage, const LampLevels& lamps) {
 void follow_lamps(ExhibitStage& stage, Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
   picture.compositor.set_maps(stage.lights.maps);
-  picture.compositor.set_volumes(stage.world->volumes());
+  picture.compositor.set_laid(laid_things(*stage.world, stage.lights.maps, stage.exhibit.exposure));
   picture.hour = visitor.lamps.lit_hour;
   const LampLevels& lit = stage.switches.lit;
   if (picture.lamps == lit) return;

@@ -10,6 +10,7 @@
 #include "light/kept/map_file.h"
 #include "light/sample/light_tables.h"
 #include "show/exhibit/exhibit_objects.h"
+#include "show/exhibit/exhibit_scans.h"
 #include "show/exhibit/exhibit_volumes.h"
 #include "show/moving/exhibit_scene.h"
 #include "show/state/renderer.h"
@@ -126,6 +127,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   show->cast.plays.resize(show->stage.exhibit.animations.size());
   show->stage.world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
   place_volumes(show->stage.exhibit, *show->stage.world);  // whose shadows light is found with
+  place_scans(show->stage.exhibit, *show->stage.world);
   show->stage.skin = make_skin_light(*show->stage.world);
   if (!show->cast.figures.empty()) enter(show->stage, show->cast.teller);
   if (!show->cast.figures.empty() || !show->cast.props.empty())

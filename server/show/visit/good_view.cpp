@@ -193,7 +193,7 @@ std::optional<SeenVolume> volume_at(const World& world, const View& view, vec2 p
   const VolumeView volumes(world.volumes(), view, false, 0);
   const ivec2 whole(pixel);
   if (!volumes.shows(whole.x, whole.y, 1)) return {};
-  const LaidVolumes laid = volumes.look(whole.x, whole.y, pixel - vec2(whole), all_lanes(surface));
+  const Laid laid = volumes.look(whole.x, whole.y, pixel - vec2(whole), all_lanes(surface));
   if (!std::isfinite(laid.depth[0])) return {};
   return SeenVolume{laid.object[0], laid.depth[0]};
 }
@@ -210,12 +210,25 @@ Hit first_solid(const World& world, Ray ray) {
   return {};
 }
 
+namespace {
+
+// Does the same for a ray of the eye, which meets a scan where its stand-in is.
+Hit first_shown(const World& world, Ray ray) {
+  const Hit hit = first_solid(world, ray);
+  if (world.scans().empty()) return hit;
+  ray.from_eye = false;
+  const Hit scan = first_solid(world, ray);
+  return scan.valid() && scan.t < hit.t && world.placed(scan.instance).stands_in ? scan : hit;
+}
+
+}  // namespace
+
 std::optional<Pointed> point_at(const Exhibit& exhibit, const World& world, const View& view,
                                 vec2 at) {
   const vec2 size(view.width, view.height);
   auto look = [&](vec2 pixel) { return view_ray(view, pixel.x, pixel.y); };
   const Ray ray = look(at * size);
-  const Hit hit = first_solid(world, ray);
+  const Hit hit = first_shown(world, ray);
   const auto volume = volume_at(world, view, at * size, dot(ray.direction, view.forward) * hit.t);
   if (!hit.valid() && !volume) return {};
   Pointed pointed;
@@ -236,7 +249,7 @@ std::optional<Pointed> point_at(const Exhibit& exhibit, const World& world, cons
   for (int i = 0; i < 8 && pointed.point < 0 && !is_ground; i++) {
     float angle = 0.25f * pi * float(i);
     Ray beside = look(at * size + finger * size.y * vec2(std::cos(angle), std::sin(angle)));
-    Hit found = first_solid(world, beside);
+    Hit found = first_shown(world, beside);
     if (!found.valid()) continue;
     pointed.point = point_of(exhibit, world.object_of(found.instance));
     if (pointed.point >= 0) pointed.place = beside.origin + beside.direction * found.t;

@@ -111,6 +111,7 @@ Raster::Raster(const World& world) : impl_(std::make_unique<Impl>(world)) {
   parallel_for(int(r.meshes.size()), [&](int i) {
     const Mesh& mesh = i < still_meshes ? scene.meshes[size_t(i)]
                                         : world.mesh_of(uint32_t(still + i - still_meshes));
+    if (mesh.stands_in) return;
     MeshClusters& clusters = r.meshes[size_t(i)] = make_clusters(mesh);
     MeshNeighbours& neighbours = r.neighbours[size_t(i)] = find_neighbours(mesh);
     for (uint32_t t : clusters.triangle) {
@@ -142,7 +143,7 @@ void Raster::Impl::find_pieces(const View& view, const RasterSettings& settings)
   for (uint32_t i = 0; i < mesh_of.size(); i++) {
     if (!world.is_visible(i)) continue;
     const PlacedMesh& placed = world.placed(i);
-    if (settings.shows == RasterShows::still && placed.moving) continue;
+    if (placed.stands_in || (settings.shows == RasterShows::still && placed.moving)) continue;
     if (settings.shows == RasterShows::moving && !placed.moving && !veils(placed)) continue;
     moving[i] = moving_box(placed);
     wellspring::world::find_pieces(view, placed, meshes[mesh_of[i]], i, moving[i],

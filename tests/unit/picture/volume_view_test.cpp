@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "picture/volume_view.h"
+#include "picture/laid_view.h"
 
 #include <gtest/gtest.h>
 
@@ -56,13 +56,13 @@ View straight(vec3 eye = vec3(0), float tan_half_fov = 0.02f) {
   return view;
 }
 
-LaidVolumes middle_of(const std::vector<PlacedVolume>& volumes, const View& view,
-                      float surface = INFINITY) {
+Laid middle_of(const std::vector<PlacedVolume>& volumes, const View& view,
+               float surface = INFINITY) {
   return VolumeView(volumes, view, true, 0).look(8, 8, vec2(0), all_lanes(surface));
 }
 
 TEST(VolumeView, ShowsWhatTheVolumeLetsThrough) {
-  const LaidVolumes laid = middle_of({glass_cube({0, 0, -0.5f})}, straight());
+  const Laid laid = middle_of({glass_cube({0, 0, -0.5f})}, straight());
   EXPECT_NEAR(laid.clear[0], std::exp(-0.4f), 0.004f);
   EXPECT_EQ(laid.depth[0], INFINITY);
   EXPECT_NEAR(laid.light.x[0], 1 - laid.clear[0], 0.2f);
@@ -80,7 +80,7 @@ TEST(VolumeView, TheFrontFacesAsAFigureDoes) {
                                 std::tuple(0.0f, pi, true), std::tuple(pi, pi, false)}) {
     PlacedVolume placed = ball({0, 0, -0.3f});
     placed.yaw = yaw, placed.look.turn = turn;
-    const LaidVolumes laid = middle_of({placed}, straight());
+    const Laid laid = middle_of({placed}, straight());
     EXPECT_LT(laid.clear[0], 0.01f);
     EXPECT_EQ(laid.light.x[0] > laid.light.z[0], red) << yaw << " " << turn;
     EXPECT_NEAR(laid.depth[0], 0.29f, 0.0015f);
@@ -95,7 +95,7 @@ TEST(VolumeView, TurnsToTheLeft) {
   placed.yaw = pi, placed.look.turn = pi / 2;
   const VolumeView seen(std::span(&placed, 1), straight(), true, 0);
   const auto color = [&](float x) { return seen.look(8, 8, vec2(x, 0), all_lanes(INFINITY)); };
-  const LaidVolumes right = color(0.25f), left = color(-0.25f);
+  const Laid right = color(0.25f), left = color(-0.25f);
   EXPECT_GT(right.light.x[0], right.light.z[0]);
   EXPECT_LT(left.light.x[0], left.light.z[0]);
 }
@@ -111,13 +111,13 @@ TEST(VolumeView, StandsFarFromTheOrigin) {
   const vec3 far(1e5f, -2e4f, 3e5f);
   PlacedVolume placed = ball(far + vec3(0, 0, -2));
   placed.scale = 40;
-  const LaidVolumes laid = middle_of({placed}, straight(far));
+  const Laid laid = middle_of({placed}, straight(far));
   EXPECT_LT(laid.clear[0], 0.01f);
   EXPECT_NEAR(laid.depth[0], 2 - 0.4f, 0.07f);  // a step of coordinates is 0.03 m there
 }
 
 TEST(VolumeView, TheEyeMayBeInside) {
-  const LaidVolumes laid = middle_of({glass_cube(vec3(0))}, straight());
+  const Laid laid = middle_of({glass_cube(vec3(0))}, straight());
   EXPECT_NEAR(laid.clear[0], std::exp(-0.2f), 0.005f);
 }
 
@@ -144,9 +144,9 @@ TEST(VolumeView, TheNearerVolumeIsSeenBeforeTheOther) {
 }
 
 TEST(VolumeView, VolumesInOnePlaceStopAsMuchAsBoth) {
-  const LaidVolumes both =
+  const Laid both =
       middle_of({glass_cube({0, 0, -0.5f}), glass_cube({0, 0, -0.5f}, 0.02)}, straight());
-  const LaidVolumes one = middle_of({glass_cube({0, 0, -0.5f}, 0.03)}, straight());
+  const Laid one = middle_of({glass_cube({0, 0, -0.5f}, 0.03)}, straight());
   EXPECT_NEAR(both.clear[0], one.clear[0], 0.02f);
 }
 
@@ -154,7 +154,7 @@ TEST(VolumeView, WhatIsInsideAnotherIsSeenThroughIt) {
   // A red ball in the middle of a cube that stops a tenth on the way to it.
   PlacedVolume red = ball({0, 0, -0.5f});
   red.yaw = pi;
-  const LaidVolumes laid = middle_of({glass_cube({0, 0, -0.5f}, 0.01), red}, straight());
+  const Laid laid = middle_of({glass_cube({0, 0, -0.5f}, 0.01), red}, straight());
   EXPECT_NEAR(laid.depth[0], 0.49f, 0.002f);
   EXPECT_EQ(laid.object[0], 7u);
   EXPECT_GT(laid.light.x[0], laid.light.z[0]);
@@ -181,7 +181,7 @@ TEST(VolumeView, AGrazingRayIsSound) {
   const VolumeView view(std::span(&placed, 1), straight(vec3(0, 0.02f, 0)), true, 0);
   for (int y = 0; y < 16; y++)
     for (int x = 0; x < 16; x += lane_count) {
-      const LaidVolumes laid = view.look(x, y, vec2(0.5f), all_lanes(INFINITY));
+      const Laid laid = view.look(x, y, vec2(0.5f), all_lanes(INFINITY));
       for (int k = 0; k < lane_count; k++) {
         EXPECT_GE(laid.clear[k], 0) << x << " " << y;
         EXPECT_LE(laid.clear[k], 1);
@@ -199,14 +199,15 @@ Frame grey_frame(const View& view, float depth) {
   return frame;
 }
 
-TEST(VolumeLayer, LaysTheMeanOverAFrameAtRest) {
+TEST(LaidLayer, LaysTheMeanOverAFrameAtRest) {
   const std::vector<PlacedVolume> volumes{ball({0, 0, -0.3f})};
   const View view = straight(vec3(0), 0.05f);
-  VolumeLayer layer;
+  LaidLayer layer;
+  LaidWork work;
   Frame frame;
   for (int i = 0; i < 3; i++) {
     frame = grey_frame(view, 2);
-    layer.lay_over(volumes, view, 1, frame);
+    layer.lay_over({volumes, {}}, view, 1, work, frame);
   }
   const size_t middle = 8 * 16 + 8, corner = 0;
   EXPECT_GT(frame.color[middle].z, 0.2f);
@@ -224,26 +225,29 @@ TEST(VolumeLayer, LaysTheMeanOverAFrameAtRest) {
   EXPECT_GE(edges, 1) << "no pixel of the edge is antialiased";
 }
 
-TEST(VolumeLayer, MorePlacesAtOnceAreTheSameAsOneAfterTheOther) {
+TEST(LaidLayer, MorePlacesAtOnceAreTheSameAsOneAfterTheOther) {
   const std::vector<PlacedVolume> volumes{glass_cube({0, 0, -0.5f})};
   const View view = straight();
-  VolumeLayer one, all;
+  LaidLayer one, all;
+  LaidWork work;
   Frame a = grey_frame(view, 2), b;
-  all.lay_over(volumes, view, 5, a);
-  for (int i = 0; i < 5; i++) b = grey_frame(view, 2), one.lay_over(volumes, view, 1, b);
+  all.lay_over({volumes, {}}, view, 5, work, a);
+  for (int i = 0; i < 5; i++)
+    b = grey_frame(view, 2), one.lay_over({volumes, {}}, view, 1, work, b);
   for (size_t i = 0; i < a.color.size(); i++) EXPECT_EQ(a.color[i], b.color[i]) << i;
 }
 
-TEST(VolumeLayer, BeginsAnewForAnotherLook) {
+TEST(LaidLayer, BeginsAnewForAnotherLook) {
   std::vector<PlacedVolume> volumes{glass_cube({0, 0, -0.5f}, 1)};
   const View view = straight();
-  VolumeLayer layer;
+  LaidLayer layer;
+  LaidWork work;
   Frame frame = grey_frame(view, 2);
-  layer.lay_over(volumes, view, 4, frame);
+  layer.lay_over({volumes, {}}, view, 4, work, frame);
   EXPECT_LT(frame.depth[8 * 16 + 8], 0.5f);
   volumes[0].look.preset = nullptr;
   frame = grey_frame(view, 2);
-  layer.lay_over(volumes, view, 1, frame);
+  layer.lay_over({volumes, {}}, view, 1, work, frame);
   EXPECT_EQ(frame.color[8 * 16 + 8], vec3(0.5f));
   EXPECT_EQ(frame.depth[8 * 16 + 8], 2);
 }

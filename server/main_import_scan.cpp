@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "main_import_scan.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "base/clock.h"
+#include "base/load_error.h"
+#include "base/log.h"
+#include "scan/format/open_scan.h"
+#include "scan/tree/coarse_cut.h"
+#include "scan/tree/write_tree.h"
+
+namespace wellspring::program {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t most_looked_at = 100'000;  // points
+
+// Returns a name of a piece: small letters, digits and hyphens.
+std::string id_of(const fs::path& file) {
+  std::string id;
+  for (const unsigned char c : file.stem().string())
+    if (std::isalnum(c)) id += char(std::tolower(c));
+    else if (!id.empty() && id.back() != '-') id += '-';
+  while (id.ends_with('-')) id.pop_back();
+  return id.empty() ? "scan" : id;
+}
+
+void tell(const fs::path& made, const TreeReport& report, double seconds) {
+  const PointTree tree = open_tree(made.string());
+  const PointBounds box = bounds_of(coarse_cut(tree, most_looked_at));
+  const dvec3 size = box.high - box.low;
+  std::cerr << fmt::format(
+      "{}: {} points in {} nodes, {} MB, {:.0f} s\n  {:.2f} m wide, {:.2f} m high, {:.2f} m deep; "
+      "its origin is {:.3f}, {:.3f}, {:.3f}\n",
+      made.string(), report.points, report.nodes, report.bytes / 1'000'000, seconds, size.x, size.y,
+      size.z, tree.origin.x, tree.origin.y, tree.origin.z);
+  if (report.dropped > 0)
+    std::cerr << fmt::format("  {} points were left out: their places are no numbers, or too far\n",
+                             report.dropped);
+  for (const std::string& notice : report.notices) std::cerr << "  " << notice << "\n";
+}
+
+}  // namespace
+
+void import_scan(const ScanImport& import) {
+  const std::string id = id_of(import.name.empty() ? import.files.front() : import.name);
+  const fs::path made = fs::path(import.out) / (id + ".points");
+  if (fs::exists(made) && !import.overwrite)
+    throw LoadError(made.string(), "", "is there already; --overwrite replaces it");
+  fs::create_directories(import.out);
+  std::vector<TreeSource> sources;
+  for (const std::string& file : import.files)
+    sources.push_back({file, [file] { return open_scan(file); }});
+  TreeSettings settings;
+  settings.unit = import.unit;
+  settings.up = import.up == "x" ? UpAxis::x : import.up == "y" ? UpAxis::y : UpAxis::z;
+  settings.turn = glm::radians(import.turn);
+  settings.memory = uint64_t(import.memory) << 20;
+  const double began = seconds_now();
+  Progress progress("import");
+  const TreeReport report =
+      write_tree(sources, made.string(), settings,
+                 [&](double share, const char* stage) { progress.tell(share, stage); });
+  progress.clear();
+  tell(made, report, seconds_now() - began);
+  nlohmann::ordered_json piece;
+  piece["id"] = id, piece["kind"] = "scan";
+  piece["source"] = made.filename().string();
+  piece["place"] = {{"position", {0, 0, 0}}, {"yaw_deg", 0}};
+  std::cout << piece.dump() << "\n";
+}
+
+}  // namespace wellspring::program

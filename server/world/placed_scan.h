@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scanned place or thing that stands in the scene, as points or as Gaussian splats, and what is
+// seen of it. The eye sees points and splats, which pictures lay over what they draw
+// (picture/laid_view.h); all other rays meet a mesh in the place of them (Mesh::stands_in).
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "world/scene.h"
+
+namespace wellspring::scan {
+struct PointTree;    // scan/tree/point_tree.h
+struct ShownSplats;  // scan/splats/draw_shown.h
+}  // namespace wellspring::scan
+
+namespace wellspring::world {
+
+// Says what the colours of a scan's points mean.
+enum class ScanColors : uint8_t {
+  captured,        // light that the scanner saw: shown as it is
+  lit,             // reflectance, on which the scene's light falls
+  intensity,       // how much of the scanner's own light came back
+  height,          // metres above the scan's lowest point, as a scale of colours
+  classification,  // what the points belong to, by codes of ASPRS
+};
+
+struct ScanLook {
+  ScanColors colors = ScanColors::captured;
+  float brightness = 1;  // radiance of white, captured
+  bool operator==(const ScanLook&) const = default;
+};
+
+struct PlacedScan {
+  std::shared_ptr<const PointTree> points;  // one of the two is not null
+  std::shared_ptr<const ShownSplats> splats;
+  vec3 position{0};         // of the scan's own zero, scene coordinates
+  quat turn{1, 0, 0, 0};    // from its own axes to the scene's, unit
+  float scale = 1;          // metres of the scene to one of the scan
+  float low = 0, high = 0;  // heights between which its points lie, its own metres
+  uint32_t object = 0;      // seen there
+  int stand_in = -1;        // instance of the scene that rays meet; -1: there is none
+  ScanLook look;
+};
+
+}  // namespace wellspring::world

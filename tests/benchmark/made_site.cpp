@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "made_site.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/rng.h"
+
+namespace wellspring::test {
+namespace {
+
+using scan::PointBlock;
+
+constexpr float half_width = 12, half_depth = 8, height = 6;  // metres
+constexpr float column_radius = 0.4f, noise = 0.0015f;
+constexpr int columns = 12;
+
+struct Part {
+  float area;
+  // Returns a place for two numbers from 0 to 1, and whether anything is there.
+  vec3 (*place)(int number, float u, float v);
+  bool has_windows = false;
+  int count = 1;
+};
+
+vec3 floor_place(int, float u, float v) {
+  return {(2 * u - 1) * half_width, 0, (2 * v - 1) * half_depth};
+}
+vec3 long_wall(int number, float u, float v) {
+  return {(2 * u - 1) * half_width, v * height, number ? half_depth : -half_depth};
+}
+vec3 short_wall(int number, float u, float v) {
+  return {number ? half_width : -half_width, v * height, (2 * u - 1) * half_depth};
+}
+vec3 column_place(int number, float u, float v) {
+  const float angle = 2 * pi * u;
+  const vec3 middle(float(number % 6) * 3.6f - 9, 0, number < 6 ? -3.5f : 3.5f);
+  return middle +
+         vec3(column_radius * std::cos(angle), v * height, column_radius * std::sin(angle));
+}
+
+const std::array<Part, 4> parts = {
+    {{4 * half_width * half_depth, floor_place},
+     {2 * half_width * height, long_wall, true, 2},
+     {2 * half_depth * height, short_wall, false, 2},
+     {2 * pi * column_radius * height, column_place, false, columns}}};
+
+bool is_window(vec3 p) {
+  const float across = std::abs(std::remainder(p.x, 4.0f));
+  const float arch = p.y < 3.5f ? 0.7f : 0.7f - (p.y - 3.5f);
+  return p.y > 1.2f && across < arch;
+}
+
+// Returns the colour of stones, sRGB codes.
+std::array<uint16_t, 3> stone(vec3 p) {
+  const float row = std::floor(p.y / 0.35f);
+  const float along = p.x + p.z + 0.3f * std::fmod(row, 2.0f);
+  const uint64_t stone = mix64(uint64_t(int64_t(row) * 7919 + int64_t(std::floor(along / 0.6f))));
+  const bool joint = std::abs(std::remainder(p.y, 0.35f)) < 0.012f ||
+                     std::abs(std::remainder(along, 0.6f)) < 0.012f;
+  const float tone = (joint ? 95.0f : 140 + float(stone % 50)) +
+                     float(mix64(uint64_t(int64_t(p.x * 400) * 31 + int64_t(p.y * 400) * 17 +
+                                          int64_t(p.z * 400))) %
+                           24);
+  return {uint16_t(tone), uint16_t(0.92f * tone), uint16_t(0.8f * tone)};
+}
+
+class Site : public scan::PointSource {
+ public:
+  explicit Site(uint64_t points) : left_(points) {
+    info_.file = "made", info_.format = "made";
+    info_.points = points, info_.is_counted = true;
+    info_.fields.color = true, info_.color_max = 255;
+    for (const Part& part : parts) area_ += part.area * float(part.count);
+  }
+  bool read(PointBlock& block, size_t most) override {
+    block.clear();
+    while (left_ > 0 && block.size() < most) {
+      vec3 place;
+      if (!find(place)) continue;
+      left_--;
+      block.color.push_back(stone(place));
+      const vec3 off(random_.uniform(), random_.uniform(), random_.uniform());
+      block.place.push_back(dvec3(place + noise * (2.0f * off - 1.0f)));
+    }
+    return block.size() > 0;
+  }
+
+ private:
+  bool find(vec3& place) {
+    float at = area_ * random_.uniform();
+    for (const Part& part : parts) {
+      const float area = part.area * float(part.count);
+      if (at >= area) {
+        at -= area;
+        continue;
+      }
+      const int number = std::min(int(at / part.area), part.count - 1);
+      place = part.place(number, random_.uniform(), random_.uniform());
+      return !part.has_windows || !is_window(place);
+    }
+    return false;
+  }
+  uint64_t left_;
+  float area_ = 0;
+  Rng random_{1};
+};
+
+}  // namespace
+
+std::unique_ptr<scan::PointSource> made_site(uint64_t points) {
+  return std::make_unique<Site>(points);
+}
+
+}  // namespace wellspring::test

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// A made place to be scanned: a hall of stone, 24 x 16 m, with windows and columns.
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "scan/points.h"
+
+namespace wellspring::test {
+
+// Gives so many points of its surfaces, as if they were measured from everywhere: evenly spread, in
+// no order, each off by some millimetre. Metres, +Y up; the floor's middle is the origin.
+std::unique_ptr<scan::PointSource> made_site(uint64_t points);
+
+}  // namespace wellspring::test

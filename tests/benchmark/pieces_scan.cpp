@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// pieces.scan: what a picture of a scanned place costs by the number of its points, and how much it
+// differs from one that shows all of them; how quickly a scan is imported.
+#include <algorithm>
+#include <cmath>
+
+#include "base/clock.h"
+#include "judge/flip.h"
+#include "made_site.h"
+#include "own_folder.h"
+#include "report.h"
+#include "reports.h"
+#include "scan/draw/draw_points.h"
+#include "scan/draw/fill_holes.h"
+#include "scan/draw/point_colors.h"
+#include "scan/tree/choose_nodes.h"
+#include "scan/tree/point_tree.h"
+#include "scan/tree/write_tree.h"
+
+namespace wellspring::test {
+namespace {
+
+constexpr int width = 1280, height = 720;
+
+PointView view_of(const PointTree& tree) {
+  PointView view;
+  view.eye = dvec3(-9.5, 1.65, 6.5) - tree.origin;
+  const vec3 forward = normalize(vec3(0.9f, 0.02f, -0.6f));
+  view.forward = forward;
+  view.right = normalize(cross(forward, vec3(0, 1, 0)));
+  view.up = cross(view.right, forward);
+  view.tan_half_fov = std::tan(0.5f * glm::radians(60.0f));
+  view.width = width, view.height = height;
+  return view;
+}
+
+Frame frame_of(const PointBuffer& buffer) {
+  Frame frame;
+  fit_frame(width, height, frame);
+  for (size_t i = 0; i < frame.color.size(); i++)
+    frame.color[i] = std::isfinite(buffer.depth[i]) ? captured_color(buffer.color[i]) : vec3(0.1f);
+  return frame;
+}
+
+struct Drawn {
+  PointBuffer buffer;
+  double ms = 0;
+  size_t points = 0;
+};
+
+Drawn draw(PointRaster& raster, const PointTree& tree, const ChooseSettings& choose, bool blended,
+           int times) {
+  Drawn drawn;
+  drawn.ms = INFINITY;
+  const PointView view = view_of(tree);
+  for (int i = 0; i < times; i++) {
+    const double began = seconds_now();
+    std::vector<NodePoints> nodes;
+    for (const ChosenNode& one : choose_nodes(tree, view, choose))
+      nodes.push_back(tree.points_of(one.node));
+    raster.draw(drawn.buffer, nodes, view, {.blended = blended});
+    fill_holes(drawn.buffer, nodes, view);
+    drawn.ms = std::min(drawn.ms, 1000 * (seconds_now() - began));
+    drawn.points = 0;
+    for (const NodePoints& one : nodes) drawn.points += one.count;
+  }
+  return drawn;
+}
+
+}  // namespace
+
+void bench_pieces_scan(BenchReport& report, const BenchOptions& options) {
+  const uint64_t points = options.quick ? 5'000'000 : 30'000'000;
+  const OwnFolder folder;
+  const std::string file = folder.path() + "/site.points";
+  TreeSettings settings;
+  settings.up = UpAxis::y;
+  const double began = seconds_now(), cores = process_seconds_now();
+  const TreeReport made =
+      write_tree({{"made", [points] { return made_site(points); }}}, file, settings);
+  const double millions = double(points) / 1e6;
+  report.add("pieces.scan.import_core_mps", millions / (process_seconds_now() - cores),
+             "M points/s", {});
+  report.add("pieces.scan.import_seconds", seconds_now() - began, "s", {});
+  report.add("pieces.scan.bytes_per_point", double(made.bytes) / double(made.points), "B", {});
+  const double opening = seconds_now();
+  const PointTree tree = open_tree(file);
+  PointRaster raster;
+  const Drawn first = draw(raster, tree, {.budget = 1'000'000}, false, 1);
+  report.add("pieces.scan.first_picture_ms", 1000 * (seconds_now() - opening), "ms", {});
+  const Drawn all = draw(raster, tree, {.pixels = 0, .budget = SIZE_MAX}, true, 1);
+  const Frame reference = frame_of(all.buffer);
+  const int times = options.quick ? 3 : 7;
+  for (const bool blended : {false, true})
+    for (const size_t budget : {250'000u, 500'000u, 1'000'000u, 2'500'000u}) {
+      const Drawn drawn = draw(raster, tree, {.budget = budget}, blended, times);
+      const nlohmann::json where = {{"discs", blended ? "blended" : "nearest"},
+                                    {"budget", double(budget) / 1e6}};
+      report.add("pieces.scan.points", double(drawn.points) / 1e6, "M", where);
+      report.add("pieces.scan.gbuffer_ms", drawn.ms, "ms", where);
+      report.add("pieces.scan.flip", flip(frame_of(drawn.buffer), reference), "", where);
+    }
+}
+
+ReportPage pieces_scan_page() {
+  return {
+      "pieces.scan",
+      "What does a picture of a scanned place cost by the number of its points, and how much does "
+      "it lack?",
+      {"A made hall of 30 million points (5 in a quick run), seen from a corner at 1280 x 720: "
+       "nodes are chosen, discs drawn, holes closed, on all cores. FLIP is against a picture of "
+       "all points, blended.",
+       "Pictures in motion show up to a million points, the nearest disc in each pixel; those at "
+       "rest 2.5 million, blended."},
+      {{.caption = "Pictures",
+        .rows = {{"discs", "discs"}, {"budget", "points at most, millions"}},
+        .columns = {{"pieces.scan.points", "points", 2, "M"},
+                    {"pieces.scan.gbuffer_ms", "a picture", 1, "ms"},
+                    {"pieces.scan.flip", "FLIP", 1, ""}}},
+       {.caption = "Import, and the first picture after opening",
+        .columns = {{"pieces.scan.import_core_mps", "a core", 2, "M points/s"},
+                    {"pieces.scan.import_seconds", "all", 1, "s"},
+                    {"pieces.scan.bytes_per_point", "on the disk, a point", 1, "B"},
+                    {"pieces.scan.first_picture_ms", "first picture", 0, "ms"}}}}};
+}
+
+}  // namespace wellspring::test
