@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws nodes of points as discs into planes of depth, colour and normal. Discs lie in the plane of
+// their point's normal and are ellipses in the picture (Zwicker et al. 2001, "Surface splatting");
+// they never become thinner than a pixel. Points are projected node by node, sorted into tiles, and
+// each tile is drawn by itself in their order, so pictures are the same for any number of threads.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "scan/draw/point_buffer.h"
+#include "scan/draw/point_view.h"
+#include "scan/tree/node_points.h"
+
+namespace wellspring::scan {
+
+struct DiscStyle {
+  float radius = 0.75f;    // of a disc, times its node's spacing; above 0.71 squares are covered
+  float most_pixels = 24;  // no disc has a larger radius in the picture; up to 31
+  // Discs of one surface are averaged with weights that fall towards their rims (Botsch et al.
+  // 2005, "High-quality surface splatting on today's GPUs"); false: the nearest middle wins.
+  bool blended = false;
+};
+
+// Keeps its arrays from one picture to the next: about 40 bytes a point in sight.
+class PointRaster {
+ public:
+  PointRaster();
+  ~PointRaster();
+  // Replaces `buffer` by the picture. Nodes are borrowed for the call, at most 2^20 pieces of 4096
+  // points. Time is bounded by points and pixels: where discs would cover a tile many times over
+  // they are drawn smaller.
+  void draw(PointBuffer& buffer, std::span<const NodePoints> nodes, const PointView& view,
+            const DiscStyle& style);
+
+ private:
+  struct Arrays;
+  std::unique_ptr<Arrays> arrays_;
+};
+
+}  // namespace wellspring::scan
