@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scan/splats/draw_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace wellspring::scan {
+namespace {
+
+// Half of an ellipse's width `down` rows below its middle, and how far it reaches.
+struct Ellipse {
+  float reach, half_height, widest;  // `widest`: the row of its rightmost place
+  explicit Ellipse(const DrawnSplat& s) : reach(s.opacity - log_threshold) {
+    const float yy = 1 / s.fall_y, xx = 1 / s.fall_x + s.lean * s.lean * yy;
+    half_height = std::sqrt(reach * yy);
+    widest = s.lean * yy * std::sqrt(reach / xx);
+  }
+  float side(const DrawnSplat& s, float down, float sign) const {
+    const float rest = reach - s.fall_y * down * down;
+    return s.x + s.lean * down + sign * std::sqrt(std::max(rest, 0.0f) / s.fall_x);
+  }
+};
+
+// Calls body(tile) for all tiles that the splat touches, row by row.
+template <class Body>
+inline void each_tile(const DrawnSplats& drawn, uint32_t number, const TileGrid& grid,
+                      int first_row, int last_row, const Body& body) {
+  const PixelBox box = drawn.boxes[number];
+  const int left = box.left / tile_width, right = box.right / tile_width,
+            top = std::max(box.top / tile_height, first_row),
+            bottom = std::min(box.bottom / tile_height, last_row - 1);
+  if (left == right || box.top / tile_height == box.bottom / tile_height) {
+    for (int row = top; row <= bottom; row++)
+      for (int column = left; column <= right; column++) body(row * grid.across + column);
+    return;
+  }
+  const DrawnSplat& s = drawn.splats[number];
+  const Ellipse ellipse(s);
+  for (int row = top; row <= bottom; row++) {
+    const float above = std::max(float(row * tile_height) - s.y, -ellipse.half_height);
+    const float below =
+        std::min(float(row * tile_height + tile_height - 1) - s.y, ellipse.half_height);
+    const float low =
+        ellipse.side(s, std::clamp(-ellipse.widest, above, std::max(above, below)), -1);
+    const float high =
+        ellipse.side(s, std::clamp(ellipse.widest, above, std::max(above, below)), 1);
+    const int begin = std::max(left, int(std::max(low, 0.0f)) / tile_width);
+    const int end = std::min(right, int(std::min(high, 32767.0f)) / tile_width);
+    for (int column = begin; column <= end; column++) body(row * grid.across + column);
+  }
+}
+
+}  // namespace
+
+void list_splats(TileLists& lists, const DrawnSplats& drawn, std::span<const DrawnKey> keys,
+                 const TileGrid& grid, std::span<const float> limits, int first_row, int last_row) {
+  const size_t tiles = size_t(grid.count());
+  const size_t a_part = std::max<size_t>(4096, (keys.size() + 15) / 16);
+  const size_t parts = (keys.size() + a_part - 1) / a_part;
+  std::vector<uint32_t> places(parts * tiles);
+  const auto each_entry = [&](int part, const auto& body) {
+    uint32_t* const own = places.data() + size_t(part) * tiles;
+    const size_t begin = size_t(part) * a_part, end = std::min(keys.size(), begin + a_part);
+    for (size_t i = begin; i < end; i++) {
+      const uint32_t number = keys[i].number;
+      each_tile(drawn, number, grid, first_row, last_row, [&](int tile) {
+        const float limit = limits[size_t(tile)];
+        if (limit > 0 && (limit == std::numeric_limits<float>::infinity() ||
+                          drawn.splats[number].nearest < limit))
+          return;
+        body(own[tile], number);
+      });
+    }
+  };
+  parallel_each(int(parts),
+                [&](int part) { each_entry(part, [](uint32_t& place, uint32_t) { place++; }); });
+  uint32_t sum = 0;
+  lists.first.resize(tiles + 1);
+  for (size_t tile = 0; tile < tiles; tile++) {
+    lists.first[tile] = sum;
+    for (size_t part = 0; part < parts; part++)
+      sum += std::exchange(places[part * tiles + tile], sum);
+  }
+  lists.first[tiles] = sum;
+  if (lists.splats.size() < sum) lists.splats.resize(sum);
+  parallel_each(int(parts), [&](int part) {
+    each_entry(part, [&](uint32_t& place, uint32_t number) { lists.splats[place++] = number; });
+  });
+}
+
+}  // namespace wellspring::scan

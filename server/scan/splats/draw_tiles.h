@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists the splats that touch each tile of a picture, from the front to the back, and keeps what
+// has been drawn of a tile.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scan/splats/draw_project.h"
+
+namespace wellspring::scan {
+
+inline constexpr int tile_width = 32, tile_height = 16;
+// Rows in memory are longer than in the picture: eight pixels may begin at any of them.
+inline constexpr int tile_stride = tile_width + lane_count;
+
+struct TileGrid {
+  int across = 0, down = 0;
+  TileGrid(int width, int height)
+      : across((width + tile_width - 1) / tile_width),
+        down((height + tile_height - 1) / tile_height) {}
+  int count() const { return across * down; }
+};
+
+// Holds the pixels of a tile. What lies outside of the picture is opaque already.
+struct alignas(64) TilePixels {
+  float clear[tile_height * tile_stride];     // share of the light behind that comes through
+  float color[3][tile_height * tile_stride];  // display codes, times what is not clear
+  float nearness[tile_height * tile_stride];  // one over the median depth, 0: none
+};
+
+struct TileLists {
+  std::vector<uint32_t> first;   // for each tile its place in `splats`, and where the last one ends
+  std::vector<uint32_t> splats;  // indices in DrawnSplats::splats
+  std::span<const uint32_t> of(int tile) const {
+    return std::span(splats).subspan(first[size_t(tile)],
+                                     first[size_t(tile) + 1] - first[size_t(tile)]);
+  }
+};
+
+// Lists splats in the order of `keys` for tiles in rows from `first_row` to before `last_row`.
+// Tiles leave out splats that are all farther than 1 / `limits`: 0 leaves out none, infinity all.
+void list_splats(TileLists& lists, const DrawnSplats& drawn, std::span<const DrawnKey> keys,
+                 const TileGrid& grid, std::span<const float> limits, int first_row, int last_row);
+
+}  // namespace wellspring::scan
