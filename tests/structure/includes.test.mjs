@@ -42,7 +42,8 @@ const may_enter = {
   },
   scan: {
     '': [],
-    format: [''],
+    las: [''],
+    format: ['las', ''],
     tree: [''],
     splats: ['format', ''],
     draw: ['tree', ''],
