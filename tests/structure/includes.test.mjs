@@ -118,7 +118,7 @@ const heavy = [
   [/^(boost\/(beast|asio)|boost\/)/, ['store', 'stream', 'kiosk']],
   [/^opencv2?\//, ['kiosk']],
   [/^embree[34]?\//, ['world']],
-  [/^pugixml/, ['avatar', 'store']],
+  [/^pugixml/, ['avatar', 'scan', 'store']],
   [/^sndfile/, ['avatar']],
   [/^espeak-ng\//, []],  // GPL: the voice program's one file
   [/^(turbojpeg|png\.h|webp|stb_image|OpenEXR|Imf)/, ['image']],
