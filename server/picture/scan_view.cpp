@@ -38,10 +38,10 @@ constexpr std::array<glm::ivec2, 16> nearest_first = {{{2, 2},
                                                        {0, 3}}};
 
 // Leads from the scene to a scan's own frame, in which one metre is 1 / scale of the scene's.
-PointView view_of(const PlacedScan& placed, const View& view, vec2 offset) {
+ScanCamera view_of(const PlacedScan& placed, const View& view, vec2 offset) {
   const glm::dquat back = glm::conjugate(glm::dquat(placed.turn));
   const auto way = [&](vec3 v) { return vec3(back * dvec3(v)); };
-  PointView from;
+  ScanCamera from;
   const dvec3 eye = dvec3(view.position) - dvec3(placed.position);
   from.eye = back * eye / double(placed.scale);
   from.right = way(view.right), from.up = way(view.up), from.forward = way(view.forward);
@@ -93,7 +93,7 @@ ScanView::ScanView(const ShownScans& scans, const View& view, vec2 offset, bool 
   work.blocks.resize(work.buffers.size());
   for (const PlacedScan& placed : scans.all()) {
     if (!placed.points) continue;
-    const PointView from = view_of(placed, view, offset);
+    const ScanCamera from = view_of(placed, view, offset);
     ChooseSettings choose;
     choose.budget = settled ? settled_points : moving_points;
     const std::vector<ChosenNode> chosen = choose_nodes(*placed.points, from, choose);

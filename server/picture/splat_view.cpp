@@ -24,8 +24,8 @@ std::vector<PlacedSplats> placed_splats(std::span<const PlacedScan> scans) {
   return sets;
 }
 
-PointView view_of(const View& view) {
-  PointView from;
+ScanCamera view_of(const View& view) {
+  ScanCamera from;
   from.eye = dvec3(view.position);
   from.right = view.right, from.up = view.up, from.forward = view.forward;
   from.tan_half_fov = view.tan_half_fov;

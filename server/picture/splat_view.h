@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lays the Gaussian splats of a world over finished pictures (scan/splats/draw_splats.h): they are
-// blended in display codes, as they were trained, and stop at the depth that a picture has.
+// Lays the Gaussian splats of a world over finished pictures (scan/splat_draw/draw_splats.h): they
+// are blended in display codes, as they were trained, and stop at the depth that a picture has.
 #pragma once
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "frame/frame.h"
-#include "scan/splats/draw_splats.h"
+#include "scan/splat_draw/draw_splats.h"
 #include "world/placed_scan.h"
 #include "world/view.h"
 

@@ -10,7 +10,7 @@
 
 namespace wellspring::scan {
 struct PointTree;    // scan/tree/point_tree.h
-struct ShownSplats;  // scan/splats/draw_shown.h
+struct ShownSplats;  // scan/splat_draw/draw_shown.h
 }  // namespace wellspring::scan
 
 namespace wellspring::world {

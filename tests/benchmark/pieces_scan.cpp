@@ -22,8 +22,8 @@ namespace {
 
 constexpr int width = 1280, height = 720;
 
-PointView view_of(const PointTree& tree) {
-  PointView view;
+ScanCamera view_of(const PointTree& tree) {
+  ScanCamera view;
   view.eye = dvec3(-9.5, 1.65, 6.5) - tree.origin;
   const vec3 forward = normalize(vec3(0.9f, 0.02f, -0.6f));
   view.forward = forward;
@@ -52,7 +52,7 @@ Drawn draw(PointRaster& raster, const PointTree& tree, const ChooseSettings& cho
            int times) {
   Drawn drawn;
   drawn.ms = INFINITY;
-  const PointView view = view_of(tree);
+  const ScanCamera view = view_of(tree);
   for (int i = 0; i < times; i++) {
     const double began = seconds_now();
     std::vector<NodePoints> nodes;

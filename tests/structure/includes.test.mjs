@@ -46,6 +46,7 @@ const may_enter = {
     format: ['las', ''],
     tree: [''],
     splats: ['format', ''],
+    splat_draw: ['splats', ''],
     draw: ['tree', ''],
   },
   world: {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scan/draw/point_view.h"
+#include "scan/camera.h"
 #include "scan/tree/node_points.h"
 
 namespace wellspring::scan {

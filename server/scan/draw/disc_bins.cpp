@@ -21,7 +21,7 @@ constexpr float outside_places = 32000;  // pixels; Disc::x has 24 bits
 struct ToEye {
   vec3 shift, x, y, z;
   mat3 turn;  // for normals
-  ToEye(const NodePoints& node, const PointView& view) {
+  ToEye(const NodePoints& node, const ScanCamera& view) {
     const dvec3 from = node.corner - view.eye;
     const dvec3 right(view.right), up(view.up), forward(view.forward);
     const double step = double(node.size) / 65536;
@@ -57,7 +57,7 @@ struct Projection {
   float most_pixels;
   int width, height;
 
-  Projection(const NodePoints& node, const PointView& view, const DiscStyle& style)
+  Projection(const NodePoints& node, const ScanCamera& view, const DiscStyle& style)
       : to_eye(node, view),
         focal(view.focal()),
         axis_x(view.axis_place().x - view.offset.x),
@@ -180,7 +180,7 @@ struct Entries {
 }  // namespace
 
 void PieceDiscs::make(const Piece& piece, uint32_t number, const NodePoints& node,
-                      const PointView& view, const DiscStyle& style) {
+                      const ScanCamera& view, const DiscStyle& style) {
   static thread_local std::unique_ptr<Entries> kept;
   if (!kept) kept = std::make_unique<Entries>();
   Entries& entries = *kept;
@@ -226,7 +226,7 @@ void PieceDiscs::make(const Piece& piece, uint32_t number, const NodePoints& nod
   runs_.assign(entries.runs.begin(), entries.runs.end());
 }
 
-bool may_see_node(const NodePoints& node, const PointView& view, const DiscStyle& style) {
+bool may_see_node(const NodePoints& node, const ScanCamera& view, const DiscStyle& style) {
   if (node.count == 0) return false;
   const dvec3 from = node.corner + dvec3(0.5 * double(node.size)) - view.eye;
   const vec3 middle(dot(from, dvec3(view.right)), dot(from, dvec3(view.up)),

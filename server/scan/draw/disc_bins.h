@@ -14,7 +14,7 @@ namespace wellspring::scan {
 class PieceDiscs {
  public:
   // Replaces the discs by those of `piece`.
-  void make(const Piece& piece, uint32_t number, const NodePoints& node, const PointView& view,
+  void make(const Piece& piece, uint32_t number, const NodePoints& node, const ScanCamera& view,
             const DiscStyle& style);
   std::span<const TileDiscs> runs() const { return runs_; }
   const Disc* discs() const { return discs_.get(); }
@@ -26,6 +26,6 @@ class PieceDiscs {
 };
 
 // Returns whether some of the node's discs may be in the picture.
-bool may_see_node(const NodePoints& node, const PointView& view, const DiscStyle& style);
+bool may_see_node(const NodePoints& node, const ScanCamera& view, const DiscStyle& style);
 
 }  // namespace wellspring::scan

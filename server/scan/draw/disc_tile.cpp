@@ -64,7 +64,7 @@ template <int stride, class Body>
 // Leads from pixels to directions of rays, one metre along the axis.
 struct Rays {
   vec3 first, x, y;
-  explicit Rays(const PointView& view) {
+  explicit Rays(const ScanCamera& view) {
     const vec2 from = view.offset - view.axis_place();
     x = view.right / view.focal(), y = -view.up / view.focal();
     first = view.forward + x * from.x + y * from.y;
@@ -176,7 +176,7 @@ class SrgbCodes {
 
 void DiscTile::draw(PointBuffer& buffer, const DiscScene& scene, int tile_x, int tile_y,
                     std::span<const std::span<const Disc>> runs, uint64_t area) {
-  const PointView& view = *scene.view;
+  const ScanCamera& view = *scene.view;
   const double most = most_layers * tile_side * tile_side;
   const Place place{.left = tile_x * tile_side,
                     .top = tile_y * tile_side,
@@ -214,7 +214,7 @@ void DiscTile::draw(PointBuffer& buffer, const DiscScene& scene, int tile_x, int
 }
 
 void DiscTile::write(PointBuffer& buffer, const DiscScene& scene, const Place& place) {
-  const PointView& view = *scene.view;
+  const ScanCamera& view = *scene.view;
   const Rays rays(view);
   const int width = std::min(tile_side, view.width - place.left);
   const int height = std::min(tile_side, view.height - place.top);
@@ -245,7 +245,7 @@ void DiscTile::write(PointBuffer& buffer, const DiscScene& scene, const Place& p
 
 void DiscTile::write_mean(PointBuffer& buffer, const DiscScene& scene, const Place& place) {
   static const SrgbCodes encode;
-  const PointView& view = *scene.view;
+  const ScanCamera& view = *scene.view;
   const int width = std::min(tile_side, view.width - place.left);
   const int height = std::min(tile_side, view.height - place.top);
   for (int y = 0; y < height; y++) {

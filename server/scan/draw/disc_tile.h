@@ -14,7 +14,7 @@ namespace wellspring::scan {
 struct DiscScene {
   std::span<const NodePoints> nodes;
   std::span<const Piece> pieces;
-  const PointView* view = nullptr;
+  const ScanCamera* view = nullptr;
   bool blended = false;
 };
 

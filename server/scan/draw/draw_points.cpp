@@ -18,12 +18,12 @@ struct PointRaster::Arrays {
   std::vector<std::span<const Disc>> runs;
   std::vector<uint64_t> area;  // of each tile
 
-  void find_pieces(std::span<const NodePoints> nodes, const PointView& view,
+  void find_pieces(std::span<const NodePoints> nodes, const ScanCamera& view,
                    const DiscStyle& style);
   void sort_runs(size_t tiles);
 };
 
-void PointRaster::Arrays::find_pieces(std::span<const NodePoints> nodes, const PointView& view,
+void PointRaster::Arrays::find_pieces(std::span<const NodePoints> nodes, const ScanCamera& view,
                                       const DiscStyle& style) {
   pieces.clear();
   for (size_t n = 0; n < nodes.size(); n++) {
@@ -58,7 +58,7 @@ PointRaster::PointRaster() : arrays_(std::make_unique<Arrays>()) {}
 PointRaster::~PointRaster() = default;
 
 void PointRaster::draw(PointBuffer& buffer, std::span<const NodePoints> nodes,
-                       const PointView& view, const DiscStyle& style) {
+                       const ScanCamera& view, const DiscStyle& style) {
   Arrays& arrays = *arrays_;
   buffer.resize(view.width, view.height);
   arrays.find_pieces(nodes, view, style);

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "scan/draw/point_buffer.h"
-#include "scan/draw/point_view.h"
+#include "scan/camera.h"
 #include "scan/tree/node_points.h"
 
 namespace wellspring::scan {
@@ -29,7 +29,7 @@ class PointRaster {
   // Replaces `buffer` by the picture. Nodes are borrowed for the call, at most 2^20 pieces of 4096
   // points. Time is bounded by points and pixels: where discs would cover a tile many times over
   // they are drawn smaller.
-  void draw(PointBuffer& buffer, std::span<const NodePoints> nodes, const PointView& view,
+  void draw(PointBuffer& buffer, std::span<const NodePoints> nodes, const ScanCamera& view,
             const DiscStyle& style);
 
  private:

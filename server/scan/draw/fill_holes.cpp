@@ -172,7 +172,7 @@ class HoleFinder {
 
 }  // namespace
 
-void fill_holes(PointBuffer& buffer, std::span<const NodePoints> nodes, const PointView& view) {
+void fill_holes(PointBuffer& buffer, std::span<const NodePoints> nodes, const ScanCamera& view) {
   const int columns = (buffer.width + block_side - 1) / block_side;
   const int rows = (buffer.height + block_side - 1) / block_side;
   const HoleFinder finder(buffer, nodes, view.focal());

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "scan/draw/point_buffer.h"
-#include "scan/draw/point_view.h"
+#include "scan/camera.h"
 #include "scan/tree/node_points.h"
 
 namespace wellspring::scan {
@@ -15,6 +15,6 @@ namespace wellspring::scan {
 // side only, stay, and so do openings wider than the gaps. A hole gets the depth between its
 // nearest two neighbours, their mean colour, and the rest of the nearer one. `nodes` and `view` are
 // those that were drawn. Pixels are judged by the picture before the call.
-void fill_holes(PointBuffer& buffer, std::span<const NodePoints> nodes, const PointView& view);
+void fill_holes(PointBuffer& buffer, std::span<const NodePoints> nodes, const ScanCamera& view);
 
 }  // namespace wellspring::scan

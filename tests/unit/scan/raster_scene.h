@@ -64,7 +64,7 @@ struct Surfaces {
   std::vector<Ball> balls;
 
   // Returns the depth along the axis at the sampling place of a pixel, or infinity.
-  double depth_at(const scan::PointView& view, double px, double py) const {
+  double depth_at(const scan::ScanCamera& view, double px, double py) const {
     const double f = double(view.focal());
     const vec2 axis = view.axis_place();
     const dvec3 d = dvec3(view.forward) +

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "scan/splats/draw_lanes.h"
-#include "scan/splats/draw_tiles.h"
+#include "scan/splat_draw/draw_lanes.h"
+#include "scan/splat_draw/draw_tiles.h"
 
 namespace wellspring::scan {
 

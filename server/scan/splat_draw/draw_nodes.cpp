@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/splats/draw_nodes.h"
+#include "scan/splat_draw/draw_nodes.h"
 
 #include <algorithm>
 #include <queue>
 
-#include "scan/splats/draw_project.h"
+#include "scan/splat_draw/draw_project.h"
 
 namespace wellspring::scan {
 namespace {
@@ -41,7 +41,7 @@ struct Candidate {
 
 }  // namespace
 
-LocalView make_local_view(const PlacedSplats& set, const ScanView& view) {
+LocalView make_local_view(const PlacedSplats& set, const ScanCamera& view) {
   LocalView local;
   const glm::dquat back = glm::conjugate(glm::normalize(glm::dquat(set.turn)));
   local.eye = vec3(back * (view.eye - set.shift) / set.scale - dvec3(set.splats->middle));
@@ -51,19 +51,20 @@ LocalView make_local_view(const PlacedSplats& set, const ScanView& view) {
   local.scale = float(set.scale);
   local.near = glm::max(view.near, nearest_splat) / local.scale;
   local.focal = view.focal();
-  local.axis = view.axis - view.offset;
+  local.axis = view.axis_place() - view.offset;
   // A few pixels around the picture belong to it, since splats are wider than their places.
   constexpr float around = 8;
-  local.side = vec4(-around - view.axis.x, float(view.width) + around - view.axis.x,
-                    -around - view.axis.y, float(view.height) + around - view.axis.y) /
+  const vec2 axis = view.axis_place();
+  local.side = vec4(-around - axis.x, float(view.width) + around - axis.x, -around - axis.y,
+                    float(view.height) + around - axis.y) /
                local.focal;
   return local;
 }
 
-std::vector<ChosenNode> choose_nodes(std::span<const PlacedSplats> sets,
-                                     std::span<const LocalView> views, float cell_pixels,
-                                     int64_t budget) {
-  std::vector<ChosenNode> chosen;
+std::vector<ChosenSplats> choose_splats(std::span<const PlacedSplats> sets,
+                                        std::span<const LocalView> views, float cell_pixels,
+                                        int64_t budget) {
+  std::vector<ChosenSplats> chosen;
   std::priority_queue<Candidate> open;
   int64_t total = 0;
   const auto add = [&](uint32_t set, uint32_t at) {

@@ -4,7 +4,7 @@
 #pragma once
 #include <span>
 
-#include "scan/splats/draw_tiles.h"
+#include "scan/splat_draw/draw_tiles.h"
 
 namespace wellspring::scan {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/splats/draw_blend.h"
+#include "scan/splat_draw/draw_blend.h"
 
 #include <algorithm>
 
-#include "scan/splats/draw_lanes.h"
-#include "scan/splats/draw_rows.h"
+#include "scan/splat_draw/draw_lanes.h"
+#include "scan/splat_draw/draw_rows.h"
 
 namespace wellspring::scan {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "scan/splats/draw_blend.h"
-#include "scan/splats/draw_rows.h"
+#include "scan/splat_draw/draw_blend.h"
+#include "scan/splat_draw/draw_rows.h"
 
 namespace wellspring::scan {
 namespace {

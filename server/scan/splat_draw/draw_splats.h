@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "scan/splats/draw_blend.h"
-#include "scan/view.h"
+#include "scan/splat_draw/draw_blend.h"
+#include "scan/camera.h"
 
 namespace wellspring::scan {
 
@@ -38,7 +38,7 @@ struct SplatPicture {
 // is looked at, and 60 a pixel. Uses all cores; the picture does not depend on how many.
 class SplatDrawer {
  public:
-  void draw(SplatPicture& picture, std::span<const PlacedSplats> sets, const ScanView& view,
+  void draw(SplatPicture& picture, std::span<const PlacedSplats> sets, const ScanCamera& view,
             const SplatSettings& settings);
 
  private:

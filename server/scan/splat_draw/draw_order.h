@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "scan/splats/draw_project.h"
+#include "scan/splat_draw/draw_project.h"
 
 namespace wellspring::scan {
 

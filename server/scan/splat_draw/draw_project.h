@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "scan/splats/draw_shown.h"
-#include "scan/view.h"
+#include "scan/splat_draw/draw_shown.h"
+#include "scan/camera.h"
 
 namespace wellspring::scan {
 
@@ -55,7 +55,7 @@ struct ProjectSettings {
   bool nearest_first = false;  // keys are by the nearest depth, not by that of the middle
 };
 
-void project_splats(DrawnSplats& drawn, std::span<const PlacedSplats> sets, const ScanView& view,
+void project_splats(DrawnSplats& drawn, std::span<const PlacedSplats> sets, const ScanCamera& view,
                     const ProjectSettings& settings);
 
 }  // namespace wellspring::scan

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/splats/draw_shown.h"
+#include "scan/splat_draw/draw_shown.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/splats/draw_tiles.h"
+#include "scan/splat_draw/draw_tiles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // Says from where, and which way, a picture of scanned things is made.
 #pragma once
+#include <optional>
+
 #include "base/vec.h"
 
 namespace wellspring::scan {
 
 // Holds a camera with orthonormal axes. Rows of the picture go from the top; a place at `depth`
 // metres along `forward` and `x` metres to the right lies focal() * x / depth pixels right of
-// `axis`.
-struct ScanView {
-  dvec3 eye{0};  // metres
+// axis_place().
+struct ScanCamera {
+  dvec3 eye{0};  // metres, in the frame of what is drawn
   vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   float tan_half_fov = 0.5f;  // half of the picture's height at a depth of 1
   int width = 1, height = 1;
-  vec2 axis{0.5f};    // where `forward` meets the picture, pixels from the top left
+  // Where `forward` meets the picture, pixels from the top left; none: in its middle.
+  std::optional<vec2> axis;
   float near = 0;     // metres along `forward` before which nothing is shown
   vec2 offset{0.5f};  // where pixels are sampled, 0 to 1 from their top left
-  float focal() const { return 0.5f * float(height) / tan_half_fov; }
+  vec2 axis_place() const {
+    return axis ? *axis : vec2(0.5f * float(width), 0.5f * float(height));
+  }
+  float focal() const { return 0.5f * float(height) / tan_half_fov; }  // in pixels
 };
 
 }  // namespace wellspring::scan

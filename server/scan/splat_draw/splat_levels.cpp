@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/splats/splat_levels.h"
+#include "scan/splat_draw/splat_levels.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
-#include "scan/splats/splat_merge.h"
+#include "scan/splat_draw/splat_merge.h"
 
 namespace wellspring::scan {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/splats/draw_splats.h"
+#include "scan/splat_draw/draw_splats.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "base/parallel.h"
-#include "scan/splats/draw_lanes.h"
-#include "scan/splats/draw_order.h"
+#include "scan/splat_draw/draw_lanes.h"
+#include "scan/splat_draw/draw_order.h"
 
 namespace wellspring::scan {
 namespace {
@@ -122,7 +122,7 @@ void SplatDrawer::draw_by_pixel(const TileGrid& grid) {
 }
 
 void SplatDrawer::draw(SplatPicture& picture, std::span<const PlacedSplats> sets,
-                       const ScanView& view, const SplatSettings& settings) {
+                       const ScanCamera& view, const SplatSettings& settings) {
   ProjectSettings project = settings.project;
   project.nearest_first = settings.by_pixel;
   project_splats(drawn_, sets, view, project);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "scan/splats/draw_project.h"
+#include "scan/splat_draw/draw_project.h"
 
 namespace wellspring::scan {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "scan/splats/draw_shown.h"
-#include "scan/view.h"
+#include "scan/splat_draw/draw_shown.h"
+#include "scan/camera.h"
 
 namespace wellspring::scan {
 
@@ -20,17 +20,17 @@ struct LocalView {
   glm::vec4 side;  // ratios of x, and of y, to depth at the left, right, top, bottom
 };
 
-LocalView make_local_view(const PlacedSplats& set, const ScanView& view);
+LocalView make_local_view(const PlacedSplats& set, const ScanCamera& view);
 
-struct ChosenNode {
+struct ChosenSplats {
   uint32_t set, node;
 };
 
 // Nodes that are not in the picture are left out. Cells of those that are chosen are at most
 // `cell_pixels` large, unless more than `budget` splats would be drawn: then the largest cells are
 // as small as can be.
-std::vector<ChosenNode> choose_nodes(std::span<const PlacedSplats> sets,
-                                     std::span<const LocalView> views, float cell_pixels,
-                                     int64_t budget);
+std::vector<ChosenSplats> choose_splats(std::span<const PlacedSplats> sets,
+                                        std::span<const LocalView> views, float cell_pixels,
+                                        int64_t budget);
 
 }  // namespace wellspring::scan

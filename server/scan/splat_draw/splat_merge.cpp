@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/splats/splat_merge.h"
+#include "scan/splat_draw/splat_merge.h"
 
 #include <algorithm>
 #include <cmath>

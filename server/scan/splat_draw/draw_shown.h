@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "scan/splats/splat_levels.h"
+#include "scan/splat_draw/splat_levels.h"
 
 namespace wellspring::scan {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/splats/draw_project.h"
+#include "scan/splat_draw/draw_project.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
-#include "scan/splats/draw_lanes.h"
-#include "scan/splats/draw_nodes.h"
+#include "scan/splat_draw/draw_lanes.h"
+#include "scan/splat_draw/draw_nodes.h"
 
 namespace wellspring::scan {
 namespace {
@@ -32,7 +32,7 @@ struct Projection {
   float width, height;
   float left, right, top, bottom;  // ratios beyond which slants stay the same
 
-  Projection(const LocalView& local, const ScanView& whole, const ProjectSettings& settings)
+  Projection(const LocalView& local, const ScanCamera& whole, const ProjectSettings& settings)
       : view(local), settings(settings), width(float(whole.width)), height(float(whole.height)) {
     // As in the reference's program: 15 % of the picture beyond its edges.
     const float x = 0.15f * width / view.focal, y = 0.15f * height / view.focal;
@@ -168,7 +168,7 @@ uint32_t keep_seen(DrawnSplats& drawn, size_t to, const DrawnLanes& lanes, bool 
 
 static_assert(sizeof(DrawnSplat) == 64);
 
-void project_splats(DrawnSplats& drawn, std::span<const PlacedSplats> sets, const ScanView& view,
+void project_splats(DrawnSplats& drawn, std::span<const PlacedSplats> sets, const ScanCamera& view,
                     const ProjectSettings& settings) {
   std::vector<LocalView> views;
   std::vector<Projection> projections;
@@ -179,8 +179,8 @@ void project_splats(DrawnSplats& drawn, std::span<const PlacedSplats> sets, cons
   std::vector<BlockPiece> pieces;
   size_t places = 0;
   drawn.looked_at = 0;
-  for (const ChosenNode& chosen :
-       choose_nodes(sets, views, settings.cell_pixels, settings.budget)) {
+  for (const ChosenSplats& chosen :
+       choose_splats(sets, views, settings.cell_pixels, settings.budget)) {
     const SplatNode& node = sets[chosen.set].splats->nodes[chosen.node];
     const uint32_t end = node.first + (node.count + lane_count - 1) / lane_count;
     for (uint32_t first = node.first; first < end; first += blocks_a_piece) {
