@@ -14,6 +14,8 @@
 
 namespace wellspring::picture {
 
+struct Shown;  // picture/drawn_planes.h
+
 // Borrows what stands in a world beside its meshes.
 struct LaidThings {
   std::span<const PlacedVolume> volumes;

@@ -6,7 +6,6 @@
 
 #include "base/simd.h"
 #include "scan/draw/disc.h"
-#include "scan/draw/draw_points.h"
 
 namespace wellspring::scan {
 

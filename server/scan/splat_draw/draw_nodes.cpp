@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <queue>
 
-#include "scan/splat_draw/draw_project.h"
-
 namespace wellspring::scan {
 namespace {
 

@@ -15,7 +15,6 @@ namespace wellspring::scan {
 inline constexpr float splat_threshold = 1 / 255.0f;  // less opacity at a pixel is not drawn
 inline constexpr float log_threshold = -7.9943534f;   // its logarithm to base 2
 inline constexpr float most_opacity = 0.99f;          // of a splat at a pixel, as in training
-inline constexpr float nearest_splat = 0.1f;          // metres; nearer to the eye none is drawn
 
 // Pixels of a rectangle, the last ones included.
 struct PixelBox {

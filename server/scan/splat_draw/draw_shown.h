@@ -11,6 +11,8 @@
 
 namespace wellspring::scan {
 
+inline constexpr float nearest_splat = 0.1f;  // metres; nearer to the eye none is drawn
+
 // Holds eight splats; those that fill up a node's last block have an opacity of 0.
 struct SplatBlock {
   Lanes3 place;  // relative to ShownSplats::middle

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "scan/tree/node_points.h"
 #include "scan/tree/point_tree.h"
 
 namespace wellspring::scan {
