@@ -12,10 +12,11 @@
 
 namespace wellspring::test {
 
-// Points of one node, owned.
+// Points of one node, owned; first they are added, then lent.
 struct PointSet {
   dvec3 corner{0};
   float size = 1, spacing = 0.01f;
+  uint32_t count = 0;
   std::vector<uint16_t> x, y, z, normal;
   std::vector<uint32_t> color;
   std::vector<uint8_t> classification;
@@ -23,13 +24,13 @@ struct PointSet {
   static uint16_t normal_of(vec3 n) {
     n /= std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
     vec2 u(n.x, n.y);
-    if (n.z < 0)
-      u = {std::copysign(1 - std::abs(n.y), n.x), std::copysign(1 - std::abs(n.x), n.y)};
+    if (n.z < 0) u = {std::copysign(1 - std::abs(n.y), n.x), std::copysign(1 - std::abs(n.x), n.y)};
     const auto byte = [](float a) { return uint16_t(uint8_t(int8_t(std::lrint(a * 127)))); };
     return uint16_t(byte(u.x) | byte(u.y) << 8);
   }
   void add_place(int px, int py, int pz, uint32_t c = 0xffffffff, uint16_t n = 0x8080,
                  uint8_t k = 0) {
+    count++;
     x.push_back(uint16_t(px)), y.push_back(uint16_t(py)), z.push_back(uint16_t(pz));
     color.push_back(c), normal.push_back(n), classification.push_back(k);
   }
@@ -39,7 +40,6 @@ struct PointSet {
   }
   // Appends what may be read beyond the end, and lends the columns.
   scan::NodePoints lend() {
-    const uint32_t count = uint32_t(x.size());
     for (auto* column : {&x, &y, &z, &normal}) column->resize(count + 8, 0x7777);
     color.resize(count + 8, 0xff00ff), classification.resize(count + 8, 99);
     scan::NodePoints node;
