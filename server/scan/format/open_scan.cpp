@@ -10,6 +10,7 @@
 #include "scan/format/pcd.h"
 #include "scan/format/ply.h"
 #include "scan/format/text.h"
+#include "scan/las/las_source.h"
 
 namespace wellspring::scan {
 namespace {
@@ -25,6 +26,7 @@ bool is_named(Bytes path, std::initializer_list<const char*> ends) {
   return false;
 }
 
+bool is_las(Bytes head, Bytes) { return head.starts_with("LASF"); }
 bool is_e57(Bytes head, Bytes) { return head.starts_with("ASTM-E57"); }
 bool is_ply_text(Bytes head, Bytes) {
   return head.starts_with("ply\n") || head.starts_with("ply\r") || head.starts_with("ply ");
@@ -48,8 +50,9 @@ struct Format {
   std::unique_ptr<PointSource> (*open)(const std::string& path);
 };
 constexpr Format formats[] = {
-    {is_e57, open_e57},          {is_ply_text, open_ply},    {is_pcd_text, open_pcd},
-    {is_gltf, open_gltf_points}, {is_splats, refuse_splats}, {is_text, open_text},
+    {is_las, open_las},      {is_e57, open_e57},          {is_ply_text, open_ply},
+    {is_pcd_text, open_pcd}, {is_gltf, open_gltf_points}, {is_splats, refuse_splats},
+    {is_text, open_text},
 };
 
 }  // namespace
@@ -63,9 +66,9 @@ std::unique_ptr<PointSource> open_scan(const std::string& path) {
   if (head.empty()) throw LoadError(path, "", "is empty");
   for (const Format& format : formats)
     if (format.is_it(head, path)) return format.open(path);
-  throw LoadError(
-      path, "byte 0",
-      "is of no format of points that is read: E57, PLY, PCD, XYZ, PTS, TXT, CSV, glTF");
+  throw LoadError(path, "byte 0",
+                  "is of no format of points that is read: LAS, LAZ, COPC, E57, PLY, PCD, XYZ, "
+                  "PTS, TXT, CSV, glTF");
 }
 
 }  // namespace wellspring::scan

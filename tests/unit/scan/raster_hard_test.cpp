@@ -10,12 +10,12 @@ namespace wellspring::test {
 using namespace wellspring::scan;
 
 namespace {
-PointView small_view() {
-  PointView view;
+ScanCamera small_view() {
+  ScanCamera view;
   view.width = 100, view.height = 80;
   return view;
 }
-PointBuffer drawn(std::vector<PointSet>& sets, const PointView& view, bool blended = false) {
+PointBuffer drawn(std::vector<PointSet>& sets, const ScanCamera& view, bool blended = false) {
   std::vector<NodePoints> nodes;
   for (PointSet& set : sets) nodes.push_back(set.lend());
   PointBuffer buffer;
@@ -68,7 +68,7 @@ TEST(PointRaster, shows_one_point_where_it_is) {
     std::vector<PointSet> sets(1, cube_at(2));
     sets[0].spacing = 1e-4f;
     sets[0].add_place(40000, 50000, 32768, 0x40302010, PointSet::normal_of({0, 0, -1}), 6);
-    const PointView view = small_view();
+    const ScanCamera view = small_view();
     const PointBuffer buffer = drawn(sets, view, blended);
     ASSERT_EQ(count_covered(buffer), 1);
     const double f = double(view.focal());
@@ -101,7 +101,7 @@ TEST(PointRaster, shows_nothing_behind_or_at_the_eye) {
 TEST(PointRaster, shows_nothing_before_the_near_plane) {
   std::vector<PointSet> sets(1, cube_at(2));
   for (const int z : {60000, 20000}) sets[0].add_place(32768, 32768, z);  // 1.58 and 2.19 metres
-  PointView view = small_view();
+  ScanCamera view = small_view();
   EXPECT_NEAR(drawn(sets, view).depth[40 * 100 + 50], 1.5845, 1e-3);
   view.near = 2;
   EXPECT_NEAR(drawn(sets, view).depth[40 * 100 + 50], 2.1948, 1e-3);
@@ -200,7 +200,7 @@ TEST(PointRaster, never_loses_discs_that_graze_the_view) {
 TEST(PointRaster, draws_a_picture_of_one_pixel) {
   std::vector<PointSet> sets(1, cube_at(2));
   sets[0].add_place(32768, 32768, 32768, 0xff000001);
-  PointView view;
+  ScanCamera view;
   PointBuffer buffer = drawn(sets, view);
   EXPECT_EQ(count_covered(buffer), 1);
   EXPECT_EQ(buffer.color[0], 0xff000001u);
@@ -218,7 +218,7 @@ TEST(PointRaster, does_not_feel_how_far_the_origin_is) {
   std::vector<PointSet> far = near;
   const dvec3 move(1e7, -2e7, 3e7);
   far[0].corner += move;
-  PointView view = small_view();
+  ScanCamera view = small_view();
   const PointBuffer expected = drawn(near, view);
   view.eye += move;
   EXPECT_TRUE(same_pictures(drawn(far, view), expected));
@@ -233,7 +233,7 @@ TEST(PointRaster, draws_the_same_for_any_number_of_threads) {
       set.add_place(int(random() & 0xffff), int(random() & 0xffff), int(random() & 0xfff), random(),
                     uint16_t(random()));
   }
-  PointView view = small_view();
+  ScanCamera view = small_view();
   view.width = 300, view.height = 200;
   for (const bool blended : {false, true}) {
     std::vector<PointSet> copy = sets;
@@ -253,7 +253,7 @@ TEST(PointRaster, moves_the_picture_by_the_offset_in_pixels) {
   std::vector<PointSet> sets(1, cube_at(2));
   sets[0].spacing = 1e-5f;
   sets[0].add_place(32768, 32768, 32768);  // a little right of the middle, and above
-  PointView view = small_view();
+  ScanCamera view = small_view();
   view.offset = {0.9f, 0.5f};
   PointBuffer buffer = drawn(sets, view);
   EXPECT_TRUE(std::isfinite(buffer.depth[39 * 100 + 49]) ||
@@ -270,7 +270,7 @@ TEST(PointRaster, has_its_axis_where_the_view_says) {
   std::vector<PointSet> sets(1, cube_at(2));
   sets[0].spacing = 1e-5f;
   sets[0].add_place(32768, 32768, 32768);
-  PointView view = small_view();
+  ScanCamera view = small_view();
   view.axis = vec2(10.5f, 20.5f);
   EXPECT_TRUE(std::isfinite(drawn(sets, view).depth[20 * 100 + 10]));
 }

@@ -19,7 +19,7 @@ struct Verdict {
   double error = 0;  // mean of relative errors of depth, of others
 };
 
-Verdict judge(const PointBuffer& buffer, const Surfaces& surfaces, const PointView& view,
+Verdict judge(const PointBuffer& buffer, const Surfaces& surfaces, const ScanCamera& view,
               double tolerance, double apart) {
   Verdict verdict;
   int right = 0;
@@ -48,7 +48,7 @@ Verdict judge(const PointBuffer& buffer, const Surfaces& surfaces, const PointVi
   return verdict;
 }
 
-PointBuffer drawn(PointSet& set, const PointView& view, bool filled, bool blended = false) {
+PointBuffer drawn(PointSet& set, const ScanCamera& view, bool filled, bool blended = false) {
   const NodePoints node = set.lend();
   PointBuffer buffer;
   PointRaster().draw(buffer, {&node, 1}, view, {.blended = blended});
@@ -56,8 +56,8 @@ PointBuffer drawn(PointSet& set, const PointView& view, bool filled, bool blende
   return buffer;
 }
 
-PointView view_of(int width, int height, dvec3 eye) {
-  PointView view;
+ScanCamera view_of(int width, int height, dvec3 eye) {
+  ScanCamera view;
   view.width = width, view.height = height, view.eye = eye;
   return view;
 }
@@ -69,7 +69,7 @@ TEST(PointRaster, shows_a_wall_without_holes_from_a_metre_on) {
   const Surfaces wall{.rectangles = {{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}}, .balls = {}};
   PointSet set = scattered(wall, spacing, {-2, -2, -2}, 4);
   for (const double away : {1.0, 1.7, 3.0, 6.0}) {
-    PointView view = view_of(240, 180, {0.1, 0.05, away});
+    ScanCamera view = view_of(240, 180, {0.1, 0.05, away});
     const double pixels = spacing * double(view.focal()) / away;
     const PointBuffer buffer = drawn(set, view, true);
     const Verdict v = judge(buffer, wall, view, 0.01, std::max(1.0, 0.5 * pixels));
@@ -85,7 +85,7 @@ TEST(PointRaster, shows_a_ball_before_a_wall) {
                        .balls = {{{0, 0, 0}, 0.4}}};
   for (const bool blended : {false, true}) {
     PointSet set = scattered(scene, spacing, {-2, -2, -2}, 4);
-    const PointView view = view_of(240, 180, {0, 0, 1.6});
+    const ScanCamera view = view_of(240, 180, {0, 0, 1.6});
     const PointBuffer buffer = drawn(set, view, true, blended);
     const Verdict v = judge(buffer, scene, view, 0.05, 1);
     EXPECT_LE(v.holes, v.covered / 1000);
@@ -113,7 +113,7 @@ TEST(PointRaster, shows_a_room_through_a_doorway) {
                                      {{-2, -1, -3}, {0, 0, 6}, {4, 0, 0}}},
                       .balls = {}};
   PointSet set = scattered(room, 0.01, {-4, -4, -4}, 8);
-  const PointView view = view_of(320, 240, {0.3, 0.2, 2});
+  const ScanCamera view = view_of(320, 240, {0.3, 0.2, 2});
   const Verdict v = judge(drawn(set, view, true), room, view, 0.05, 1);
   EXPECT_LE(v.holes, v.covered / 1000);
   EXPECT_LE(v.fattened, v.covered / 1000);
@@ -123,7 +123,7 @@ TEST(PointRaster, shows_a_room_through_a_doorway) {
 TEST(FillHoles, closes_what_shows_through_and_keeps_silhouettes) {
   // Two walls, the nearer one covers the left half and has gaps of a pixel; nothing is beyond.
   const Surfaces near{.rectangles = {{{-1, -1, 0}, {1, 0, 0}, {0, 2, 0}}}, .balls = {}};
-  PointView view = view_of(128, 96, {0, 0, 1});
+  ScanCamera view = view_of(128, 96, {0, 0, 1});
   view.tan_half_fov = 0.75f;
   PointSet set = scattered(near, 0.014, {-2, -2, -2}, 4);
   const NodePoints node = set.lend();
@@ -153,7 +153,7 @@ TEST(FillHoles, closes_what_shows_through_and_keeps_silhouettes) {
 
 TEST(FillHoles, leaves_openings_wider_than_gaps) {
   // A wall with a slit of six pixels whose points are a pixel apart.
-  PointView view = view_of(64, 64, {0, 0, 1});
+  ScanCamera view = view_of(64, 64, {0, 0, 1});
   PointSet set;
   set.spacing = 1 / view.focal();
   const NodePoints node = set.lend();
@@ -174,7 +174,7 @@ TEST(PointRaster, averages_discs_that_overlap) {
     for (int y = 0; y < 64; y++)
       set.add_place(x * 1024, y * 1024, 32768, (x + y) % 2 ? 0x64ffffffu : 0xc8000000u,
                     PointSet::normal_of({0, 0, 1}));
-  const PointView view = view_of(64, 64, {0, 0, 0});
+  const ScanCamera view = view_of(64, 64, {0, 0, 0});
   const PointBuffer buffer = drawn(set, view, false, true);
   for (int y = 20; y < 44; y++)
     for (int x = 20; x < 44; x++) {
