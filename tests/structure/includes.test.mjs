@@ -45,6 +45,7 @@ const may_enter = {
     format: [''],
     tree: [''],
     splats: ['format', ''],
+    'tree/import': ['tree', ''],
     draw: ['tree', ''],
   },
   world: {

@@ -10,8 +10,8 @@
 namespace wellspring::scan {
 namespace {
 
-// Of boxes that hide others, so many are asked, those that look largest: what small ones hide costs
-// less than asking them.
+// So many boxes are asked whether they hide others, those that look largest: what small ones hide
+// costs less than asking them.
 constexpr size_t most_occluders = 128;
 constexpr double least_occluder_pixels = 24;
 

@@ -22,7 +22,7 @@ class DataFile {
   void write_at(uint64_t to, const void* from, size_t count) const;
   void read_at(uint64_t from, void* to, size_t count) const;
   uint64_t size() const;
-  void cut(uint64_t size) const;  // what lies beyond is gone
+  void cut(uint64_t size) const;  // no byte lies beyond afterwards
   void sync() const;              // returns when the disk has it
   // Maps all of it to be read.
   std::shared_ptr<const std::byte> map() const;

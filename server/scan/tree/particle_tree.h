@@ -15,7 +15,7 @@ namespace wellspring::scan {
 
 struct ParticleNode {
   Box box;
-  Box reach;                            // of its spheres, which may lie across the box's sides
+  Box reach;                            // bounds its spheres, which may lie across the box's sides
   uint32_t first = 0, count = 0;        // spheres whose centres lie in it, in order()
   uint32_t child = 0;                   // the lower one, the other follows; 0: a leaf
   float opacity = 0, most_opacity = 0;  // its own; the largest of it and of all below

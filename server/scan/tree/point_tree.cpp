@@ -9,8 +9,6 @@
 #include <zlib.h>
 
 #include "base/load_error.h"
-#include "scan/tree/data_file.h"
-#include "scan/tree/import.h"
 #include "scan/tree/tree_format.h"
 
 namespace wellspring::scan {
@@ -191,19 +189,15 @@ NodePoints PointTree::points_of(uint32_t number) const {
   return of;
 }
 
-PointTree open_tree(const std::string& path) {
+PointTree map_tree(const std::string& name, const DataFile& file) {
   PointTree tree;
-  tree.file = path;
-  TreeReader(tree, DataFile::open_to_read(path));
+  tree.file = name;
+  TreeReader(tree, file);
   return tree;
 }
 
-PointTree make_tree(const TreeSource& source, const TreeSettings& settings) {
-  PointTree tree;
-  tree.file = source.file;
-  TreeReport report;
-  TreeReader(tree, import_points({source}, WorkPlace(""), settings, {}, report));
-  return tree;
+PointTree open_tree(const std::string& path) {
+  return map_tree(path, DataFile::open_to_read(path));
 }
 
 }  // namespace wellspring::scan

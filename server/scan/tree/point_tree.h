@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "scan/points.h"
+#include "scan/tree/data_file.h"
 #include "scan/tree/node_points.h"
-#include "scan/tree/write_tree.h"
 
 namespace wellspring::scan {
 
@@ -20,7 +20,7 @@ struct TreeNode {
   uint32_t count = 0;                      // points that stand for the node
   uint8_t level = 0;                       // the cube's edge is the root's halved so many times
   uint64_t beneath = 0;                    // points of all leaves in it
-  uint64_t offset = 0;                     // of its columns
+  uint64_t offset = 0;                     // bytes to its columns
 
   bool is_leaf() const { return children == 0; }
 };
@@ -44,8 +44,7 @@ struct PointTree {
 // Maps a file. Reads its head and its table, no point. Throws LoadError that names file and place.
 PointTree open_tree(const std::string& path);
 
-// Makes a tree in memory, of a cloud that need not be imported: some millions of points, which take
-// 120 bytes each while it is made, 18 afterwards. Throws as write_tree().
-PointTree make_tree(const TreeSource& source, const TreeSettings& settings);
+// Maps a file that is open already, in memory perhaps; errors call it by this name.
+PointTree map_tree(const std::string& name, const DataFile& file);
 
 }  // namespace wellspring::scan

@@ -25,7 +25,7 @@ inline constexpr std::array<char, 8> tree_magic{'W', 'S', 'p', 'o', 'i', 'n', 't
 inline constexpr uint64_t tree_page = 4096;
 inline constexpr uint64_t column_align = 64;     // bytes
 inline constexpr uint64_t page_from = 64 << 10;  // bytes of a node that begins on a page
-inline constexpr int position_bits = 48;         // of a place along an edge of the root
+inline constexpr int position_bits = 48;         // a place along the root's edge has so many
 inline constexpr int deepest_level = 32;         // cells of nodes are 32-bit numbers
 inline constexpr int voxel_bits = 7, voxel_side = 1 << voxel_bits;  // an inner node's means
 inline constexpr double largest_leaf = 32;  // metres: a step of a leaf is half a millimetre
@@ -35,8 +35,8 @@ enum TreeFieldBits : uint32_t { tree_color = 1, tree_intensity = 2, tree_classes
 struct TreeHead {
   std::array<char, 8> magic;
   double origin[3];  // metres in the frame of the sources, turned so that +Y is up
-  double corner[3];  // of the root's cube, from there
-  double edge;       // of the root's cube, metres
+  double corner[3];  // the root's cube's lowest, from there
+  double edge;       // the root's cube's, metres
   double density;    // points of a square metre of surface, typically
   uint64_t points;   // leaves hold so many
   uint64_t table_at, stations_at, end_at;  // bytes; the file is as long as `end_at`

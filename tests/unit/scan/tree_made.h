@@ -9,6 +9,7 @@
 
 #include "base/rng.h"
 #include "scan/tree/point_tree.h"
+#include "scan/tree/import/write_tree.h"
 
 namespace wellspring::test {
 
@@ -82,7 +83,7 @@ inline dvec3 place_of(const scan::NodePoints& points, uint32_t i) {
 struct FoundPoint {
   dvec3 place;
   uint32_t color;
-  double step;  // of its leaf
+  double step;  // its leaf's
   uint8_t classification;
 };
 inline std::vector<FoundPoint> leaf_points(const scan::PointTree& tree, uint32_t node = 0) {

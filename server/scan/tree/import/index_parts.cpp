@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/tree/index_parts.h"
+#include "scan/tree/import/index_parts.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -12,7 +12,7 @@
 namespace wellspring::scan {
 
 struct PartLog::Entry {
-  uint64_t end = 0;  // of the tree's file, with this part
+  uint64_t end = 0;  // bytes of the tree's file, with this part
   uint32_t nodes = 0, sums = 0;
   uint32_t sum = 0;  // CRC-32 of nodes and sums
   uint32_t part = 0;

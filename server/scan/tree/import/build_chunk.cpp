@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/tree/build_chunk.h"
+#include "scan/tree/import/build_chunk.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,7 +12,7 @@
 namespace wellspring::scan {
 namespace {
 
-// Of nodes whose points have normals, or are means, only a part is asked for its spacing.
+// If points have normals, or are means, only a part of them is asked for the spacing.
 constexpr size_t every_for_spacing = 4;
 
 void append_columns(std::vector<uint8_t>& bytes, NodeRecord& record, const NodeColumnData& data,

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "scan/tree/build_chunk.h"
+#include "scan/tree/import/build_chunk.h"
 #include "scan/tree/data_file.h"
-#include "scan/tree/work.h"
+#include "scan/tree/import/work.h"
 
 namespace wellspring::scan {
 

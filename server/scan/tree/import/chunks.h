@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "scan/tree/data_file.h"
-#include "scan/tree/read_source.h"
-#include "scan/tree/work.h"
+#include "scan/tree/import/read_source.h"
+#include "scan/tree/import/work.h"
 
 namespace wellspring::scan {
 
@@ -23,7 +23,7 @@ struct ChunkPoint {
   uint16_t high[3];
   uint16_t normal;
   uint32_t color;    // as NodePoints has it
-  uint16_t station;  // of all sources'
+  uint16_t station;  // numbered over all sources
   uint8_t classification;
   uint8_t none;
 

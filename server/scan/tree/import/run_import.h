@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scan/tree/data_file.h"
-#include "scan/tree/write_tree.h"
+#include "scan/tree/tree_settings.h"
 
 namespace wellspring::scan {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/tree/write_tree.h"
+#include "scan/tree/import/write_tree.h"
 
 #include <filesystem>
 
 #include "base/load_error.h"
-#include "scan/tree/import.h"
+#include "scan/tree/import/run_import.h"
 
 namespace wellspring::scan {
 
@@ -23,6 +23,11 @@ TreeReport write_tree(const std::vector<TreeSource>& sources, const std::string&
   if (error) throw LoadError(path, "", "cannot be written: " + error.message());
   fs::remove_all(path + ".work", error);
   return report;
+}
+
+PointTree make_tree(const TreeSource& source, const TreeSettings& settings) {
+  TreeReport report;
+  return map_tree(source.file, import_points({source}, WorkPlace(""), settings, {}, report));
 }
 
 }  // namespace wellspring::scan

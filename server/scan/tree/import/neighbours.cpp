@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/tree/neighbours.h"
+#include "scan/tree/import/neighbours.h"
 
 #include <algorithm>
 #include <cmath>

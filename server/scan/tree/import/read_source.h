@@ -11,8 +11,8 @@
 #include "base/write_file.h"
 #include "scan/points.h"
 #include "scan/tree/data_file.h"
-#include "scan/tree/work.h"
-#include "scan/tree/write_tree.h"
+#include "scan/tree/import/work.h"
+#include "scan/tree/tree_settings.h"
 
 namespace wellspring::scan {
 
@@ -24,7 +24,7 @@ struct ReadPoint {
   std::array<uint16_t, 3> color;
   uint16_t intensity;
   uint16_t normal;   // octahedral, in the tree's frame
-  uint16_t station;  // of those of its source
+  uint16_t station;  // one of its source's
   uint8_t classification;
   std::array<uint8_t, 3> none;
 };
@@ -32,7 +32,7 @@ static_assert(sizeof(ReadPoint) == 40);
 
 struct SourceFacts {
   uint64_t points = 0, dropped = 0;
-  dvec3 low{0}, high{0};                      // of what is there, whatever the file promised
+  dvec3 low{0}, high{0};  // bounds the points that are there, whatever the file promised
   uint16_t color_max = 0, intensity_max = 0;  // as ScanInfo says
   uint16_t top_color = 0, top_intensity = 0;  // the largest that are there
   uint32_t fields = 0;                        // TreeFieldBits

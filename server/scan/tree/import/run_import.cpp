@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/tree/import.h"
+#include "scan/tree/import/run_import.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "base/load_error.h"
 #include "base/rng.h"
 #include "base/write_file.h"
-#include "scan/tree/index_parts.h"
+#include "scan/tree/import/index_parts.h"
 
 namespace wellspring::scan {
 namespace {

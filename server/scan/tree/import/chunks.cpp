@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/tree/chunks.h"
+#include "scan/tree/import/chunks.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/tree/voxel_means.h"
+#include "scan/tree/import/voxel_means.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/tree/read_source.h"
+#include "scan/tree/import/read_source.h"
 
 #include <cmath>
 #include <fmt/format.h>

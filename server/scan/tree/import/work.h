@@ -11,7 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/worker.h"
-#include "scan/tree/write_tree.h"
+#include "scan/tree/tree_settings.h"
 
 namespace wellspring::scan {
 

@@ -50,7 +50,7 @@ class VoxelGatherer {
  private:
   VoxelSum& find(std::vector<VoxelSum>& sums, glm::uvec3 voxel);
   void forget(const std::vector<VoxelSum>& sums, size_t from);
-  std::vector<uint32_t> numbers_;  // of sums, for voxels of one octant
+  std::vector<uint32_t> numbers_;  // the places in sums of one octant's voxels
 };
 
 // Makes an inner node's columns of its voxels.

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "scan/tree/chunks.h"
-#include "scan/tree/neighbours.h"
+#include "scan/tree/import/chunks.h"
+#include "scan/tree/import/neighbours.h"
 #include "scan/tree/opacity.h"
-#include "scan/tree/voxel_means.h"
+#include "scan/tree/import/voxel_means.h"
 
 namespace wellspring::scan {
 
-// Opacities come of 512 lines each: their standard error is 0.01 at 0.95, at most 0.022. Of nodes
-// that stop fewer than 0.7 of the first 64 it is 0.063 at most.
+// Opacities come of 512 lines each: their standard error is 0.01 at 0.95, at most 0.022. If
+// fewer than 0.7 of the first 64 are stopped, these are all, and it is 0.063 at most.
 inline constexpr int opacity_lines = 512;
 inline constexpr float opacity_least = 0.7f;
 
@@ -37,7 +37,7 @@ struct BuiltNode {
 struct BuiltPart {
   std::vector<BuiltNode> nodes;
   std::vector<uint8_t> bytes;
-  std::vector<VoxelSum> sums;  // of the last node, unless it is a leaf
+  std::vector<VoxelSum> sums;  // the last node's, unless it is a leaf
 };
 
 // Makes nodes, one after the other.
@@ -48,7 +48,7 @@ class NodeMaker {
   void add_leaf(BuiltPart& part, const NodeCube& cube, const ChunkPoint* points, size_t count);
   // Makes an inner node of its children's sums, which `node` names.
   void add_inner(BuiltPart& part, BuiltNode node, std::span<const VoxelSum> sums);
-  const NodeColumnData& columns() const { return columns_; }  // of the last node
+  const NodeColumnData& columns() const { return columns_; }  // the last node's
   VoxelGatherer& gatherer() { return gatherer_; }
 
  private:
