@@ -47,6 +47,7 @@ const may_enter = {
     tree: [''],
     splats: ['format', ''],
     splat_draw: ['splats', ''],
+    'tree/import': ['tree', ''],
     draw: ['tree', ''],
   },
   world: {
