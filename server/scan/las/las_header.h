@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/vec.h"
@@ -42,11 +43,10 @@ bool is_las(std::span<const uint8_t> bytes);
 // damaged get a notice.
 LasHeader load_las_header(const std::string& file, std::span<const uint8_t> bytes);
 
-// Returns the bytes that a point of the format has at least.
-size_t least_record_bytes(int format);
-
 // Returns how many metres the unit of places is: of metre, foot and US survey foot. For others, and
 // for degrees, it is 1, and a notice says so.
 double las_unit(const LasHeader& header, std::vector<std::string>& notices);
+// The same of a text that describes the space of places (WKT).
+double wkt_unit(std::string_view wkt, std::vector<std::string>& notices);
 
 }  // namespace wellspring::scan
