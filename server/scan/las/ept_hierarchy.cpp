@@ -92,7 +92,7 @@ class HierarchyReader {
   }
 
   EptFolder& folder_;
-  std::vector<EptKey> files_;  // that are still to be read
+  std::vector<EptKey> files_;  // still to be read
   std::set<EptKey> seen_files_;
   std::map<EptKey, uint64_t> nodes_;
   uint64_t points_ = 0;

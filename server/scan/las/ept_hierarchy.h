@@ -42,9 +42,9 @@ struct EptFolder {
   uint64_t points = 0;
   dvec3 low{0}, high{0};
   bool is_bounded = false;
-  std::string wkt;  // of the space; may be empty
+  std::string wkt;  // describes the space; may be empty
   std::vector<EptDimension> dimensions;
-  size_t point_bytes = 0;      // of binary data
+  size_t point_bytes = 0;      // in binary data
   std::vector<EptNode> nodes;  // those with points, from the root on
 
   const EptDimension* find(const std::string& name) const;

@@ -21,10 +21,10 @@ struct LasRecord {
 };
 
 struct LasHeader {
-  int minor_version = 0;  // of version 1
-  int format = 0;         // of points, 0 to 10
+  int minor_version = 0;  // 2 is LAS 1.2
+  int format = 0;         // the points' format, 0 to 10
   bool is_compressed = false;
-  size_t record_bytes = 0;    // of a point
+  size_t record_bytes = 0;    // a point has so many
   uint64_t points_begin = 0;  // a byte of the file
   uint64_t points = 0;        // as the header promises
   dvec3 scale{1}, offset{0};

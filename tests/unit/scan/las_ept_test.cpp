@@ -20,7 +20,7 @@ std::string ept_node(int first, int count) {
   std::string bytes(size_t(count) * ept_point_bytes, '\0');
   for (int i = 0; i < count; i++) {
     const size_t at = size_t(i) * ept_point_bytes;
-    put_at(bytes, at, ivec3(first + i, 2, -3));
+    put_at(bytes, at, glm::ivec3(first + i, 2, -3));
     put_at(bytes, at + 12, uint16_t(first + i));
     put_at(bytes, at + 14, std::array<uint16_t, 3>{uint16_t(first + i), 500, 65535});
     put_at(bytes, at + 20, uint8_t(6));

@@ -26,8 +26,8 @@ struct MadeLas {
   int minor = 2, format = 0;
   dvec3 scale{0.01}, offset{0};
   size_t extra_bytes = 0;
-  std::vector<std::pair<int, std::string>> records;  // of LASF_Projection: number and content
-  std::vector<ivec3> places;
+  std::vector<std::pair<int, std::string>> records;  // LASF_Projection's: number and content
+  std::vector<glm::ivec3> places;
 
   size_t header_bytes() const { return minor >= 4 ? 375 : minor == 3 ? 235 : 227; }
   size_t record_bytes() const { return made_record_bytes[format] + extra_bytes; }
