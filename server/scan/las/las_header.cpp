@@ -73,8 +73,6 @@ bool is_las(std::span<const uint8_t> bytes) {
   return bytes.size() >= 4 && std::memcmp(bytes.data(), "LASF", 4) == 0;
 }
 
-size_t least_record_bytes(int format) { return format_bytes[format]; }
-
 LasHeader load_las_header(const std::string& file, std::span<const uint8_t> bytes) {
   const HeaderBytes from{file, bytes};
   if (!is_las(bytes)) from.fail(0, "is no LAS file: it does not begin with LASF");

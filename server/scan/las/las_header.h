@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/vec.h"
@@ -20,10 +21,10 @@ struct LasRecord {
 };
 
 struct LasHeader {
-  int minor_version = 0;  // of version 1
-  int format = 0;         // of points, 0 to 10
+  int minor_version = 0;  // 2 is LAS 1.2
+  int format = 0;         // the points' format, 0 to 10
   bool is_compressed = false;
-  size_t record_bytes = 0;    // of a point
+  size_t record_bytes = 0;    // a point has so many
   uint64_t points_begin = 0;  // a byte of the file
   uint64_t points = 0;        // as the header promises
   dvec3 scale{1}, offset{0};
@@ -42,11 +43,10 @@ bool is_las(std::span<const uint8_t> bytes);
 // damaged get a notice.
 LasHeader load_las_header(const std::string& file, std::span<const uint8_t> bytes);
 
-// Returns the bytes that a point of the format has at least.
-size_t least_record_bytes(int format);
-
 // Returns how many metres the unit of places is: of metre, foot and US survey foot. For others, and
 // for degrees, it is 1, and a notice says so.
 double las_unit(const LasHeader& header, std::vector<std::string>& notices);
+// The same of a text that describes the space of places (WKT).
+double wkt_unit(std::string_view wkt, std::vector<std::string>& notices);
 
 }  // namespace wellspring::scan

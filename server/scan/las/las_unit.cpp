@@ -68,6 +68,8 @@ std::optional<Unit> read_geo_keys(std::span<const uint8_t> bytes) {
   const size_t keys = std::min<size_t>(number(3), bytes.size() / 8 - 1);
   std::optional<Unit> found;
   for (size_t i = 1; i <= keys; i++) {
+    if (number(4 * i) == 0)
+      return Unit{1, "GeoTIFF keys are damaged; the unit is taken as a metre."};
     const int key = number(4 * i), lies_in = number(4 * i + 1), value = number(4 * i + 3);
     if (lies_in != 0) continue;
     if (key == model_key && value == geographic_model) return degrees();
@@ -81,6 +83,13 @@ std::optional<Unit> read_geo_keys(std::span<const uint8_t> bytes) {
 }
 
 }  // namespace
+
+double wkt_unit(std::string_view wkt, std::vector<std::string>& notices) {
+  const std::optional<Unit> unit = read_wkt(wkt);
+  if (!unit) return 1;
+  if (!unit->notice.empty()) notices.push_back(unit->notice);
+  return unit->metres;
+}
 
 double las_unit(const LasHeader& header, std::vector<std::string>& notices) {
   std::optional<Unit> unit;

@@ -116,7 +116,7 @@ std::vector<LazChunk> load_laz_chunks(const std::string& file, std::span<const u
 }
 
 struct LazChunkDecoder::Items {
-  ArithmeticDecoder decoder;  // of all items that go point by point
+  ArithmeticDecoder decoder;  // serves all items that go point by point
   std::vector<std::unique_ptr<PointwiseItem>> pointwise;
   std::vector<std::unique_ptr<LayeredItem>> layered;
 

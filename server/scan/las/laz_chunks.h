@@ -16,7 +16,7 @@ namespace wellspring::scan {
 struct LazLayout {
   bool has_chunks = true;      // false: all points are one chunk, without a table (LASzip 1)
   bool is_layered = false;     // each attribute is a stream of its own
-  uint32_t chunk_points = 0;   // of every chunk but the last; 0: the table says it for each
+  uint32_t chunk_points = 0;   // every chunk but the last has so many; 0: the table says it
   std::vector<LazItem> items;  // in a record's order
 
   size_t record_bytes() const;

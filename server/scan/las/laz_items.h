@@ -26,7 +26,7 @@ enum class LazItemKind : uint16_t {
 struct LazItem {
   LazItemKind kind = LazItemKind::bytes;
   uint16_t size = 0;     // bytes of a record
-  uint16_t version = 0;  // of the item's coding
+  uint16_t version = 0;  // the item's coding
 };
 
 // Says whether an item lies in layers, each a stream of its own.

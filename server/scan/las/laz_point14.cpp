@@ -17,7 +17,7 @@ struct Point14 {
   std::array<int32_t, 3> place{};
   uint16_t intensity = 0, source = 0;
   int16_t angle = 0;
-  uint8_t number = 0, count = 0;  // of returns, 0 to 15
+  uint8_t number = 0, count = 0;  // the return, and how many there are, 0 to 15
   uint8_t flags = 0;              // 4 bits of the class, then direction and edge
   uint8_t channel = 0, classification = 0, user = 0;
   uint64_t time = 0;
