@@ -170,7 +170,7 @@ class TextSource : public ColumnSource {
 
   InputFile file_;
   InputLines lines_;
-  std::vector<Role> roles_;  // of the columns up to the last that is read
+  std::vector<Role> roles_;  // columns hold these, up to the last that is read
   bool is_counted_ = false;
   uint64_t promised_ = 0;
 };
