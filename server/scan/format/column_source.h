@@ -35,7 +35,7 @@ Role role_named(std::string_view name);
 struct PointColumns {
   size_t count = 0;
   std::array<std::vector<double>, role_count> column;
-  uint16_t station = 0;  // of all of them
+  uint16_t station = 0;  // all of them are of this scan
 
   std::vector<double>& operator[](Role role) { return column[size_t(role)]; }
   const std::vector<double>& operator[](Role role) const { return column[size_t(role)]; }
@@ -54,7 +54,7 @@ class ColumnSource : public PointSource {
     bool is_known() const { return high > low; }
   };
   Range color_range_, intensity_range_;
-  bool colors_are_real_ = false;  // of floating point, so that 1 may mean the brightest
+  bool colors_are_real_ = false;  // they are floating point: 1 may be the brightest
   bool is_leica_ = false;         // intensities beyond 255 are of -2048 to 2047
   bool has_stations_ = false;
 
@@ -76,7 +76,7 @@ class ColumnSource : public PointSource {
   void append(PointBlock& block, size_t from, size_t count);
   Scale color_, intensity_;
   PointColumns piece_;
-  size_t next_ = 0;  // of the piece's points
+  size_t next_ = 0;  // index of the next point in the piece
   uint64_t cut_ = 0;
   bool is_done_ = false;
 };

@@ -198,7 +198,7 @@ class E57Source : public ColumnSource {
 
   E57Pages pages_;
   E57Text text_;
-  std::vector<Streams> streams_;        // of each scan
+  std::vector<Streams> streams_;        // each scan has its own
   std::array<bool, role_count> has_{};  // a scan has such a column
   double color_most_ = 255;
   std::optional<E57Section> section_;

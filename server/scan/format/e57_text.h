@@ -16,8 +16,8 @@ struct E57Stream {
   enum class Kind : uint8_t { integer, single_real, double_real, text };
   std::string name;  // "cartesianX"
   Kind kind = Kind::double_real;
-  int bits = 64;    // of an integer; 0: all are `low`
-  int64_t low = 0;  // what a stored 0 means
+  int bits = 64;    // each number has so many; 0: all are `low`
+  int64_t low = 0;  // a stored 0 means this
   double scale = 1, offset = 0;
   double least = 0, most = 0;  // as the file promises, scaled; equal: unknown
 };

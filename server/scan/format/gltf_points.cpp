@@ -51,7 +51,7 @@ class GltfPoints : public PointSource {
     block.clear();
     for (; next_ < points_.size() && block.size() < most; next_++) {
       const dvec3 place = points_.place[next_];
-      if (!std::isfinite(place.x + place.y + place.z)) {
+      if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z)) {
         dropped_++;
         continue;
       }

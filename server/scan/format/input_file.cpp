@@ -61,7 +61,8 @@ void InputFile::go_to(uint64_t place) {
 
 std::string_view InputFile::peek(size_t least) {
   if (end_ - next_ < least && buffer_place_ + end_ < size_) {
-    std::memmove(buffer_.data(), buffer_.data() + next_, end_ - next_);
+    std::copy(buffer_.begin() + std::ptrdiff_t(next_), buffer_.begin() + std::ptrdiff_t(end_),
+              buffer_.begin());
     buffer_place_ += next_;
     end_ -= next_;
     next_ = 0;

@@ -20,7 +20,7 @@ class InputFile {
 
   const std::string& path() const { return path_; }
   uint64_t size() const { return size_; }
-  uint64_t place() const { return buffer_place_ + next_; }  // of the next byte
+  uint64_t place() const { return buffer_place_ + next_; }  // where the next byte stands
   uint64_t rest() const { return size_ - place(); }
 
   // Goes to a place, at most to the end.
@@ -42,7 +42,7 @@ class InputFile {
   int descriptor_ = -1;
   uint64_t size_ = 0;
   std::vector<char> buffer_;
-  uint64_t buffer_place_ = 0;  // of the buffer's first byte in the file
+  uint64_t buffer_place_ = 0;  // where the buffer's first byte stands in the file
   size_t next_ = 0, end_ = 0;  // in the buffer
 };
 
@@ -54,7 +54,7 @@ class InputLines {
   // Gives the next line, without its end; false: there are no more. It stays valid until the next
   // call.
   bool next(std::string_view& line);
-  uint64_t number() const { return number_; }  // of that line, from 1
+  uint64_t number() const { return number_; }  // the line has this number, from 1
   std::string where() const { return "line " + std::to_string(number_); }
   void count_from(uint64_t number) { number_ = number; }
 

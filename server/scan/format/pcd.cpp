@@ -25,7 +25,7 @@ struct Field {
   NumberKind kind = NumberKind::f32;
   bool is_packed_color = false;
   uint64_t offset = 0;  // in a record
-  size_t words = 0;     // of text before it
+  size_t words = 0;     // so many words of a line stand before it
 };
 
 std::optional<NumberKind> kind_of(char type, size_t size) {

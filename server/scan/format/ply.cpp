@@ -140,7 +140,7 @@ class PlySource : public ColumnSource {
     }
   }
 
-  // What is read of a property; `offset` bytes from a record's begin.
+  // A property is read as `role`; it stands `offset` bytes behind a record's begin.
   struct Column {
     Role role = Role::none;
     NumberKind kind = NumberKind::f32;

@@ -24,7 +24,7 @@ struct PlyProperty {
   std::string name;
   NumberKind kind = NumberKind::f32;
   bool is_list = false;
-  NumberKind count_kind = NumberKind::u8;  // of a list's length
+  NumberKind count_kind = NumberKind::u8;  // a list's length is of this kind
 };
 
 struct PlyElement {
@@ -41,7 +41,7 @@ struct PlyElement {
 struct PlyHeader {
   bool is_text = false, is_big = false;  // big: the highest byte is first
   std::vector<PlyElement> elements;
-  uint64_t lines = 0;  // of the head
+  uint64_t lines = 0;  // the head has so many
   const PlyElement* find(std::string_view element) const;
 };
 

@@ -76,6 +76,8 @@ class TextSource : public ColumnSource {
                                                  "y and z: '{}'",
                                                  line.substr(0, 60)));
       } else if (is_count(*numbers)) {
+        if (rows.empty() && promised_ > 0)
+          file_.fail(lines_.where(), "a count follows a count: PTX is not read");
         if (rows.empty()) is_counted_ = true, promised_ = uint64_t((*numbers)[0]);
       } else if (numbers->size() < 3) {
         file_.fail(lines_.where(), "has fewer than three numbers");
@@ -170,7 +172,7 @@ class TextSource : public ColumnSource {
 
   InputFile file_;
   InputLines lines_;
-  std::vector<Role> roles_;  // of the columns up to the last that is read
+  std::vector<Role> roles_;  // columns hold these, up to the last that is read
   bool is_counted_ = false;
   uint64_t promised_ = 0;
 };

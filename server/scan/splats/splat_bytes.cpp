@@ -164,7 +164,7 @@ class KsplatReader {
   std::string_view bytes_;
   SplatSet set_;
   int level_ = 0;
-  float least_ = 0, most_ = 0;  // of harmonics in a byte
+  float least_ = 0, most_ = 0;  // a byte of 0 and of 255 means these, in harmonics
   uint64_t partials_passed_ = 0;
 };
 

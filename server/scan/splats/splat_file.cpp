@@ -13,7 +13,7 @@
 namespace wellspring::scan {
 namespace {
 
-constexpr size_t most_bytes = size_t(1) << 32;  // of formats that are read at once
+constexpr size_t most_bytes = size_t(1) << 32;  // formats that are read at once may have so many
 constexpr size_t most_json = size_t(1) << 26;
 
 enum class Kind : uint8_t { none, ply, spz, splat, ksplat, gltf };

@@ -86,7 +86,10 @@ void turn_harmonics(SplatSet& set, const mat3& turn) {
   }
 }
 
-bool is_finite(const quat& turn) { return std::isfinite(turn.w + turn.x + turn.y + turn.z); }
+bool is_finite(const quat& turn) {
+  return std::isfinite(turn.w) && std::isfinite(turn.x) && std::isfinite(turn.y) &&
+         std::isfinite(turn.z);
+}
 
 }  // namespace
 

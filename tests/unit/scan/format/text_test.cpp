@@ -88,6 +88,8 @@ TEST(TextScan, names_the_line_of_a_fault) {
   EXPECT_NE(file.refusal("a.xyz", "Dear reader,\nhello\n").find("line 1: is neither"),
             std::string::npos);
   EXPECT_NE(file.refusal("a.xyz", "1 2\n").find("line 1: has fewer"), std::string::npos);
+  EXPECT_NE(file.refusal("a.ptx", "2\n2\n0 0 0\n1 0 0\n").find("line 2: a count follows"),
+            std::string::npos);
   EXPECT_NE(file.refusal("a.xyz", std::string(2'000'000, '1')), "");
   EXPECT_EQ(file.read("a.xyz", "nan 2 3\n1 2 3\n").dropped, 1u);
   expect_no_harm(file.folder, "b.pts", "3\n1 2 3 -4 5 6 7\n1 2 3 4 5 6 7\n1 2 3 4 5 6 7\n",

@@ -11,7 +11,6 @@ using scan::SplatSet;
 TEST(SplatBytes, reads_the_same_four_splats_of_every_format) {
   WELLSPRING_SKIP_WITHOUT_SCANS();
   const std::filesystem::path folder = scans_folder() / "splats/minimal";
-  const vec3 places[] = {{-1, 0, -1}, {0, 0, -1}, {-1, 0, 0}, {0, 0, 0}};
   for (const char* name : {"minimal.splat", "minimal.ksplat", "minimal-raw.spz", "minimal-v2.spz",
                            "minimal-v3.spz", "minimal-v4.spz"}) {
     EXPECT_TRUE(scan::holds_splats((folder / name).string())) << name;
@@ -19,6 +18,11 @@ TEST(SplatBytes, reads_the_same_four_splats_of_every_format) {
     ASSERT_EQ(set.size(), 4u) << name;
     EXPECT_EQ(set.degree, 0) << name;
     EXPECT_TRUE(set.notices.empty()) << name;
+    // Those of versions 3 and 4 were made in another frame.
+    const float z = name == std::string("minimal-v3.spz") || name == std::string("minimal-v4.spz")
+                        ? 1.0f
+                        : -1.0f;
+    const vec3 places[] = {{-1, 0, z}, {0, 0, z}, {-1, 0, 0}, {0, 0, 0}};
     for (size_t i = 0; i < 4; i++) {
       EXPECT_NEAR(glm::length(set.place[i] - places[i]), 0, 1e-4f) << name << i;
       EXPECT_NEAR(set.scale[i].x, 0.1f, 0.004f) << name;
