@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "image/srgb.h"
@@ -46,17 +47,59 @@ struct PlacedDisc {
   }
 };
 
-// Calls body(place in planes, q, how much deeper than the middle) for the box, eight pixels at a
-// time; lanes outside the disc have q above 1, those beyond the tile lie in the planes' padding.
+// Eight pixels of a tile's planes: neighbours in a row, or four of a row and four below.
+template <int stride>
+struct EightInRow {
+  size_t at;
+  size_t lane(int i) const { return at + size_t(i); }
+  template <class V, class T>
+  V load(const T* plane) const {
+    return load_lanes<V>(plane + at);
+  }
+  template <class T, class V>
+  void store(T* plane, const V& v) const {
+    store_lanes(plane + at, v);
+  }
+};
+template <int stride>
+struct FourInTwoRows {
+  size_t at;
+  size_t lane(int i) const { return at + size_t(i & 3) + size_t(i >> 2) * stride; }
+  template <class V, class T>
+  V load(const T* plane) const {
+    return lanes_as<V>(join_halves(load_lanes<HalfLaneBits>(plane + at),
+                                   load_lanes<HalfLaneBits>(plane + at + stride)));
+  }
+  template <class T, class V>
+  void store(T* plane, const V& v) const {
+    store_lanes(plane + at, low_half(lanes_as<LaneBits>(v)));
+    store_lanes(plane + at + stride, high_half(lanes_as<LaneBits>(v)));
+  }
+};
+
+// Calls body(pixels, q, how much deeper than the middle) for the box, eight pixels at a time;
+// pixels outside the disc have q above 1, those beyond the tile lie in the planes' padding.
 template <int stride, class Body>
 [[gnu::always_inline]] inline void for_disc(const PlacedDisc& d, const Body& body) {
+  if (d.high_x < d.low_x) return;  // it has shrunk out of the tile
   const float a = 1 / (d.radius * d.radius);
+  if (d.high_x - d.low_x < 4) {
+    constexpr Lanes across{0, 1, 2, 3, 0, 1, 2, 3}, down{0, 0, 0, 0, 1, 1, 1, 1};
+    const Lanes dx = across + (float(d.low_x) - d.x), far = a * dx * dx, lean = d.lean_x * dx;
+    for (int y = d.low_y; y <= d.high_y; y += 2) {
+      const Lanes dy = down + (float(y) - d.y);
+      const Lanes e = lean + d.lean_y * dy;
+      body(FourInTwoRows<stride>{size_t(y * stride + d.low_x)}, far + a * dy * dy + e * e,
+           d.slope * e);
+    }
+    return;
+  }
   for (int y = d.low_y; y <= d.high_y; y++) {
     const float dy = float(y) - d.y, lean = d.lean_y * dy, far = a * dy * dy;
     for (int x = d.low_x; x <= d.high_x; x += lane_count) {
       const Lanes dx = steps + (float(x) - d.x);
       const Lanes e = d.lean_x * dx + lean;
-      body(y * stride + x, a * dx * dx + far + e * e, d.slope * e);
+      body(EightInRow<stride>{size_t(y * stride + x)}, a * dx * dx + far + e * e, d.slope * e);
     }
   }
 }
@@ -70,6 +113,9 @@ struct Rays {
     first = view.forward + x * from.x + y * from.y;
   }
   vec3 at(float column, float row) const { return first + x * column + y * row; }
+  Lanes3 eight(float column, float row) const {
+    return all_lanes(at(column, row)) + all_lanes(x) * steps;
+  }
 };
 
 // Returns a point's normal as two numbers of -1 to 1.
@@ -92,12 +138,19 @@ uint32_t normal_word(vec3 n) {
   if (n.z >= 0) return normal_word(n.x, n.y);
   return normal_word(std::copysign(1 - std::abs(n.y), n.x), std::copysign(1 - std::abs(n.x), n.y));
 }
-inline uint32_t normal_towards_eye(uint16_t word, vec3 ray) {
-  if (word == no_point_normal) return PointBuffer::no_normal;
-  const vec2 n = decoded_normal(word);
-  if (dot(unfolded_normal(n), ray) <= 0) return normal_word(n.x, n.y);
-  return normal_word(-std::copysign(1 - std::abs(n.y), n.x),
-                     -std::copysign(1 - std::abs(n.x), n.y));
+// Turns normals of points to the eye, as words of PointBuffer::normal.
+LaneBits normals_towards_eye(const LaneMask& words, const Lanes3& rays) {
+  const Lanes u = __builtin_convertvector((words << 24) >> 24, Lanes) * (1 / 127.0f),
+              v = __builtin_convertvector((words << 16) >> 24, Lanes) * (1 / 127.0f);
+  const Lanes w = 1 - lanes_abs(u) - lanes_abs(v), fold = positive_lanes(-w);
+  const Lanes3 n{u + (u < 0 ? fold : -fold), v + (v < 0 ? fold : -fold), w};
+  const LaneMask away = dot(n, rays) > 0;
+  // The opposite direction lies mirrored at the fold.
+  const Lanes rest_u = 1 - lanes_abs(v), rest_v = 1 - lanes_abs(u);
+  const Lanes own_u = away ? (u < 0 ? rest_u : -rest_u) : u,
+              own_v = away ? (v < 0 ? rest_v : -rest_v) : v;
+  const LaneMask word = (round_lanes(own_u * 32767) & 0xffff) | round_lanes(own_v * 32767) << 16;
+  return LaneBits(words == no_point_normal ? LaneMask{} + int(PointBuffer::no_normal) : word);
 }
 
 // Encodes linear values, right to a code.
@@ -135,17 +188,16 @@ class SrgbCodes {
   }
   const PlacedDisc d(disc, place.left, place.top, place.shrink);
   const float behind = rim_behind * d.radius * d.depth * place.pixel;
-  for_disc<stride>(d, [&](int start, const Lanes& q, const Lanes& deeper) {
-    const size_t at = size_t(start);
-    const Lanes key = load_lanes(&key_[at]);
+  for_disc<stride>(d, [&](const auto& pixels, const Lanes& q, const Lanes& deeper) {
+    const Lanes key = pixels.template load<Lanes>(key_.data());
     const Lanes depth = lanes_max(d.depth + deeper, all_lanes(place.near));
     const Lanes own = depth + behind * q;
     const LaneMask wins = (q <= 1) & (own < key);
     if (!any_lane(wins)) return;
-    store_lanes(&key_[at], wins ? own : key);
-    store_lanes(&depth_[at], wins ? depth : load_lanes(&depth_[at]));
-    const LaneBits point = load_lanes<LaneBits>(&point_[at]);
-    store_lanes(&point_[at], wins ? all_lane_bits(disc.point) : point);
+    pixels.store(key_.data(), wins ? own : key);
+    pixels.store(depth_.data(), wins ? depth : pixels.template load<Lanes>(depth_.data()));
+    const LaneBits point = pixels.template load<LaneBits>(point_.data());
+    pixels.store(point_.data(), wins ? all_lane_bits(disc.point) : point);
   });
 }
 
@@ -161,15 +213,15 @@ class SrgbCodes {
   }
   const PlacedDisc d(disc, place.left, place.top, place.shrink);
   const float band = band_radii * d.radius * d.depth * place.pixel;
-  for_disc<stride>(d, [&](int start, const Lanes& q, const Lanes& deeper) {
-    const size_t at = size_t(start);
+  for_disc<stride>(d, [&](const auto& pixels, const Lanes& q, const Lanes& deeper) {
     const Lanes depth = lanes_max(d.depth + deeper, all_lanes(place.near));
-    const LaneMask near = lanes_abs(depth - load_lanes(&depth_[at])) <= all_lanes(band);
+    const Lanes seen = pixels.template load<Lanes>(depth_.data());
+    const LaneMask near = lanes_abs(depth - seen) <= all_lanes(band);
     const Lanes inside = 1.001f - q;  // above 0 at the rim, so that each disc seen has weight
     const Lanes weight = inside * inside;
     for (unsigned lanes = negative_lanes((q <= 1) & near); lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      sum_[at + size_t(lane)] += value * weight[lane];
+      sum_[pixels.lane(lane)] += value * weight[lane];
     }
   });
 }
@@ -183,15 +235,15 @@ void DiscTile::draw(PointBuffer& buffer, const DiscScene& scene, int tile_x, int
                     .shrink = double(area) > most ? float(std::sqrt(most / double(area))) : 1,
                     .pixel = 1 / view.focal(),
                     .near = view.near};
-  key_.assign(size + lane_count, infinite);
-  depth_.assign(size + lane_count, infinite);
-  point_.assign(size + lane_count, nobody);
+  key_.assign(size, infinite);
+  depth_.assign(size, infinite);
+  point_.assign(size, nobody);
   for (const std::span<const Disc>& run : runs)
     for (const Disc& disc : run) place_disc(disc, place);
   write(buffer, scene, place);
   if (!scene.blended) return;
   const Rays rays(view);
-  sum_.assign(size + lane_count, Lanes{});
+  sum_.assign(size, Lanes{});
   for (const std::span<const Disc>& run : runs) {
     const Piece& piece = scene.pieces[run[0].point >> piece_bits];
     const NodePoints& node = scene.nodes[piece.node];
@@ -220,25 +272,30 @@ void DiscTile::write(PointBuffer& buffer, const DiscScene& scene, const Place& p
   const int height = std::min(tile_side, view.height - place.top);
   for (int y = 0; y < height; y++) {
     const size_t row = size_t(place.top + y) * size_t(view.width) + size_t(place.left);
-    for (int x = 0; x < width; x++) {
-      const size_t from = size_t(y * stride + x), to = row + size_t(x);
-      const uint32_t point = point_[from];
-      buffer.depth[to] = depth_[from];
-      if (point == nobody) {
-        buffer.color[to] = 0;
-        buffer.normal[to] = PointBuffer::no_normal;
-        buffer.classification[to] = 0;
-        buffer.node[to] = PointBuffer::no_node;
-        continue;
+    for (int x = 0; x < width; x += lane_count) {
+      LaneMask words = LaneMask{} + no_point_normal;
+      const int count = std::min(lane_count, width - x);
+      for (int i = 0; i < count; i++) {
+        const size_t from = size_t(y * stride + x + i), to = row + size_t(x + i);
+        const uint32_t point = point_[from];
+        buffer.depth[to] = depth_[from];
+        if (point == nobody) {
+          buffer.color[to] = 0;
+          buffer.classification[to] = 0;
+          buffer.node[to] = PointBuffer::no_node;
+          continue;
+        }
+        const Piece& piece = scene.pieces[point >> piece_bits];
+        const NodePoints& node = scene.nodes[piece.node];
+        const size_t number = piece.first + (point & (piece_points - 1));
+        buffer.color[to] = node.color[number];
+        buffer.classification[to] = node.classification ? node.classification[number] : 0;
+        buffer.node[to] = piece.node;
+        words[i] = node.normal[number];
       }
-      const Piece& piece = scene.pieces[point >> piece_bits];
-      const NodePoints& node = scene.nodes[piece.node];
-      const size_t i = piece.first + (point & (piece_points - 1));
-      buffer.color[to] = node.color[i];
-      buffer.classification[to] = node.classification ? node.classification[i] : 0;
-      buffer.node[to] = piece.node;
-      buffer.normal[to] =
-          normal_towards_eye(node.normal[i], rays.at(float(place.left + x), float(place.top + y)));
+      const LaneBits normals =
+          normals_towards_eye(words, rays.eight(float(place.left + x), float(place.top + y)));
+      std::memcpy(&buffer.normal[row + size_t(x)], &normals, size_t(count) * sizeof(uint32_t));
     }
   }
 }

@@ -35,7 +35,7 @@ class DiscTile {
     float near = 0;         // metres
   };
   static constexpr int stride = tile_side + lane_count;
-  static constexpr int size = tile_side * stride;
+  static constexpr int size = (tile_side + 1) * stride + lane_count;
   void place_disc(const Disc& disc, const Place& place);
   void blend_disc(const Disc& disc, const Place& place, const Lanes& value);
   void write(PointBuffer& buffer, const DiscScene& scene, const Place& place);
