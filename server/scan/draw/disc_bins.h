@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scan/draw/disc.h"
-#include "scan/draw/draw_points.h"
+#include "scan/draw/disc_style.h"
 
 namespace wellspring::scan {
 

@@ -9,12 +9,12 @@
 #include <limits>
 
 #include "image/srgb.h"
+#include "scan/draw/normal_lanes.h"
 
 namespace wellspring::scan {
 namespace {
 
 constexpr uint32_t nobody = 0xffffffffu;
-constexpr uint16_t no_point_normal = 0x8080;
 constexpr float infinite = std::numeric_limits<float>::infinity();
 // Rims of discs lie so many radii behind their middles when discs are compared.
 constexpr float rim_behind = 0.5f;
@@ -23,20 +23,29 @@ constexpr float band_radii = 1;
 // A tile's discs cover it at most so many times.
 constexpr double most_layers = 64;
 
+constexpr int stride = TilePlanes::stride;
 constexpr Lanes steps{0, 1, 2, 3, 4, 5, 6, 7};
+
+// Says where the tile is and how its discs are changed.
+struct Place {
+  int left = 0, top = 0;  // pixels
+  float shrink = 1;       // discs' radii are times this
+  float pixel = 1;        // metres of a pixel at a depth of 1
+  float near = 0;         // metres
+};
 
 // A disc in pixels of its tile.
 struct PlacedDisc {
   float x, y, depth, lean_x, lean_y, radius, slope;
   int low_x, high_x, low_y, high_y;
 
-  PlacedDisc(const Disc& d, int left, int top, float shrink)
+  PlacedDisc(const Disc& d, const Place& place)
       : depth(d.depth), lean_x(d.lean_x), lean_y(d.lean_y), radius(d.radius), slope(d.slope) {
-    const int fixed_x = (d.x >> 8) - left * 256, fixed_y = (d.y >> 8) - top * 256;
+    const int fixed_x = (d.x >> 8) - place.left * 256, fixed_y = (d.y >> 8) - place.top * 256;
     x = float(fixed_x) * (1 / 256.0f), y = float(fixed_y) * (1 / 256.0f);
     int extent_x = (d.x & 255) * 64, extent_y = (d.y & 255) * 64;
-    if (shrink < 1) {
-      const float factor = std::min(1.0f, std::max(shrink, 0.75f / radius));
+    if (place.shrink < 1) {
+      const float factor = std::min(1.0f, std::max(place.shrink, 0.75f / radius));
       extent_x = int(float(extent_x) * factor) + 1, extent_y = int(float(extent_y) * factor) + 1;
       lean_x /= factor, lean_y /= factor, slope *= factor, radius *= factor;
     }
@@ -48,7 +57,6 @@ struct PlacedDisc {
 };
 
 // Eight pixels of a tile's planes: neighbours in a row, or four of a row and four below.
-template <int stride>
 struct EightInRow {
   size_t at;
   size_t lane(int i) const { return at + size_t(i); }
@@ -61,7 +69,6 @@ struct EightInRow {
     store_lanes(plane + at, v);
   }
 };
-template <int stride>
 struct FourInTwoRows {
   size_t at;
   size_t lane(int i) const { return at + size_t(i & 3) + size_t(i >> 2) * stride; }
@@ -79,7 +86,7 @@ struct FourInTwoRows {
 
 // Calls body(pixels, q, how much deeper than the middle) for the box, eight pixels at a time;
 // pixels outside the disc have q above 1, those beyond the tile lie in the planes' padding.
-template <int stride, class Body>
+template <class Body>
 [[gnu::always_inline]] inline void for_disc(const PlacedDisc& d, const Body& body) {
   if (d.high_x < d.low_x) return;  // it has shrunk out of the tile
   const float a = 1 / (d.radius * d.radius);
@@ -89,8 +96,7 @@ template <int stride, class Body>
     for (int y = d.low_y; y <= d.high_y; y += 2) {
       const Lanes dy = down + (float(y) - d.y);
       const Lanes e = lean + d.lean_y * dy;
-      body(FourInTwoRows<stride>{size_t(y * stride + d.low_x)}, far + a * dy * dy + e * e,
-           d.slope * e);
+      body(FourInTwoRows{size_t(y * stride + d.low_x)}, far + a * dy * dy + e * e, d.slope * e);
     }
     return;
   }
@@ -99,7 +105,7 @@ template <int stride, class Body>
     for (int x = d.low_x; x <= d.high_x; x += lane_count) {
       const Lanes dx = steps + (float(x) - d.x);
       const Lanes e = d.lean_x * dx + lean;
-      body(EightInRow<stride>{size_t(y * stride + x)}, a * dx * dx + far + e * e, d.slope * e);
+      body(EightInRow{size_t(y * stride + x)}, a * dx * dx + far + e * e, d.slope * e);
     }
   }
 }
@@ -118,32 +124,24 @@ struct Rays {
   }
 };
 
-// Returns a point's normal as two numbers of -1 to 1.
-inline vec2 decoded_normal(uint16_t word) {
-  return vec2(float(int8_t(word & 255)), float(int8_t(word >> 8))) / 127.0f;
-}
-// Returns it as a vector with a sum of 1.
-inline vec3 unfolded_normal(vec2 n) {
+// Returns a point's normal, which it must have.
+vec3 unpacked_normal(uint16_t word) {
+  const vec2 n = vec2(float(int8_t(word & 255)), float(int8_t(word >> 8))) / 127.0f;
   const float z = 1 - std::abs(n.x) - std::abs(n.y), fold = std::max(-z, 0.0f);
-  return {n.x + (n.x < 0 ? fold : -fold), n.y + (n.y < 0 ? fold : -fold), z};
-}
-inline uint32_t normal_word(float u, float v) {
-  const auto half = [](float a) {
-    return uint32_t(uint16_t(int16_t(std::lrint(std::clamp(a, -1.0f, 1.0f) * 32767))));
-  };
-  return half(u) | half(v) << 16;
+  return normalize(vec3(n.x + (n.x < 0 ? fold : -fold), n.y + (n.y < 0 ? fold : -fold), z));
 }
 uint32_t normal_word(vec3 n) {
   n /= std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-  if (n.z >= 0) return normal_word(n.x, n.y);
-  return normal_word(std::copysign(1 - std::abs(n.y), n.x), std::copysign(1 - std::abs(n.x), n.y));
+  vec2 u(n.x, n.y);
+  if (n.z < 0) u = {std::copysign(1 - std::abs(n.y), n.x), std::copysign(1 - std::abs(n.x), n.y)};
+  const auto half = [](float a) { return uint32_t(uint16_t(int16_t(std::lrint(a * 32767)))); };
+  return half(u.x) | half(u.y) << 16;
 }
+
 // Turns normals of points to the eye, as words of PointBuffer::normal.
 LaneBits normals_towards_eye(const LaneMask& words, const Lanes3& rays) {
-  const Lanes u = __builtin_convertvector((words << 24) >> 24, Lanes) * (1 / 127.0f),
-              v = __builtin_convertvector((words << 16) >> 24, Lanes) * (1 / 127.0f);
-  const Lanes w = 1 - lanes_abs(u) - lanes_abs(v), fold = positive_lanes(-w);
-  const Lanes3 n{u + (u < 0 ? fold : -fold), v + (v < 0 ? fold : -fold), w};
+  const auto [u, v] = unpack_normals(words);
+  const Lanes3 n = fold_normals({u, v});
   const LaneMask away = dot(n, rays) > 0;
   // The opposite direction lies mirrored at the fold.
   const Lanes rest_u = 1 - lanes_abs(v), rest_v = 1 - lanes_abs(u);
@@ -173,99 +171,61 @@ class SrgbCodes {
   std::array<uint8_t, 16384> codes_;
 };
 
-}  // namespace
-
-[[gnu::always_inline]] inline void DiscTile::place_disc(const Disc& disc, const Place& place) {
+[[gnu::always_inline]] inline void place_disc(TilePlanes& planes, const Disc& disc,
+                                              const Place& place) {
   if ((disc.x & 255) == 0) {
     const int x = (((disc.x >> 8) + 128) >> 8) - place.left,
               y = (((disc.y >> 8) + 128) >> 8) - place.top;
     const size_t at = size_t(y * stride + x);
-    if (disc.depth < key_[at]) {
-      key_[at] = depth_[at] = disc.depth;
-      point_[at] = disc.point;
+    if (disc.depth < planes.key[at]) {
+      planes.key[at] = planes.depth[at] = disc.depth;
+      planes.point[at] = disc.point;
     }
     return;
   }
-  const PlacedDisc d(disc, place.left, place.top, place.shrink);
+  const PlacedDisc d(disc, place);
   const float behind = rim_behind * d.radius * d.depth * place.pixel;
-  for_disc<stride>(d, [&](const auto& pixels, const Lanes& q, const Lanes& deeper) {
-    const Lanes key = pixels.template load<Lanes>(key_.data());
+  for_disc(d, [&](const auto& pixels, const Lanes& q, const Lanes& deeper) {
+    const Lanes key = pixels.template load<Lanes>(planes.key.data());
     const Lanes depth = lanes_max(d.depth + deeper, all_lanes(place.near));
     const Lanes own = depth + behind * q;
     const LaneMask wins = (q <= 1) & (own < key);
     if (!any_lane(wins)) return;
-    pixels.store(key_.data(), wins ? own : key);
-    pixels.store(depth_.data(), wins ? depth : pixels.template load<Lanes>(depth_.data()));
-    const LaneBits point = pixels.template load<LaneBits>(point_.data());
-    pixels.store(point_.data(), wins ? all_lane_bits(disc.point) : point);
+    pixels.store(planes.key.data(), wins ? own : key);
+    pixels.store(planes.depth.data(),
+                 wins ? depth : pixels.template load<Lanes>(planes.depth.data()));
+    const LaneBits point = pixels.template load<LaneBits>(planes.point.data());
+    pixels.store(planes.point.data(), wins ? all_lane_bits(disc.point) : point);
   });
 }
 
-[[gnu::always_inline]] inline void DiscTile::blend_disc(const Disc& disc, const Place& place,
-                                                        const Lanes& value) {
+[[gnu::always_inline]] inline void blend_disc(TilePlanes& planes, const Disc& disc,
+                                              const Place& place, const Lanes& value) {
   if ((disc.x & 255) == 0) {
     const int x = (((disc.x >> 8) + 128) >> 8) - place.left,
               y = (((disc.y >> 8) + 128) >> 8) - place.top;
     const size_t at = size_t(y * stride + x);
     const float band = band_radii * disc.depth * place.pixel;
-    if (std::abs(disc.depth - depth_[at]) <= band) sum_[at] += value;
+    if (std::abs(disc.depth - planes.depth[at]) <= band) planes.sum[at] += value;
     return;
   }
-  const PlacedDisc d(disc, place.left, place.top, place.shrink);
+  const PlacedDisc d(disc, place);
   const float band = band_radii * d.radius * d.depth * place.pixel;
-  for_disc<stride>(d, [&](const auto& pixels, const Lanes& q, const Lanes& deeper) {
+  for_disc(d, [&](const auto& pixels, const Lanes& q, const Lanes& deeper) {
     const Lanes depth = lanes_max(d.depth + deeper, all_lanes(place.near));
-    const Lanes seen = pixels.template load<Lanes>(depth_.data());
+    const Lanes seen = pixels.template load<Lanes>(planes.depth.data());
     const LaneMask near = lanes_abs(depth - seen) <= all_lanes(band);
     const Lanes inside = 1.001f - q;  // above 0 at the rim, so that each disc seen has weight
     const Lanes weight = inside * inside;
     for (unsigned lanes = negative_lanes((q <= 1) & near); lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      sum_[pixels.lane(lane)] += value * weight[lane];
+      planes.sum[pixels.lane(lane)] += value * weight[lane];
     }
   });
 }
 
-void DiscTile::draw(PointBuffer& buffer, const DiscScene& scene, int tile_x, int tile_y,
-                    std::span<const std::span<const Disc>> runs, uint64_t area) {
-  const PointView& view = *scene.view;
-  const double most = most_layers * tile_side * tile_side;
-  const Place place{.left = tile_x * tile_side,
-                    .top = tile_y * tile_side,
-                    .shrink = double(area) > most ? float(std::sqrt(most / double(area))) : 1,
-                    .pixel = 1 / view.focal(),
-                    .near = view.near};
-  key_.assign(size, infinite);
-  depth_.assign(size, infinite);
-  point_.assign(size, nobody);
-  for (const std::span<const Disc>& run : runs)
-    for (const Disc& disc : run) place_disc(disc, place);
-  write(buffer, scene, place);
-  if (!scene.blended) return;
-  const Rays rays(view);
-  sum_.assign(size, Lanes{});
-  for (const std::span<const Disc>& run : runs) {
-    const Piece& piece = scene.pieces[run[0].point >> piece_bits];
-    const NodePoints& node = scene.nodes[piece.node];
-    for (const Disc& disc : run) {
-      const uint32_t i = piece.first + (disc.point & (piece_points - 1));
-      const uint32_t color = node.color[i];
-      const uint16_t word = node.normal[i];
-      vec3 n(0);
-      if (word != no_point_normal) {
-        n = normalize(unfolded_normal(decoded_normal(word)));
-        const vec3 ray = rays.at(float(disc.x >> 8) / 256, float(disc.y >> 8) / 256);
-        if (dot(n, ray) > 0) n = -n;
-      }
-      blend_disc(disc, place,
-                 Lanes{decode_srgb(uint8_t(color)), decode_srgb(uint8_t(color >> 8)),
-                       decode_srgb(uint8_t(color >> 16)), float(color >> 24), n.x, n.y, n.z, 1});
-    }
-  }
-  write_mean(buffer, scene, place);
-}
-
-void DiscTile::write(PointBuffer& buffer, const DiscScene& scene, const Place& place) {
+void write_nearest(PointBuffer& buffer, const TilePlanes& planes, const DiscScene& scene,
+                   const Place& place) {
   const PointView& view = *scene.view;
   const Rays rays(view);
   const int width = std::min(tile_side, view.width - place.left);
@@ -277,8 +237,8 @@ void DiscTile::write(PointBuffer& buffer, const DiscScene& scene, const Place& p
       const int count = std::min(lane_count, width - x);
       for (int i = 0; i < count; i++) {
         const size_t from = size_t(y * stride + x + i), to = row + size_t(x + i);
-        const uint32_t point = point_[from];
-        buffer.depth[to] = depth_[from];
+        const uint32_t point = planes.point[from];
+        buffer.depth[to] = planes.depth[from];
         if (point == nobody) {
           buffer.color[to] = 0;
           buffer.classification[to] = 0;
@@ -300,7 +260,8 @@ void DiscTile::write(PointBuffer& buffer, const DiscScene& scene, const Place& p
   }
 }
 
-void DiscTile::write_mean(PointBuffer& buffer, const DiscScene& scene, const Place& place) {
+void write_mean(PointBuffer& buffer, const TilePlanes& planes, const DiscScene& scene,
+                const Place& place) {
   static const SrgbCodes encode;
   const PointView& view = *scene.view;
   const int width = std::min(tile_side, view.width - place.left);
@@ -308,7 +269,7 @@ void DiscTile::write_mean(PointBuffer& buffer, const DiscScene& scene, const Pla
   for (int y = 0; y < height; y++) {
     const size_t row = size_t(place.top + y) * size_t(view.width) + size_t(place.left);
     for (int x = 0; x < width; x++) {
-      const Lanes& sum = sum_[size_t(y * stride + x)];
+      const Lanes& sum = planes.sum[size_t(y * stride + x)];
       if (sum[7] <= 0) continue;
       const Lanes mean = sum / sum[7];
       buffer.color[row + size_t(x)] = encode(mean[0]) | encode(mean[1]) << 8 |
@@ -317,6 +278,47 @@ void DiscTile::write_mean(PointBuffer& buffer, const DiscScene& scene, const Pla
       if (dot(n, n) > 1e-4f) buffer.normal[row + size_t(x)] = normal_word(n);
     }
   }
+}
+
+}  // namespace
+
+void draw_disc_tile(PointBuffer& buffer, TilePlanes& planes, const DiscScene& scene, int tile_x,
+                    int tile_y, std::span<const std::span<const Disc>> runs, uint64_t area) {
+  const PointView& view = *scene.view;
+  const double most = most_layers * tile_side * tile_side;
+  const Place place{.left = tile_x * tile_side,
+                    .top = tile_y * tile_side,
+                    .shrink = double(area) > most ? float(std::sqrt(most / double(area))) : 1,
+                    .pixel = 1 / view.focal(),
+                    .near = view.near};
+  planes.key.assign(TilePlanes::size, infinite);
+  planes.depth.assign(TilePlanes::size, infinite);
+  planes.point.assign(TilePlanes::size, nobody);
+  for (const std::span<const Disc>& run : runs)
+    for (const Disc& disc : run) place_disc(planes, disc, place);
+  write_nearest(buffer, planes, scene, place);
+  if (!scene.blended) return;
+  const Rays rays(view);
+  planes.sum.assign(TilePlanes::size, Lanes{});
+  for (const std::span<const Disc>& run : runs) {
+    const Piece& piece = scene.pieces[run[0].point >> piece_bits];
+    const NodePoints& node = scene.nodes[piece.node];
+    for (const Disc& disc : run) {
+      const uint32_t i = piece.first + (disc.point & (piece_points - 1));
+      const uint32_t color = node.color[i];
+      const uint16_t word = node.normal[i];
+      vec3 n(0);
+      if (word != no_point_normal) {
+        n = unpacked_normal(word);
+        const vec3 ray = rays.at(float(disc.x >> 8) / 256, float(disc.y >> 8) / 256);
+        if (dot(n, ray) > 0) n = -n;
+      }
+      blend_disc(planes, disc, place,
+                 Lanes{decode_srgb(uint8_t(color)), decode_srgb(uint8_t(color >> 8)),
+                       decode_srgb(uint8_t(color >> 16)), float(color >> 24), n.x, n.y, n.z, 1});
+    }
+  }
+  write_mean(buffer, planes, scene, place);
 }
 
 }  // namespace wellspring::scan

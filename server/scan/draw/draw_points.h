@@ -7,19 +7,12 @@
 #include <memory>
 #include <span>
 
+#include "scan/draw/disc_style.h"
 #include "scan/draw/point_buffer.h"
 #include "scan/draw/point_view.h"
 #include "scan/tree/node_points.h"
 
 namespace wellspring::scan {
-
-struct DiscStyle {
-  float radius = 0.75f;    // of a disc, times its node's spacing; above 0.71 squares are covered
-  float most_pixels = 24;  // no disc has a larger radius in the picture; up to 31
-  // Discs of one surface are averaged with weights that fall towards their rims (Botsch et al.
-  // 2005, "High-quality surface splatting on today's GPUs"); false: the nearest middle wins.
-  bool blended = false;
-};
 
 // Keeps its arrays from one picture to the next: about 40 bytes a point in sight.
 class PointRaster {
