@@ -9,14 +9,6 @@
 
 namespace wellspring::scan {
 
-struct DiscStyle {
-  float radius = 0.75f;    // of a disc, times its node's spacing; above 0.71 squares are covered
-  float most_pixels = 24;  // no disc has a larger radius in the picture; up to 31
-  // Discs of one surface are averaged with weights that fall towards their rims (Botsch et al.
-  // 2005, "High-quality surface splatting on today's GPUs"); false: the nearest middle wins.
-  bool blended = false;
-};
-
 // The disc covers sampling places at d = (dx, dy) pixels from its middle for which q = |d|^2 /
 // radius^2 + (lean . d)^2 is at most 1; its depth there is depth + slope * (lean . d).
 struct alignas(32) Disc {

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "base/simd.h"
+#include "scan/draw/normal_lanes.h"
 
 namespace wellspring::scan {
 namespace {
@@ -41,7 +42,7 @@ inline Lanes clamp_lanes(const Lanes& a, float low, float high) {
   return lanes_min(lanes_max(a, all_lanes(low)), all_lanes(high));
 }
 
-// What the eight points' discs are, and the boxes of pixels that they touch, cut to the picture.
+// Holds eight points' discs and the boxes of pixels that they touch, cut to the picture.
 struct EightDiscs {
   LaneMask x, y;
   Lanes depth, lean_x, lean_y, radius, slope;
@@ -96,15 +97,11 @@ inline EightDiscs Projection::eight(const NodePoints& node, size_t first) const 
 
   // The plane's slope at the middle: how much farther it is a pixel on, in pixels' sizes.
   const LaneMask word = load_words(node.normal + first);
-  const Lanes u = whole_lanes((word << 24) >> 24) * (1 / 127.0f),
-              v = whole_lanes((word << 16) >> 24) * (1 / 127.0f);
-  const Lanes w = 1 - lanes_abs(u) - lanes_abs(v);
-  const Lanes fold = positive_lanes(-w);
-  const Lanes3 n = turned(m, {u + (u < 0 ? fold : -fold), v + (v < 0 ? fold : -fold), w});
+  const Lanes3 n = turned(m, fold_normals(unpack_normals(word)));
   const Lanes along = dot(n, at);
   const Lanes least = at.z * 1e-4f;
   const Lanes safe = lanes_abs(along) < least ? least : along;
-  const Lanes ratio = keep_lanes(word != 0x8080, -at.z / safe);
+  const Lanes ratio = keep_lanes(word != no_point_normal, -at.z / safe);
   const Lanes steep_x = ratio * n.x, steep_y = -ratio * n.y;
   const Lanes steep2 = steep_x * steep_x + steep_y * steep_y;
   const Lanes kept2 = lanes_min(steep2, all_lanes(steepest * steepest));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scan/draw/disc.h"
+#include "scan/draw/disc_style.h"
 
 namespace wellspring::scan {
 

@@ -6,6 +6,7 @@
 
 #include "base/simd.h"
 #include "scan/draw/disc.h"
+#include "scan/draw/point_buffer.h"
 
 namespace wellspring::scan {
 
@@ -17,34 +18,21 @@ struct DiscScene {
   bool blended = false;
 };
 
-// A thread's planes of a tile, used for one tile after the other.
-class DiscTile {
- public:
-  // Draws runs of discs, the earlier ones before later ones at the same depth, and writes the
-  // tile's pixels of `buffer`. `area` is the sum of the runs' areas.
-  void draw(PointBuffer& buffer, const DiscScene& scene, int tile_x, int tile_y,
-            std::span<const std::span<const Disc>> runs, uint64_t area);
-
- private:
-  // Where the tile is and how its discs are changed.
-  struct Place {
-    int left = 0, top = 0;  // pixels
-    float shrink = 1;       // discs' radii are times this
-    float pixel = 1;        // metres of a pixel at a depth of 1
-    float near = 0;         // metres
-  };
+// The planes of a tile: rows of tile_side pixels, and what eight pixels at a time may read and
+// write beyond them. A thread uses them for one tile after the other.
+struct TilePlanes {
   static constexpr int stride = tile_side + lane_count;
-  static constexpr int size = tile_side * stride;
-  void place_disc(const Disc& disc, const Place& place);
-  void blend_disc(const Disc& disc, const Place& place, const Lanes& value);
-  void write(PointBuffer& buffer, const DiscScene& scene, const Place& place);
-  void write_mean(PointBuffer& buffer, const DiscScene& scene, const Place& place);
-
+  static constexpr int size = (tile_side + 1) * stride + lane_count;
   // The least key is seen; it is the depth plus what lets the nearest middle win.
-  std::vector<float> key_, depth_;
-  std::vector<uint32_t> point_;
+  std::vector<float> key, depth;
+  std::vector<uint32_t> point;
   // Sums of weight times red, green, blue (linear), intensity, normal (x, y, z), 1.
-  std::vector<Lanes> sum_;
+  std::vector<Lanes> sum;
 };
+
+// Draws runs of discs, the earlier ones before later ones at the same depth, and writes the tile's
+// pixels of `buffer`. `area` is the sum of the runs' areas.
+void draw_disc_tile(PointBuffer& buffer, TilePlanes& planes, const DiscScene& scene, int tile_x,
+                    int tile_y, std::span<const std::span<const Disc>> runs, uint64_t area);
 
 }  // namespace wellspring::scan

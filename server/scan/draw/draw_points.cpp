@@ -14,9 +14,9 @@ struct PointRaster::Arrays {
   std::vector<Piece> pieces;
   std::vector<PieceDiscs> discs;  // a piece each
   // The runs of discs of all tiles, tile by tile, in the order of the pieces.
-  std::vector<uint32_t> first_run;  // of each tile, and the end
+  std::vector<uint32_t> first_run;  // a tile each, and the end
   std::vector<std::span<const Disc>> runs;
-  std::vector<uint64_t> area;  // of each tile
+  std::vector<uint64_t> area;  // a tile each
 
   void find_pieces(std::span<const NodePoints> nodes, const ScanCamera& view,
                    const DiscStyle& style);
@@ -72,10 +72,10 @@ void PointRaster::draw(PointBuffer& buffer, std::span<const NodePoints> nodes,
   const DiscScene scene{
       .nodes = nodes, .pieces = arrays.pieces, .view = &view, .blended = style.blended};
   parallel_each(tiles_x * tiles_y, [&](int t) {
-    static thread_local DiscTile tile;
+    static thread_local TilePlanes planes;
     const uint32_t begin = arrays.first_run[size_t(t)], end = arrays.first_run[size_t(t) + 1];
-    tile.draw(buffer, scene, t % tiles_x, t / tiles_x,
-              std::span(arrays.runs).subspan(begin, end - begin), arrays.area[size_t(t)]);
+    draw_disc_tile(buffer, planes, scene, t % tiles_x, t / tiles_x,
+                   std::span(arrays.runs).subspan(begin, end - begin), arrays.area[size_t(t)]);
   });
 }
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "scan/draw/disc.h"
+#include "scan/draw/disc_style.h"
 #include "scan/draw/point_buffer.h"
 #include "scan/camera.h"
 #include "scan/tree/node_points.h"

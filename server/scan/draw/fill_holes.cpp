@@ -13,23 +13,23 @@ namespace wellspring::scan {
 namespace {
 
 constexpr int block_side = 32;        // pixels
-constexpr int most_width = 32;        // of a gap, pixels; windows reach one block further
+constexpr int most_width = 32;        // pixels between the borders of a gap
 constexpr float gap_spacings = 1.5f;  // width of a gap between discs, in spacings
-constexpr float steepest = 8;         // slope of a surface that a pair may lie on
-constexpr float behind_spacings = 2;  // what is this far behind is not of the same surface
+constexpr float steepest_pair = 8;    // slope of a surface that a pair may lie on
+constexpr float behind_spacings = 2;  // another surface is at least so far behind
 constexpr int directions = 4, agreeing = 3;
 constexpr int step_x[directions] = {1, 0, 1, 1}, step_y[directions] = {0, 1, 1, -1};
-constexpr float infinite = std::numeric_limits<float>::infinity();
+constexpr float endless = std::numeric_limits<float>::infinity();
 
 // Returns the greatest distance of two pixels that bound a gap, for a spacing in pixels.
 int gap_width(float spacing) {
   return std::clamp(int(gap_spacings * spacing + 1.5f), 2, most_width);
 }
 
-// What the surfaces of a block need at most.
+// Holds what the surfaces of a block need.
 struct BlockNeed {
-  float spacing = infinite;  // metres: the least
-  int width = 0;             // of gaps, pixels
+  float spacing = endless;  // metres: the least
+  int width = 0;            // the widest gap, pixels
 };
 
 struct Hole {
@@ -56,7 +56,7 @@ class HoleFinder {
   BlockNeed need_of(int left, int top) const {
     BlockNeed need;
     uint32_t last = PointBuffer::no_node;
-    float nearest = infinite;
+    float nearest = endless;
     const auto add = [&] {
       if (last == PointBuffer::no_node) return;
       const float spacing = nodes_[last].spacing;
@@ -69,7 +69,7 @@ class HoleFinder {
         const uint32_t node = buffer_.node[pixel];
         if (node != last) {
           add();
-          last = node, nearest = infinite;
+          last = node, nearest = endless;
         }
         nearest = std::min(nearest, buffer_.depth[pixel]);
       }
@@ -82,12 +82,12 @@ class HoleFinder {
     if (need.width == 0) return;
     const int margin = need.width - 1;
     constexpr int stride = block_side + 2 * most_width + lane_count;
-    static thread_local std::vector<float> window(size_t(stride) * stride, infinite);
+    static thread_local std::vector<float> window(size_t(stride) * stride, endless);
     const int first_x = std::max(left - margin, 0),
               last_x = std::min(left + block_side + margin, buffer_.width);
     for (int y = -margin; y < block_side + margin; y++) {
       float* row = &window[size_t(y + margin) * stride];
-      std::fill(row, row + block_side + 2 * margin + lane_count, infinite);
+      std::fill(row, row + block_side + 2 * margin + lane_count, endless);
       if (top + y < 0 || top + y >= buffer_.height) continue;
       const float* from = &buffer_.depth[at(0, top + y)];
       std::copy(from + first_x, from + last_x, row + (first_x - left + margin));
@@ -101,7 +101,7 @@ class HoleFinder {
         LaneMask agree{};
         for (int d = 0; d < directions; d++) {
           const std::ptrdiff_t step = step_x[d] + step_y[d] * stride;
-          Lanes before = all_lanes(infinite), after = before;
+          Lanes before = all_lanes(endless), after = before;
           for (int t = 1; t <= margin; t++) {
             before = lanes_min(before, load_lanes(middle - t * step));
             after = lanes_min(after, load_lanes(middle + t * step));
@@ -149,7 +149,7 @@ class HoleFinder {
       const int width = before + after;
       const float least = std::min(near_a, near_b);
       if (width > gap_width(spacing * focal_ / least)) continue;
-      const float along = float(width) * steepest * least / focal_;
+      const float along = float(width) * steepest_pair * least / focal_;
       if (std::abs(near_a - near_b) > along + behind_spacings * spacing) continue;
       // A plane's reciprocal depth is linear in the picture.
       const float share = float(before) / float(width);
