@@ -27,18 +27,17 @@ struct Ellipse {
 
 // Calls body(tile) for all tiles that the splat touches, row by row.
 template <class Body>
-inline void each_tile(const DrawnSplats& drawn, uint32_t number, const TileGrid& grid,
-                      int first_row, int last_row, const Body& body) {
-  const PixelBox box = drawn.boxes[number];
+inline void each_tile(const DrawnSplat& s, const PixelBox& box, const TileGrid& grid, int first_row,
+                      int last_row, const Body& body) {
   const int left = box.left / tile_width, right = box.right / tile_width,
             top = std::max(box.top / tile_height, first_row),
             bottom = std::min(box.bottom / tile_height, last_row - 1);
-  if (left == right || box.top / tile_height == box.bottom / tile_height) {
+  // To look at a splat costs more than a corner's tile too many.
+  if ((right - left + 1) * (bottom - top + 1) <= 4) {
     for (int row = top; row <= bottom; row++)
       for (int column = left; column <= right; column++) body(row * grid.across + column);
     return;
   }
-  const DrawnSplat& s = drawn.splats[number];
   const Ellipse ellipse(s);
   for (int row = top; row <= bottom; row++) {
     const float above = std::max(float(row * tile_height) - s.y, -ellipse.half_height);
@@ -57,7 +56,8 @@ inline void each_tile(const DrawnSplats& drawn, uint32_t number, const TileGrid&
 }  // namespace
 
 void list_splats(TileLists& lists, const DrawnSplats& drawn, std::span<const DrawnKey> keys,
-                 const TileGrid& grid, std::span<const float> limits, int first_row, int last_row) {
+                 std::span<const PixelBox> boxes, const TileGrid& grid,
+                 std::span<const float> limits, int first_row, int last_row) {
   const size_t tiles = size_t(grid.count());
   const size_t a_part = std::max<size_t>(4096, (keys.size() + 15) / 16);
   const size_t parts = (keys.size() + a_part - 1) / a_part;
@@ -67,7 +67,7 @@ void list_splats(TileLists& lists, const DrawnSplats& drawn, std::span<const Dra
     const size_t begin = size_t(part) * a_part, end = std::min(keys.size(), begin + a_part);
     for (size_t i = begin; i < end; i++) {
       const uint32_t number = keys[i].number;
-      each_tile(drawn, number, grid, first_row, last_row, [&](int tile) {
+      each_tile(drawn.splats[number], boxes[i], grid, first_row, last_row, [&](int tile) {
         const float limit = limits[size_t(tile)];
         if (limit > 0 && (limit == std::numeric_limits<float>::infinity() ||
                           drawn.splats[number].nearest < limit))

@@ -38,9 +38,11 @@ struct TileLists {
   }
 };
 
-// Lists splats in the order of `keys` for tiles in rows from `first_row` to before `last_row`.
+// Lists splats in the order of `keys`, of which `boxes` are the places in the picture, for tiles in
+// rows from `first_row` to before `last_row`.
 // Tiles leave out splats that are all farther than 1 / `limits`: 0 leaves out none, infinity all.
 void list_splats(TileLists& lists, const DrawnSplats& drawn, std::span<const DrawnKey> keys,
-                 const TileGrid& grid, std::span<const float> limits, int first_row, int last_row);
+                 std::span<const PixelBox> boxes, const TileGrid& grid,
+                 std::span<const float> limits, int first_row, int last_row);
 
 }  // namespace wellspring::scan

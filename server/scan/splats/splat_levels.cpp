@@ -12,8 +12,8 @@ namespace wellspring::scan {
 namespace {
 
 constexpr int tree_depth = 21;
-constexpr uint32_t leaf_splats = 1024, most_merged = 2048;
-constexpr float cells_a_side = 32;
+constexpr uint32_t leaf_splats = 1024, most_merged = 4096;
+constexpr float cells_a_side = 24;
 
 struct KeyedSplat {
   uint64_t key;
