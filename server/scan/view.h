@@ -13,9 +13,9 @@ struct ScanView {
   vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   float tan_half_fov = 0.5f;  // half of the picture's height at a depth of 1
   int width = 1, height = 1;
-  vec2 axis{0.5f};    // where `forward` meets the picture, pixels from the top left
+  vec2 axis{0.5f};    // `forward` meets the picture here, pixels from the top left
   float near = 0;     // metres along `forward` before which nothing is shown
-  vec2 offset{0.5f};  // where pixels are sampled, 0 to 1 from their top left
+  vec2 offset{0.5f};  // pixels are sampled here, 0 to 1 from their top left
   float focal() const { return 0.5f * float(height) / tan_half_fov; }
 };
 

@@ -6,7 +6,6 @@
 
 #include "base/parallel.h"
 #include "scan/splats/draw_lanes.h"
-#include "scan/splats/draw_order.h"
 
 namespace wellspring::scan {
 namespace {
@@ -179,7 +178,7 @@ void lay_over(std::span<vec3> linear, const SplatPicture& picture, float exposur
       }
       const auto blend = [&](const Lanes& over, const Lanes& under) {
         const Lanes codes = encode_display(over) + clear * encode_display(under * exposure);
-        // What nothing covers stays as it is.
+        // Pixels that nothing covers stay as they are.
         return clear >= 1.0f ? under : decode_display(codes) * (1 / exposure);
       };
       const Lanes3 sum{blend(light.x, behind.x), blend(light.y, behind.y),

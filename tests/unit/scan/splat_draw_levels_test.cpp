@@ -2,7 +2,6 @@
 // Fewer splats stand for many.
 #include <gtest/gtest.h>
 
-#include "scan/splats/splat_merge.h"
 #include "splat_draw_reference.h"
 
 namespace wellspring::test {

@@ -154,7 +154,7 @@ TEST(SplatDraw, laid_over_a_picture_it_is_blended_in_display_codes) {
       display_code(2 * double(linear[middle].x)),
       0.8 * (1 - double(picture.clear[middle])) + double(picture.clear[middle]) * display_code(0.5),
       1e-4);
-  // Where it is as bright as what is behind nothing changes, however opaque it is.
+  // Nothing changes if it is as bright as what is behind, however opaque it is.
   std::fill(linear.begin(), linear.end(), vec3(0.603827f));
   lay_over(linear, picture, 1);
   for (vec3 v : linear) ASSERT_NEAR(v.x, 0.603827f, 1e-3);
