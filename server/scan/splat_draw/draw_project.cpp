@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "scan/splat_draw/draw_lanes.h"
-#include "scan/splat_draw/draw_nodes.h"
 
 namespace wellspring::scan {
 namespace {
@@ -25,7 +24,7 @@ struct Lanes2 {
   Lanes x, y;
 };
 
-// What is the same for all of a set's splats.
+// Holds the same for all of a set's splats.
 struct Projection {
   LocalView view;
   ProjectSettings settings;

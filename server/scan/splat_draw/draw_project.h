@@ -14,7 +14,7 @@ namespace wellspring::scan {
 
 inline constexpr float splat_threshold = 1 / 255.0f;  // less opacity at a pixel is not drawn
 inline constexpr float log_threshold = -7.9943534f;   // its logarithm to base 2
-inline constexpr float most_opacity = 0.99f;          // of a splat at a pixel, as in training
+inline constexpr float most_opacity = 0.99f;  // a splat hides no more of a pixel, as in training
 
 // Pixels of a rectangle, the last ones included.
 struct PixelBox {
@@ -42,7 +42,7 @@ struct DrawnKey {
 struct DrawnSplats {
   std::vector<DrawnSplat> splats;  // some places are not used
   std::vector<PixelBox> boxes;     // those of `splats`, side by side
-  std::vector<DrawnKey> keys;      // of all that are seen
+  std::vector<DrawnKey> keys;      // those of all that are seen
   int64_t looked_at = 0;           // splats that nodes brought here
 };
 

@@ -74,7 +74,7 @@ class SplatRows {
   int32_t first_[tile_height], last_[tile_height];
 };
 
-// What lanes need of a splat.
+// Keeps what lanes need to know about a splat.
 struct SplatLanes {
   float fall_x;
   vec3 color;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Splats as they are drawn: eight side by side, in an octree's nodes, some of them merged. Made
 // once for a set; about 150 bytes a splat at degree 3, and a third more for those that are merged.
+// A node, or its children, are drawn by their size in the picture.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -8,10 +9,9 @@
 
 #include "base/simd.h"
 #include "scan/splat_draw/splat_levels.h"
+#include "scan/camera.h"
 
 namespace wellspring::scan {
-
-inline constexpr float nearest_splat = 0.1f;  // metres; nearer to the eye none is drawn
 
 // Holds eight splats; those that fill up a node's last block have an opacity of 0.
 struct SplatBlock {
@@ -47,5 +47,30 @@ struct PlacedSplats {
   double scale = 1;
   dvec3 shift{0};
 };
+
+inline constexpr float nearest_splat = 0.1f;  // metres; nearer to the eye none is drawn
+
+// A camera in the frame of a set's places (ShownSplats::middle is its origin), in the file's unit.
+struct LocalView {
+  vec3 eye, right, up, forward;
+  float near;      // depth of the nearest splat
+  float scale;     // metres of a unit
+  float focal;     // pixels
+  vec2 axis;       // pixel (i, j) lies at (i, j)
+  glm::vec4 side;  // ratios of x, and of y, to depth at the left, right, top, bottom
+};
+
+LocalView make_local_view(const PlacedSplats& set, const ScanCamera& view);
+
+struct ChosenSplats {
+  uint32_t set, node;
+};
+
+// Nodes that are not in the picture are left out. Cells of those that are chosen are at most
+// `cell_pixels` large, unless more than `budget` splats would be drawn: then the largest cells are
+// as small as can be.
+std::vector<ChosenSplats> choose_splats(std::span<const PlacedSplats> sets,
+                                     std::span<const LocalView> views, float cell_pixels,
+                                     int64_t budget);
 
 }  // namespace wellspring::scan

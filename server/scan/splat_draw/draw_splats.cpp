@@ -6,7 +6,6 @@
 
 #include "base/parallel.h"
 #include "scan/splat_draw/draw_lanes.h"
-#include "scan/splat_draw/draw_order.h"
 
 namespace wellspring::scan {
 namespace {
@@ -77,7 +76,7 @@ void SplatDrawer::draw_in_order(const TileGrid& grid) {
   parallel_ranges(int(entries.size()), 4, [&](int begin, int end) {
     for (size_t i = size_t(begin) * keys_a_count;
          i < std::min(keys.size(), size_t(end) * keys_a_count); i++)
-      entries[i / keys_a_count] += count_tiles(drawn_.boxes[keys[i].number]);
+      entries[i / keys_a_count] += count_tiles(boxes_[i]);
   });
   for (size_t begin = 0; begin < entries.size();) {
     size_t end = begin;
@@ -85,7 +84,8 @@ void SplatDrawer::draw_in_order(const TileGrid& grid) {
          end < entries.size() && (end == begin || sum + entries[end] <= most_entries);)
       sum += entries[end++];
     const size_t first = begin * keys_a_count, last = std::min(keys.size(), end * keys_a_count);
-    list_splats(lists_, drawn_, keys.subspan(first, last - first), grid, limits_, 0, grid.down);
+    list_splats(lists_, drawn_, keys.subspan(first, last - first),
+                std::span(boxes_).subspan(first, last - first), grid, limits_, 0, grid.down);
     parallel_ranges(grid.count(), 1, [&](int from, int to) {
       for (int tile = from; tile < to; tile++) {
         const auto list = lists_.of(tile);
@@ -102,17 +102,15 @@ void SplatDrawer::draw_in_order(const TileGrid& grid) {
 // Draws some rows of tiles after the others, since pixels hold back splats.
 void SplatDrawer::draw_by_pixel(const TileGrid& grid) {
   std::vector<uint64_t> entries(size_t(grid.down));
-  for (const DrawnKey& key : drawn_.keys) {
-    const PixelBox& box = drawn_.boxes[key.number];
+  for (const PixelBox& box : boxes_)
     for (int row = box.top / tile_height; row <= box.bottom / tile_height; row++)
       entries[size_t(row)] += uint64_t(box.right / tile_width - box.left / tile_width + 1);
-  }
   for (int begin = 0; begin < grid.down;) {
     int end = begin;
     for (uint64_t sum = 0;
          end < grid.down && (end == begin || sum + entries[size_t(end)] <= most_entries);)
       sum += entries[size_t(end++)];
-    list_splats(lists_, drawn_, drawn_.keys, grid, limits_, begin, end);
+    list_splats(lists_, drawn_, drawn_.keys, boxes_, grid, limits_, begin, end);
     parallel_each((end - begin) * grid.across, [&](int i) {
       const int tile = begin * grid.across + i;
       blend_by_pixel(tiles_[size_t(tile)], drawn_, lists_.of(tile), place_of(grid, tile));
@@ -127,6 +125,14 @@ void SplatDrawer::draw(SplatPicture& picture, std::span<const PlacedSplats> sets
   project.nearest_first = settings.by_pixel;
   project_splats(drawn_, sets, view, project);
   sort_by_depth(drawn_.keys, spare_);
+  boxes_.resize(drawn_.keys.size());
+  parallel_ranges(int(boxes_.size()), 4096, [&](int begin, int end) {
+    const DrawnKey* keys = drawn_.keys.data();
+    for (int i = begin; i < end; i++) {
+      if (i + 16 < end) __builtin_prefetch(&drawn_.boxes[keys[i + 16].number]);
+      boxes_[size_t(i)] = drawn_.boxes[keys[i].number];
+    }
+  });
 
   const TileGrid grid(view.width, view.height);
   tiles_.resize(size_t(grid.count()));
@@ -172,7 +178,7 @@ void lay_over(std::span<vec3> linear, const SplatPicture& picture, float exposur
       }
       const auto blend = [&](const Lanes& over, const Lanes& under) {
         const Lanes codes = encode_display(over) + clear * encode_display(under * exposure);
-        // What nothing covers stays as it is.
+        // Pixels that nothing covers stay as they are.
         return clear >= 1.0f ? under : decode_display(codes) * (1 / exposure);
       };
       const Lanes3 sum{blend(light.x, behind.x), blend(light.y, behind.y),

@@ -48,6 +48,7 @@ class SplatDrawer {
 
   DrawnSplats drawn_;
   std::vector<DrawnKey> spare_;
+  std::vector<PixelBox> boxes_;  // in the order of keys
   TileLists lists_;
   std::vector<TilePixels> tiles_;
   // One over the depth of surfaces, as in TilePixels, if there are any; and for each tile the least

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the splats that touch each tile of a picture, from the front to the back, and keeps what
-// has been drawn of a tile.
+// Sorts splats from the front to the back, lists those that touch each tile of a picture, and keeps
+// what has been drawn of a tile.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -22,7 +22,7 @@ struct TileGrid {
   int count() const { return across * down; }
 };
 
-// Holds the pixels of a tile. What lies outside of the picture is opaque already.
+// Holds the pixels of a tile. Those outside of the picture are opaque already.
 struct alignas(64) TilePixels {
   float clear[tile_height * tile_stride];     // share of the light behind that comes through
   float color[3][tile_height * tile_stride];  // display codes, times what is not clear
@@ -38,9 +38,15 @@ struct TileLists {
   }
 };
 
-// Lists splats in the order of `keys` for tiles in rows from `first_row` to before `last_row`.
+// Sorts keys by depth, to about two millionths of it; equal ones stay as they were. `spare` is
+// room to work in.
+void sort_by_depth(std::vector<DrawnKey>& keys, std::vector<DrawnKey>& spare);
+
+// Lists splats in the order of `keys`, of which `boxes` are the places in the picture, for tiles in
+// rows from `first_row` to before `last_row`.
 // Tiles leave out splats that are all farther than 1 / `limits`: 0 leaves out none, infinity all.
 void list_splats(TileLists& lists, const DrawnSplats& drawn, std::span<const DrawnKey> keys,
-                 const TileGrid& grid, std::span<const float> limits, int first_row, int last_row);
+                 std::span<const PixelBox> boxes, const TileGrid& grid,
+                 std::span<const float> limits, int first_row, int last_row);
 
 }  // namespace wellspring::scan

@@ -34,4 +34,9 @@ struct SplatTree {
 // are clearer than one code of 255. Takes about a second for a million splats.
 SplatTree make_splat_tree(const SplatSet& set);
 
+// Merges splats in each cube of a grid into one; splats that are larger than a cell only with
+// others that are, too. Mean and covariance are the mixture's; as much of a picture is covered.
+// Splats that are alone stay as they are.
+SplatSet merge_in_cells(const SplatSet& set, float cell);
+
 }  // namespace wellspring::scan
