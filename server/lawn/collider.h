@@ -20,11 +20,11 @@ struct Capsule {
 // A mesh that has been moved and turned.
 struct PlacedCube {
   const DepthCube* cube = nullptr;  // borrowed; null: none
-  vec3 place{0};                    // of the mesh's origin
+  vec3 place{0};                    // here is the mesh's origin
   mat3 turn{1};                     // a rotation
 };
 
-// Holds all that walks at one tick. What is not finite is left out.
+// Holds all that walks at one tick. Those that are not finite are left out.
 struct Walkers {
   std::vector<Capsule> capsules;
   std::vector<PlacedCube> cubes;
@@ -46,8 +46,8 @@ float distance_to(const Collider& collider, vec3 v);
 
 // Moves the places of `lanes` that lie inside out of the collider, and returns which do: a place v
 // moves by |d(v)| along the unit normal (Orthmann and others, equations 4 and 5, in which s holds
-// the normal already and d has the wrong sign for a way out). Where a cube is not convex this may
-// not suffice; then a place moves along the axis by which d was found, which always does.
+// the normal already and d has the wrong sign for a way out). If a cube is not convex this may not
+// suffice; then a place moves along the axis by which d was found, which always does.
 LaneMask push_out(const Collider& collider, const LaneMask& lanes, Lanes3& v);
 
 }  // namespace wellspring::lawn

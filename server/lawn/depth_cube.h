@@ -36,7 +36,7 @@ class DepthCube {
 
  private:
   struct Texel {
-    float height;  // of the surface along the face's outward axis, from the middle
+    float height;  // from the middle to the surface, along the face's outward axis
     vec3 normal;
   };
   void draw(const std::array<vec3, 3>& corner);

@@ -15,7 +15,7 @@ constexpr float no_depth = std::numeric_limits<float>::infinity();
 constexpr float least_depth = 0.02f;  // metres; strips that come nearer are not drawn
 constexpr float taper[joints] = {0.75f, 1, 0.7f, 0};  // share of the width at the joints
 constexpr float roundness = 0.7f;  // how far normals turn from the middle to an edge
-// Of the blades that a distance shows, this share becomes thin.
+// This share of the blades that a distance shows becomes thin.
 constexpr float blend = 0.25f;
 
 bool is_good(const LawnView& view) {

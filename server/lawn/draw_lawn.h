@@ -22,7 +22,7 @@ struct LawnView {
   vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   float tan_half_fov = 0.5f;  // half of the picture's height at a depth of 1
   int width = 1, height = 1;
-  vec2 axis{0.5f};    // where `forward` meets the picture, pixels
+  vec2 axis{0.5f};    // `forward` meets the picture there, pixels
   float near = 0;     // depth from which on blades are shown
   vec2 offset{0.5f};  // sampling place in its pixel, 0 to 1
 };
@@ -49,7 +49,7 @@ struct LawnPicture {
 };
 
 struct LawnCounts {
-  int tiles = 0, blades = 0;  // that were in sight
+  int tiles = 0, blades = 0;  // those in sight
 };
 
 // Keeps its memory from one picture to the next. One thread at a time.
@@ -75,7 +75,7 @@ class LawnDrawer {
   // Holds a tile in sight, and where its strips lie.
   struct Seen {
     int tile = 0, first = 0, most = 0, count = 0;
-    float depth = 0;  // of its nearest place
+    float depth = 0;  // its nearest place's
     ivec2 low, high;  // bins, inclusive
   };
   struct Filler;
@@ -90,7 +90,7 @@ class LawnDrawer {
   std::vector<float> farthest_;  // depth in each bin that something else leaves free
   std::vector<Seen> seen_;       // the nearest first
   std::vector<Strip> strips_;
-  std::vector<Box> boxes_;  // of the strips
+  std::vector<Box> boxes_;  // one a strip
   std::vector<int> bin_begin_, bin_seen_;
 };
 

@@ -86,7 +86,7 @@ class Sower {
     blade.grow = normalize(blade.grow + tilt * vec3(std::cos(turn), 0, std::sin(turn)));
     const float facing = 2 * pi * chance[3];
     blade.side = {std::cos(facing), std::sin(facing)};
-    // Where grass grows sparsely it is lower, too.
+    // Sparse grass is lower, too.
     blade.length = height_ * (1 - spread_ * chance[4]) * (0.5f + 0.5f * std::min(extent, 1.0f));
     blade.width = width_ * (0.7f + 0.3f * chance[5]);
     blade.droop = droop_ * (1 + mess * (2 * chance[6] - 1));

@@ -54,7 +54,7 @@ struct LawnDescription {
 // stand for all.
 struct LawnTile {
   int begin = 0, count = 0;
-  vec3 low{0}, high{0};  // what blades fill that only the wind moves
+  vec3 low{0}, high{0};  // around blades that only the wind moves
   float widest = 0;      // metres, of a blade
   vec2 slope{0};         // metres that the ground rises a metre of x and of z
 };
@@ -72,7 +72,7 @@ struct Lawn {
   std::vector<float> droop;                   // how far the tip hangs over, across the side
   std::vector<float> dry;                     // 0 to 1
   std::vector<float> give;                    // how much wind moves it, about 1
-  int blades = 0;                             // that have been sown
+  int blades = 0;                             // without those that fill up tiles
   float tallest = 0;                          // metres
   LawnColors colors;
 };

@@ -100,8 +100,9 @@ void store_shapes(BentTile& bent, size_t size, size_t at, const LaneMask& lanes,
   }
 }
 
+// `near` meet the tile's box; blades may be pushed beyond it, to any of `all`.
 void simulate(LawnState& state, const Lawn& lawn, const WindNow& wind, int index,
-              std::span<const Collider> colliders) {
+              std::span<const Collider> near, std::span<const Collider> all) {
   const LawnTile& tile = lawn.tile[size_t(index)];
   BentTile& bent = state.bent[size_t(index)];
   const size_t size = padded(tile);
@@ -111,13 +112,13 @@ void simulate(LawnState& state, const Lawn& lawn, const WindNow& wind, int index
     BladeShapes shapes = eval_shapes(lawn, state, wind, index, first);
     const LaneMask blades = (lane < tile.count - int(at)) & (shapes.length > 0.0f);
     LaneMask touched{};
-    for (const Collider& collider : colliders) touched |= push_joints(collider, blades, shapes);
+    for (const Collider& collider : near) touched |= push_joints(collider, blades, shapes);
     if (!any_lane(touched)) continue;
     const BladeShapes rest = eval_wind_shapes(lawn, first, wind);
     for (int i = 0; i < spring_iterations; i++)
       relax_springs(shapes, rest, touched, state.settings.stiffness);
     lift(tile, touched, shapes);
-    push_all(colliders, touched, shapes);
+    push_all(all, touched, shapes);
     if (bent.touched.empty()) {
       bent.since = state.time;
       bent.touched.assign(size, never);
@@ -234,7 +235,7 @@ void step_lawn(LawnState& state, const Lawn& lawn, const Wind& wind, const Walke
 
   const std::vector<Collider> colliders = find_colliders(walkers);
   const std::vector<Meeting> meetings = find_meetings(lawn, colliders, state);
-  std::vector<size_t> begin;  // of each tile's meetings
+  std::vector<size_t> begin;  // a tile's first meeting each, and the end
   for (size_t i = 0; i < meetings.size(); i++)
     if (i == 0 || meetings[i].tile != meetings[i - 1].tile) begin.push_back(i);
   begin.push_back(meetings.size());
@@ -245,7 +246,7 @@ void step_lawn(LawnState& state, const Lawn& lawn, const Wind& wind, const Walke
       near.clear();
       for (size_t m = begin[size_t(i)]; m < begin[size_t(i) + 1]; m++)
         near.push_back(colliders[size_t(meetings[m].collider)]);
-      simulate(state, lawn, now, meetings[begin[size_t(i)]].tile, near);
+      simulate(state, lawn, now, meetings[begin[size_t(i)]].tile, near, colliders);
     }
   });
 

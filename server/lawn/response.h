@@ -31,10 +31,10 @@ enum class TileState : uint8_t { idle, colliding, recovering };
 // Holds the blades of a tile after touches.
 struct BentTile {
   double since = 0;            // the time from which `touched` counts
-  double last_touch = 0;       // of any of its blades
+  double last_touch = 0;       // the newest of its blades'
   std::vector<float> touched;  // seconds; a blade that stands has -infinity
   std::vector<float> joint;    // [joint - 1][x, y, z][blade], as the last touch left them
-  vec3 low{0}, high{0};        // what bent blades have filled
+  vec3 low{0}, high{0};        // around all places of bent blades
 };
 
 // Changes with time; belongs to one lawn. `bent` is empty for tiles without bent blades.
