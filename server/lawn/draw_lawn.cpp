@@ -234,21 +234,59 @@ struct LawnDrawer::Filler {
       for (int i = drawer.bin_begin_[size_t(bin)]; i < drawer.bin_begin_[size_t(bin) + 1]; i++)
         fill(drawer.seen_[size_t(drawer.bin_seen_[size_t(i)])], bin, pixels);
     }
-    for (int y = 0; y < pixels.height; y++)
-      for (int x = 0; x < pixels.width; x++) {
-        const size_t to = size_t(pixels.y + y) * size_t(view.width) + size_t(pixels.x + x);
-        const size_t from = size_t(y * bin_width + x);
-        const float cover = some ? pixels.covered[from] : 0;
-        const Lanes value = cover > 0 ? pixels.value[from] * (1 / cover) : Lanes{};
-        const vec3 normal = {value[0], value[1], value[2]};
-        const float length = glm::length(normal);
-        picture.depth[to] = cover > 0 ? pixels.depth[from] : no_depth;
-        picture.normal[to] = length > 0 ? normal / length : cover > 0 ? -view.forward : vec3(0);
-        picture.color[to] = {value[3], value[4], value[5]};
-        picture.height_share[to] = value[6];
-        picture.transmission[to] = value[7];
-        picture.coverage[to] = std::min(cover, 1.0f);
+    for (int y = 0; y < pixels.height; y++) {
+      const size_t row = size_t(pixels.y + y) * size_t(view.width) + size_t(pixels.x);
+      if (some) take_row(pixels, y, row);
+      else clear_row(row, pixels.width);
+    }
+  }
+
+  void clear_row(size_t row, int count) const {
+    std::fill_n(&picture.depth[row], count, no_depth);
+    std::fill_n(&picture.normal[row], count, vec3(0));
+    std::fill_n(&picture.color[row], count, vec3(0));
+    std::fill_n(&picture.height_share[row], count, 0.0f);
+    std::fill_n(&picture.transmission[row], count, 0.0f);
+    std::fill_n(&picture.coverage[row], count, 0.0f);
+  }
+
+  // Puts the means of what covers a row's pixels into the picture from `row` on.
+  void take_row(const BinPixels& pixels, int y, size_t row) const {
+    for (int x = 0; x < pixels.width; x += lane_count) {
+      const size_t from = size_t(y * bin_width + x), to = row + size_t(x);
+      const int count = std::min(pixels.width - x, lane_count);
+      const Lanes cover = load_lanes(&pixels.covered[from]);
+      const LaneMask some = cover > 0.0f;
+      if (!any_lane(some)) {
+        clear_row(to, count);
+        continue;
       }
+      Lanes value[lane_count];
+      for (int i = 0; i < lane_count; i++)
+        value[i] = some[i] ? pixels.value[from + size_t(i)] : Lanes{};
+      transpose_lanes(value);
+      const Lanes scale = keep_lanes(some, 1.0f / (some ? cover : all_lanes(1)));
+      const Lanes3 normal = {value[0], value[1], value[2]};
+      const Lanes length2 = dot(normal, normal);
+      const LaneMask has_way = length2 > 1e-12f;
+      const Lanes per_length = 1.0f / lanes_sqrt(has_way ? length2 : all_lanes(1));
+      const Lanes3 unit =
+          choose(some, choose(has_way, normal * per_length, all_lanes(-view.forward)), Lanes3{});
+      const Lanes3 color = Lanes3{value[3], value[4], value[5]} * scale;
+      for (int i = 0; i < count; i++) {
+        picture.normal[to + size_t(i)] = unit.at(i);
+        picture.color[to + size_t(i)] = color.at(i);
+      }
+      const auto store = [&](std::vector<float>& plane, const Lanes& values) {
+        if (count == lane_count) store_lanes(&plane[to], values);
+        else
+          for (int i = 0; i < count; i++) plane[to + size_t(i)] = values[i];
+      };
+      store(picture.depth, some ? load_lanes(&pixels.depth[from]) : all_lanes(no_depth));
+      store(picture.height_share, value[6] * scale);
+      store(picture.transmission, value[7] * scale);
+      store(picture.coverage, lanes_min(cover, all_lanes(1)));
+    }
   }
 
   void fill(const Seen& seen, int bin, BinPixels& pixels) const {
@@ -257,16 +295,7 @@ struct LawnDrawer::Filler {
     for (int i = seen.first; i < seen.first + seen.count; i++) {
       const Box& box = drawer.boxes_[size_t(i)];
       if (box.x1 < pixels.x || box.x0 >= right || box.y1 < pixels.y || box.y0 >= bottom) continue;
-      const Strip& s = drawer.strips_[size_t(i)];
-      for (int k = 0; k < segments; k++) {
-        StripPart part;
-        for (int end = 0; end < 2; end++) {
-          const int j = k + end;
-          part.place[end] = {s.x[j], s.y[j]}, part.half[end] = {s.half_x[j], s.half_y[j]};
-          part.inverse[end] = s.inverse[j];
-        }
-        fill_part(pixels, part, s.value[k], s.value[k + 1] - s.value[k], s.aside);
-      }
+      fill_strip(pixels, drawer.strips_[size_t(i)]);
     }
   }
 };

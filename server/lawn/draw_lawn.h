@@ -10,6 +10,7 @@
 
 #include "base/simd.h"
 #include "base/vec.h"
+#include "lawn/fill_strips.h"
 #include "lawn/lawn.h"
 #include "lawn/response.h"
 #include "lawn/wind.h"
@@ -60,15 +61,6 @@ class LawnDrawer {
                   const LawnDrawSettings& settings, LawnPicture& picture);
 
  private:
-  // Holds a strip in the picture, by its joints: places in pixels, half of the way from edge to
-  // edge, inverse depth.
-  struct Strip {
-    float x[joints], y[joints], inverse[joints], half_x[joints], half_y[joints];
-    float unused[4];
-    // Normal, colour, share of the height, transmission; and what they change by from the middle to
-    // an edge.
-    Lanes value[joints], aside;
-  };
   struct Box {
     int16_t x0, y0, x1, y1;  // pixels, inclusive
   };
