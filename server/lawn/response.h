@@ -28,7 +28,8 @@ struct ResponseSettings {
 
 enum class TileState : uint8_t { idle, colliding, recovering };
 
-// Holds the blades of a tile after touches.
+// Holds the blades of a tile after touches: the refined mesh of section 5.2, which standing blades
+// do not need.
 struct BentTile {
   double since = 0;            // the time from which `touched` counts
   double last_touch = 0;       // the newest of its blades'

@@ -56,33 +56,56 @@ double sum(const std::vector<float>& plane) {
   return total;
 }
 
+// Wide blades are filled segment by segment, thin ones at once; upright ones row by row, and those
+// that lie in the picture column by column.
 TEST(DrawLawn, BladeIsWhereItIsProjected) {
-  const Lawn lawn = upright(0.4f, 0.04f);
-  const LawnView view = view_of(200, 200, {0, 0.2f, 1});  // 200 pixels a metre
-  for (const bool coverage : {false, true}) {
-    const LawnPicture picture = drawn(lawn, view, {.coverage = coverage});
-    // A third of 80 pixels each: widths are 6 to 8, 8 to 5.6, 5.6 to 0.
-    const double area = 80.0 / 3 * (7 + 6.8 + 2.8);
-    EXPECT_NEAR(sum(picture.coverage), area, coverage ? 0.02 * area : 0.05 * area);
-    for (int y = 0; y < 200; y++)
-      for (int x = 0; x < 200; x++) {
-        const size_t i = size_t(y * 200 + x);
-        if (picture.coverage[i] == 0) {
-          EXPECT_EQ(picture.depth[i], INFINITY);
-          EXPECT_EQ(picture.color[i], vec3(0));
-          continue;
-        }
-        EXPECT_LE(std::abs(x + 0.5f - 100), 4.6f);
-        EXPECT_GE(y, 59);
-        EXPECT_LE(y, 140);
-        EXPECT_NEAR(picture.depth[i], 1, 1e-4f);
-        EXPECT_NEAR(picture.height_share[i], (140 - (y + 0.5f)) / 80, 0.01f);
-        EXPECT_NEAR(glm::length(picture.normal[i]), 1, 1e-4f);
-        EXPECT_GT(picture.normal[i].z, 0.7f);  // towards the eye
-        EXPECT_GT(picture.transmission[i], 0);
-        EXPECT_GT(picture.color[i].y, picture.color[i].x);
+  for (const float width : {0.04f, 0.01f})
+    for (const bool coverage : {false, true})
+      for (const bool lies : {false, true}) {
+        const Lawn lawn = upright(0.4f, width);
+        LawnView view = view_of(200, 200, {0, 0.2f, 1});  // 200 pixels a metre
+        if (lies) view.right = {0, 1, 0}, view.up = {-1, 0, 0};
+        const LawnPicture picture = drawn(lawn, view, {.coverage = coverage});
+        // Its thirds are 80 / 3 pixels long; their widths go from 0.75 to 1, to 0.7 and to 0.
+        const double pixels = 200 * width, area = 80.0 / 3 * pixels * (0.875 + 0.85 + 0.35);
+        EXPECT_NEAR(sum(picture.coverage), area, (coverage ? 0.02 : 0.12) * area);
+        for (int y = 0; y < 200; y++)
+          for (int x = 0; x < 200; x++) {
+            const size_t i = size_t(y * 200 + x);
+            if (picture.coverage[i] == 0) {
+              EXPECT_EQ(picture.depth[i], INFINITY);
+              EXPECT_EQ(picture.color[i], vec3(0));
+              continue;
+            }
+            const float across = (lies ? float(y) : float(x)) + 0.5f - 100,
+                        along = lies ? float(x) + 0.5f - 60 : 140 - (float(y) + 0.5f);
+            EXPECT_LE(std::abs(across), 0.5f * float(pixels) + 0.6f);
+            EXPECT_GE(along, 0);
+            EXPECT_LE(along, 80);
+            EXPECT_NEAR(picture.depth[i], 1, 1e-4f);
+            EXPECT_NEAR(picture.height_share[i], along / 80, 0.01f);
+            EXPECT_NEAR(glm::length(picture.normal[i]), 1, 1e-4f);
+            EXPECT_GT(picture.normal[i].z, 0.7f);  // towards the eye
+            EXPECT_GT(picture.transmission[i], 0);
+            EXPECT_GT(picture.color[i].y, picture.color[i].x);
+          }
       }
-  }
+}
+
+TEST(DrawLawn, NormalsTurnWithTheEdgeThatTheyBelongTo) {
+  Lawn lawn = upright(0.4f, 0.04f);
+  for (const float side : {1.0f, -1.0f})
+    for (const bool lies : {false, true}) {
+      lawn.side_x[size_t(lawn.tile[0].begin)] = side;
+      LawnView view = view_of(50, 50, {0, 0.2f, 1});
+      if (lies) view.right = {0, 1, 0}, view.up = {-1, 0, 0};
+      // 2 pixels wide: it is a thin one, whose edge to the picture's left or top is first.
+      const LawnPicture picture = drawn(lawn, view);
+      const size_t first = lies ? 24 * 50 + 25 : 25 * 50 + 24,
+                   second = lies ? first + 50 : first + 1;
+      EXPECT_LT(picture.normal[first].x, -0.1f);
+      EXPECT_GT(picture.normal[second].x, 0.1f);
+    }
 }
 
 TEST(DrawLawn, NormalsAreRoundAcrossABlade) {
