@@ -11,7 +11,7 @@
 #include "base/log.h"
 #include "scan/format/open_scan.h"
 #include "scan/tree/coarse_cut.h"
-#include "scan/tree/write_tree.h"
+#include "scan/tree/import/write_tree.h"
 
 namespace wellspring::program {
 namespace {

@@ -96,10 +96,10 @@ ScanView::ScanView(const ShownScans& scans, const View& view, vec2 offset, bool 
     const ScanCamera from = view_of(placed, view, offset);
     ChooseSettings choose;
     choose.budget = settled ? settled_points : moving_points;
-    const std::vector<ChosenNode> chosen = choose_nodes(*placed.points, from, choose);
-    if (chosen.empty()) continue;
+    const ChosenNodes chosen = choose_nodes(*placed.points, from, choose);
+    if (chosen.nodes.empty()) continue;
     std::vector<NodePoints> nodes;
-    for (const ChosenNode& one : chosen) nodes.push_back(placed.points->points_of(one.node));
+    for (const ChosenNode& one : chosen.nodes) nodes.push_back(placed.points->points_of(one.node));
     PointBuffer& buffer = work.buffers[seen_.size()];
     work.raster.draw(buffer, nodes, from, {.blended = settled});
     fill_holes(buffer, nodes, from);

@@ -36,14 +36,14 @@ ScanCamera view_of(const View& view) {
 }
 
 void draw(std::span<const PlacedScan> scans, const View& view, std::span<const float> surface,
-          bool by_pixel, SplatDrawer& drawer, SplatPicture& picture) {
+          bool by_pixel, SplatDrawer& drawer, SplatPlanes& picture) {
   SplatSettings settings;
   settings.by_pixel = by_pixel;
   settings.surface = surface;
   drawer.draw(picture, placed_splats(scans), view_of(view), settings);
 }
 
-size_t bytes_of_picture(const SplatPicture& picture) {
+size_t bytes_of_picture(const SplatPlanes& picture) {
   return bytes_of(picture.light, picture.clear, picture.depth);
 }
 
@@ -62,7 +62,7 @@ bool has_splats(std::span<const PlacedScan> scans) { return std::ranges::any_of(
 
 void lay_splats_over(std::span<const PlacedScan> scans, const View& view, SplatWork& work,
                      Image8& image, std::vector<float>& depth) {
-  SplatPicture& splats = work.picture;
+  SplatPlanes& splats = work.picture;
   draw(scans, view, depth, false, work.drawer, splats);
   parallel_each(view.height, [&](int y) {
     for (size_t i = size_t(y) * size_t(view.width), end = i + size_t(view.width); i < end; i++) {

@@ -16,7 +16,7 @@ namespace wellspring::picture {
 // Keeps memory from one picture to the next.
 struct SplatWork {
   SplatDrawer drawer;
-  SplatPicture picture;
+  SplatPlanes picture;
   size_t memory_bytes() const;
 };
 
@@ -40,7 +40,7 @@ class SplatLayer {
   View view_;
   bool drawn_ = false;
   std::vector<ScanLook> looks_;
-  SplatPicture picture_;
+  SplatPlanes picture_;
 };
 
 }  // namespace wellspring::picture

@@ -15,7 +15,7 @@
 #include "scan/draw/point_colors.h"
 #include "scan/tree/choose_nodes.h"
 #include "scan/tree/point_tree.h"
-#include "scan/tree/write_tree.h"
+#include "scan/tree/import/write_tree.h"
 
 namespace wellspring::test {
 namespace {
@@ -56,7 +56,7 @@ Drawn draw(PointRaster& raster, const PointTree& tree, const ChooseSettings& cho
   for (int i = 0; i < times; i++) {
     const double began = seconds_now();
     std::vector<NodePoints> nodes;
-    for (const ChosenNode& one : choose_nodes(tree, view, choose))
+    for (const ChosenNode& one : choose_nodes(tree, view, choose).nodes)
       nodes.push_back(tree.points_of(one.node));
     raster.draw(drawn.buffer, nodes, view, {.blended = blended});
     fill_holes(drawn.buffer, nodes, view);

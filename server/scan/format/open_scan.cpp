@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/format/open_scan.h"
 
+#include <filesystem>
 #include <string_view>
 
 #include "base/load_error.h"
@@ -10,6 +11,7 @@
 #include "scan/format/pcd.h"
 #include "scan/format/ply.h"
 #include "scan/format/text.h"
+#include "scan/las/ept.h"
 #include "scan/las/las_source.h"
 
 namespace wellspring::scan {
@@ -58,6 +60,10 @@ constexpr Format formats[] = {
 }  // namespace
 
 std::unique_ptr<PointSource> open_scan(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error) ||
+      std::filesystem::path(path).filename() == "ept.json")
+    return open_ept(path);
   std::string head;
   {
     InputFile file(path);

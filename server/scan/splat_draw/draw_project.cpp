@@ -35,10 +35,10 @@ struct Projection {
       : view(local), settings(settings), width(float(whole.width)), height(float(whole.height)) {
     // As in the reference's program: 15 % of the picture beyond its edges.
     const float x = 0.15f * width / view.focal, y = 0.15f * height / view.focal;
-    left = -whole.axis.x / view.focal - x;
-    right = (width - whole.axis.x) / view.focal + x;
-    top = -whole.axis.y / view.focal - y;
-    bottom = (height - whole.axis.y) / view.focal + y;
+    left = -whole.axis_place().x / view.focal - x;
+    right = (width - whole.axis_place().x) / view.focal + x;
+    top = -whole.axis_place().y / view.focal - y;
+    bottom = (height - whole.axis_place().y) / view.focal + y;
   }
 };
 

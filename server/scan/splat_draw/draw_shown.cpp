@@ -121,18 +121,19 @@ LocalView make_local_view(const PlacedSplats& set, const ScanCamera& view) {
   local.scale = float(set.scale);
   local.near = glm::max(view.near, nearest_splat) / local.scale;
   local.focal = view.focal();
-  local.axis = view.axis - view.offset;
+  const vec2 axis = view.axis_place();
+  local.axis = axis - view.offset;
   // A few pixels around the picture belong to it, since splats are wider than their places.
   constexpr float around = 8;
-  local.side = vec4(-around - view.axis.x, float(view.width) + around - view.axis.x,
-                    -around - view.axis.y, float(view.height) + around - view.axis.y) /
+  local.side = vec4(-around - axis.x, float(view.width) + around - axis.x, -around - axis.y,
+                    float(view.height) + around - axis.y) /
                local.focal;
   return local;
 }
 
 std::vector<ChosenSplats> choose_splats(std::span<const PlacedSplats> sets,
-                                     std::span<const LocalView> views, float cell_pixels,
-                                     int64_t budget) {
+                                        std::span<const LocalView> views, float cell_pixels,
+                                        int64_t budget) {
   std::vector<ChosenSplats> chosen;
   std::priority_queue<Candidate> open;
   int64_t total = 0;

@@ -70,7 +70,7 @@ struct ChosenSplats {
 // `cell_pixels` large, unless more than `budget` splats would be drawn: then the largest cells are
 // as small as can be.
 std::vector<ChosenSplats> choose_splats(std::span<const PlacedSplats> sets,
-                                     std::span<const LocalView> views, float cell_pixels,
-                                     int64_t budget);
+                                        std::span<const LocalView> views, float cell_pixels,
+                                        int64_t budget);
 
 }  // namespace wellspring::scan

@@ -45,7 +45,7 @@ void begin_tile(TilePixels& tile, int columns, int rows) {
     std::fill_n(tile.clear + row * tile_stride, std::min(columns, tile_width), 1.0f);
 }
 
-void finish_tile(SplatPicture& picture, const TilePixels& tile, int x, int y) {
+void finish_tile(SplatPlanes& picture, const TilePixels& tile, int x, int y) {
   for (int row = 0; row < std::min(tile_height, picture.height - y); row++)
     for (int i = 0; i < std::min(tile_width, picture.width - x); i += lane_count) {
       const int at = row * tile_stride + i, count = std::min(lane_count, picture.width - x - i);
@@ -119,8 +119,8 @@ void SplatDrawer::draw_by_pixel(const TileGrid& grid) {
   }
 }
 
-void SplatDrawer::draw(SplatPicture& picture, std::span<const PlacedSplats> sets,
-                       const ScanCamera& view, const SplatSettings& settings) {
+void SplatDrawer::draw(SplatPlanes& picture, std::span<const PlacedSplats> sets,
+                       const ScanCamera& view, const SplatDrawing& settings) {
   ProjectSettings project = settings.project;
   project.nearest_first = settings.by_pixel;
   project_splats(drawn_, sets, view, project);
@@ -164,7 +164,7 @@ void SplatDrawer::draw(SplatPicture& picture, std::span<const PlacedSplats> sets
   });
 }
 
-void lay_over(std::span<vec3> linear, const SplatPicture& picture, float exposure) {
+void lay_over(std::span<vec3> linear, const SplatPlanes& picture, float exposure) {
   parallel_ranges(int(linear.size() / lane_count) + 1, 1024, [&](int begin, int end) {
     for (int i = begin; i < end; i++) {
       const size_t at = size_t(i) * lane_count;

@@ -17,7 +17,7 @@
 
 namespace wellspring::scan {
 
-struct SplatSettings {
+struct SplatDrawing {
   bool by_pixel = false;  // at rest: exact, some five times slower
   ProjectSettings project;
   // Depths (metres along the axis) of opaque things in each pixel, infinity for none; splats behind
@@ -25,7 +25,7 @@ struct SplatSettings {
   std::span<const float> surface;
 };
 
-struct SplatPicture {
+struct SplatPlanes {
   int width = 0, height = 0;
   std::vector<vec3> light;   // linear; 1 is a display's white
   std::vector<float> clear;  // share of the codes behind that comes through, 0 to 1
@@ -38,8 +38,8 @@ struct SplatPicture {
 // is looked at, and 60 a pixel. Uses all cores; the picture does not depend on how many.
 class SplatDrawer {
  public:
-  void draw(SplatPicture& picture, std::span<const PlacedSplats> sets, const ScanCamera& view,
-            const SplatSettings& settings);
+  void draw(SplatPlanes& picture, std::span<const PlacedSplats> sets, const ScanCamera& view,
+            const SplatDrawing& settings);
 
  private:
   void draw_in_order(const TileGrid& grid);
@@ -58,6 +58,6 @@ class SplatDrawer {
 
 // Lays splats over a linear picture of the same size, of which `exposure` times a value of 1 is a
 // display's white.
-void lay_over(std::span<vec3> linear, const SplatPicture& picture, float exposure);
+void lay_over(std::span<vec3> linear, const SplatPlanes& picture, float exposure);
 
 }  // namespace wellspring::scan

@@ -14,6 +14,7 @@ namespace {
 // costs less than asking them.
 constexpr size_t most_occluders = 128;
 constexpr double least_occluder_pixels = 24;
+constexpr double nearest = 0.05;  // metres: what lies nearer counts as if it lay there
 
 DoubleBox box_of(const TreeNode& node) {
   return {node.corner, node.corner + dvec3(double(node.size))};
@@ -26,14 +27,17 @@ double distance_to(const dvec3& eye, const DoubleBox& box) {
 // The planes of what a view sees; they need not be of unit length.
 class Frustum {
  public:
-  explicit Frustum(const TreeView& view) {
+  explicit Frustum(const ScanCamera& view) {
     const dvec3 right(view.right), up(view.up), forward(view.forward);
+    const double focal = double(view.focal());
+    const dvec2 axis(view.axis_place()), size(view.width, view.height);
     planes_[0] = {forward, -glm::dot(forward, view.eye) - double(view.near)};
     const auto add = [&](int i, const dvec3& normal) {
       planes_[i] = {normal, -glm::dot(normal, view.eye)};
     };
-    add(1, forward * double(view.tan_x) + right), add(2, forward * double(view.tan_x) - right);
-    add(3, forward * double(view.tan_y) + up), add(4, forward * double(view.tan_y) - up);
+    add(1, forward * (axis.x / focal) + right),
+        add(2, forward * ((size.x - axis.x) / focal) - right);
+    add(3, forward * ((size.y - axis.y) / focal) + up), add(4, forward * (axis.y / focal) - up);
   }
   // Returns false if the box lies beyond one plane.
   bool touches(const DoubleBox& box) const {
@@ -66,9 +70,9 @@ bool is_disjoint(const DoubleBox& a, const DoubleBox& b) {
 
 class Chooser {
  public:
-  Chooser(const PointTree& tree, const TreeView& view, const ChooseSettings& settings)
+  Chooser(const PointTree& tree, const ScanCamera& view, const ChooseSettings& settings)
       : tree_(tree), view_(view), settings_(settings), frustum_(view) {
-    pixels_a_metre_ = view.size.y / (2 * double(view.tan_y));
+    pixels_a_metre_ = double(view.focal());
   }
 
   ChosenNodes choose() {
@@ -109,7 +113,7 @@ class Chooser {
   Candidate candidate_of(uint32_t number) const {
     const TreeNode& node = tree_.nodes[number];
     const double distance = distance_to(view_.eye, box_of(node));
-    const double shown = std::max(distance, double(view_.near));
+    const double shown = std::max(distance, std::max(double(view_.near), nearest));
     return {float(node.spacing * pixels_a_metre_ / shown), number, distance};
   }
 
@@ -161,7 +165,8 @@ class Chooser {
       const DoubleBox box = box_of(node);
       if (!frustum_.touches(box)) continue;
       const double distance = distance_to(view_.eye, box);
-      const double pixels = node.size * pixels_a_metre_ / std::max(distance, double(view_.near));
+      const double pixels =
+          node.size * pixels_a_metre_ / std::max(distance, std::max(double(view_.near), nearest));
       if (pixels < least_occluder_pixels) continue;
       if (node.opacity >= settings_.threshold && distance > 0) found.emplace_back(pixels, number);
       for (uint32_t i = 0; i < node.children; i++) open.push_back(node.first_child + i);
@@ -176,7 +181,7 @@ class Chooser {
   }
 
   const PointTree& tree_;
-  const TreeView& view_;
+  const ScanCamera& view_;
   const ChooseSettings& settings_;
   const Frustum frustum_;
   double pixels_a_metre_ = 1;
@@ -188,7 +193,7 @@ class Chooser {
 
 }  // namespace
 
-ChosenNodes choose_nodes(const PointTree& tree, const TreeView& view,
+ChosenNodes choose_nodes(const PointTree& tree, const ScanCamera& view,
                          const ChooseSettings& settings) {
   return Chooser(tree, view, settings).choose();
 }

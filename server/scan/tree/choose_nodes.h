@@ -4,18 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/vec.h"
+#include "scan/camera.h"
 #include "scan/tree/point_tree.h"
 
 namespace wellspring::scan {
-
-struct TreeView {
-  dvec3 eye{0};                                         // metres, relative to the tree's origin
-  vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  // unit, at right angles
-  float tan_x = 1, tan_y = 1;                           // tangents of half the field of view
-  glm::ivec2 size{1280, 720};                           // pixels
-  float near = 0.05f;                                   // metres
-};
 
 struct ChooseSettings {
   float pixels = 1;           // nodes are refined until points are no farther apart
@@ -38,7 +30,8 @@ struct ChosenNodes {
 
 // Refines the node with the largest spacing first, as long as the budget allows it. Leaves out what
 // the frustum does not touch. Takes some microseconds a node; any thread.
-ChosenNodes choose_nodes(const PointTree& tree, const TreeView& view,
+// `view`: in the tree's frame.
+ChosenNodes choose_nodes(const PointTree& tree, const ScanCamera& view,
                          const ChooseSettings& settings = {});
 
 }  // namespace wellspring::scan

@@ -8,9 +8,8 @@
 
 #include "picture/laid_view.h"
 #include "scan/tree/coarse_cut.h"
-#include "scan/tree/point_tree.h"
 #include "scenes/build.h"
-#include "unit/scan/made_nodes.h"
+#include "unit/scan/tree_made.h"
 
 namespace wellspring::test {
 namespace {
@@ -19,16 +18,18 @@ using namespace scenes;
 
 constexpr int side = 64;
 
-// A wall of red points 2 m wide and high in the plane z = 0, which is 4 m high in the file's z.
+// A wall of red points 2 m wide and high in the plane z = 0.
 std::shared_ptr<const PointTree> red_wall() {
-  TreeSource source{"made", [] {
-                      std::vector<MadePoint> points;
-                      for (int x = 0; x < 200; x++)
-                        for (int y = 0; y < 200; y++)
-                          points.push_back({{0.01 * x - 1, 0, 0.01 * y - 1}, {255, 0, 0}});
-                      return std::make_unique<MadeSource>(std::move(points));
-                    }};
-  return std::make_shared<PointTree>(make_tree(source, {}));
+  PointBlock block;
+  for (int x = 0; x < 200; x++)
+    for (int y = 0; y < 200; y++) {
+      block.place.push_back({0.01 * x - 1, 0.01 * y - 1, 0});
+      block.color.push_back({255, 0, 0});
+    }
+  ScanInfo info;
+  info.fields.color = true;
+  return std::make_shared<PointTree>(
+      make_tree(made_source(std::move(block), info), plain_settings()));
 }
 
 PlacedScan placed_at(vec3 position) {

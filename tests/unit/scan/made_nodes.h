@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes of points and sources of points that a test writes down.
+// Nodes of points that a test writes down.
 #pragma once
-#include <algorithm>
-#include <array>
-#include <memory>
 #include <vector>
 
-#include "scan/points.h"
 #include "scan/tree/node_points.h"
 
 namespace wellspring::test {
@@ -39,34 +35,6 @@ struct MadeNode {
   }
   MadeNode(const MadeNode&) = delete;
   MadeNode& operator=(const MadeNode&) = delete;
-};
-
-struct MadePoint {
-  dvec3 place;
-  std::array<uint16_t, 3> color;
-};
-
-// Gives points as a file would.
-class MadeSource : public scan::PointSource {
- public:
-  explicit MadeSource(std::vector<MadePoint> points) : points_(std::move(points)) {
-    info_.file = "made", info_.format = "made";
-    info_.points = points_.size(), info_.is_counted = true;
-    info_.fields.color = true;
-    info_.color_max = 255;
-  }
-  bool read(scan::PointBlock& block, size_t most) override {
-    block.clear();
-    for (; next_ < points_.size() && block.size() < most; next_++) {
-      block.place.push_back(points_[next_].place);
-      block.color.push_back(points_[next_].color);
-    }
-    return block.size() > 0;
-  }
-
- private:
-  std::vector<MadePoint> points_;
-  size_t next_ = 0;
 };
 
 }  // namespace wellspring::test

@@ -14,7 +14,7 @@ constexpr quat no_turn(1, 0, 0, 0);
 constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr float no_number = std::numeric_limits<float>::quiet_NaN();
 
-void expect_sound(const SplatPicture& picture) {
+void expect_sound(const SplatPlanes& picture) {
   for (size_t i = 0; i < picture.light.size(); i++) {
     ASSERT_TRUE(is_finite(picture.light[i])) << i;
     ASSERT_TRUE(picture.clear[i] >= 0 && picture.clear[i] <= 1) << i;
@@ -23,23 +23,23 @@ void expect_sound(const SplatPicture& picture) {
 }
 
 // Draws in both orders; what is returned is in the order of middles.
-SplatPicture draw_both(const SplatSet& set, const ScanCamera& view) {
-  SplatSettings settings;
+SplatPlanes draw_both(const SplatSet& set, const ScanCamera& view) {
+  SplatDrawing settings;
   settings.by_pixel = true;
   expect_sound(draw_set(set, view, settings));
   settings.by_pixel = false;
-  const SplatPicture picture = draw_set(set, view, settings);
+  const SplatPlanes picture = draw_set(set, view, settings);
   expect_sound(picture);
   return picture;
 }
 
-void expect_equal(const SplatPicture& a, const SplatPicture& b) {
+void expect_equal(const SplatPlanes& a, const SplatPlanes& b) {
   EXPECT_EQ(a.light, b.light);
   EXPECT_EQ(a.clear, b.clear);
   EXPECT_EQ(a.depth, b.depth);
 }
 
-void expect_nothing(const SplatPicture& picture) {
+void expect_nothing(const SplatPlanes& picture) {
   for (size_t i = 0; i < picture.light.size(); i++) {
     ASSERT_EQ(picture.light[i], vec3(0));
     ASSERT_EQ(picture.clear[i], 1);
@@ -56,7 +56,7 @@ TEST(SplatDrawHard, an_empty_set_is_clear) {
 TEST(SplatDrawHard, one_splat_is_where_it_is) {
   SplatSet set;
   add_splat(set, vec3(1, 0.5f, -4), vec3(0.05f), no_turn, 0.9f, vec3(0, 1, 0));
-  const SplatPicture picture = draw_both(set, make_test_view(65, 65));
+  const SplatPlanes picture = draw_both(set, make_test_view(65, 65));
   const size_t most =
       size_t(std::min_element(picture.clear.begin(), picture.clear.end()) - picture.clear.begin());
   EXPECT_EQ(most % 65, 48u);  // 32.5 + 65 / 4
@@ -79,7 +79,7 @@ TEST(SplatDrawHard, splats_of_a_kilometre_fill_the_picture) {
   for (int i = 0; i < 3000; i++)
     add_splat(set, vec3(0, 0, -4 - 0.01f * float(i)), vec3(1000, 1000, 1 + float(i)), no_turn, 0.3f,
               vec3(0.5f));
-  const SplatPicture picture = draw_both(set, make_test_view(300, 200));
+  const SplatPlanes picture = draw_both(set, make_test_view(300, 200));
   for (size_t i = 0; i < picture.light.size(); i++) {
     ASSERT_NEAR(picture.light[i].x, 0.2140f, 0.005f);
     ASSERT_LT(picture.clear[i], 1 / 255.0f);
@@ -136,13 +136,13 @@ TEST(SplatDrawHard, a_million_splats_in_a_pixel_are_bounded) {
   for (int i = 0; i < 1000000; i++)
     add_splat(set, vec3(0, 0, -4), vec3(0.02f), no_turn, 0.02f + 1e-7f * float(i),
               vec3(0.5f, 0.25f, 1));
-  SplatSettings settings;
+  SplatDrawing settings;
   settings.project.cell_pixels = 0;
   const ShownSplats shown = make_shown_splats(set);
   const PlacedSplats at{&shown};
   SplatDrawer drawer;
   for (bool by_pixel : {false, true}) {
-    SplatPicture picture;
+    SplatPlanes picture;
     settings.by_pixel = by_pixel;
     drawer.draw(picture, {&at, 1}, make_test_view(65, 65), settings);
     expect_sound(picture);
@@ -153,7 +153,7 @@ TEST(SplatDrawHard, a_million_splats_in_a_pixel_are_bounded) {
     EXPECT_NEAR(picture.depth[middle], 4, 1e-3);
   }
   // Merged they are few, and as opaque.
-  SplatPicture merged;
+  SplatPlanes merged;
   settings.by_pixel = false;
   settings.project.budget = 1000;
   drawer.draw(merged, {&at, 1}, make_test_view(65, 65), settings);
@@ -182,7 +182,7 @@ TEST(SplatDrawHard, a_view_in_a_mirror_shows_the_set_from_left_to_right) {
   const SplatSet set = make_random_splats(500, 0, 7);
   ScanCamera view = make_test_view(64, 40), mirrored = view;
   mirrored.right = -view.right;
-  const SplatPicture a = draw_both(set, view), b = draw_both(set, mirrored);
+  const SplatPlanes a = draw_both(set, view), b = draw_both(set, mirrored);
   for (size_t i = 0; i < a.clear.size(); i++)
     ASSERT_NEAR(a.clear[i], b.clear[i / 64 * 64 + 63 - i % 64], 0.008) << i;
 }
@@ -191,9 +191,9 @@ TEST(SplatDrawHard, the_number_of_threads_changes_nothing) {
   const SplatSet set = make_random_splats(20000, 3, 8);
   const ScanCamera view = make_test_view(150, 100);
   for (bool by_pixel : {false, true}) {
-    SplatSettings settings;
+    SplatDrawing settings;
     settings.by_pixel = by_pixel;
-    const SplatPicture many = draw_set(set, view, settings);
+    const SplatPlanes many = draw_set(set, view, settings);
     oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
     expect_equal(draw_set(set, view, settings), many);
   }
@@ -204,9 +204,9 @@ TEST(SplatDrawHard, a_drawer_forgets_the_picture_before) {
                     small = make_shown_splats(make_random_splats(100, 1, 10));
   const PlacedSplats first{&large}, second{&small};
   SplatDrawer used, fresh;
-  SplatPicture picture, expected;
+  SplatPlanes picture, expected;
   std::vector<float> surface(100 * 80, 3.5f);
-  SplatSettings behind;
+  SplatDrawing behind;
   behind.surface = surface;
   used.draw(picture, {&first, 1}, make_test_view(100, 80), behind);
   used.draw(picture, {&second, 1}, make_test_view(50, 70), {});

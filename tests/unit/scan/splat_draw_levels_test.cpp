@@ -28,7 +28,7 @@ SplatSet make_ball(int count) {
   return set;
 }
 
-double difference(const SplatPicture& a, const SplatPicture& b) {
+double difference(const SplatPlanes& a, const SplatPlanes& b) {
   std::vector<ReferencePixel> other(b.light.size());
   for (size_t i = 0; i < other.size(); i++)
     for (int c = 0; c < 3; c++) other[i].code[c] = display_code(double(b.light[i][c]));
@@ -94,8 +94,8 @@ TEST(SplatLevels, far_away_few_splats_look_like_all) {
   const ShownSplats shown = make_shown_splats(set);
   const PlacedSplats at{&shown};
   SplatDrawer drawer;
-  SplatPicture all, few;
-  SplatSettings settings;
+  SplatPlanes all, few;
+  SplatDrawing settings;
   for (double away : {6.0, 30.0}) {
     const ScanCamera view = make_test_view(240, 180, dvec3(0, 0, away));
     settings.project.cell_pixels = 0;
@@ -113,8 +113,8 @@ TEST(SplatLevels, a_budget_is_kept) {
   const ShownSplats shown = make_shown_splats(set);
   const PlacedSplats at{&shown};
   SplatDrawer drawer;
-  SplatPicture all, few;
-  SplatSettings settings;
+  SplatPlanes all, few;
+  SplatDrawing settings;
   settings.project.cell_pixels = 0;
   const ScanCamera view = make_test_view(240, 180);
   drawer.draw(all, {&at, 1}, view, settings);

@@ -64,8 +64,10 @@ inline std::vector<ReferenceSplat> reference_splats(const scan::SplatSet& set,
     const auto held = [&](double slant, double axis, double size) {
       return std::clamp(slant, (-axis - 0.15 * size) / focal, (1.15 * size - axis) / focal);
     };
-    const dvec3 jx = focal / z * (right - held(x, double(view.axis.x), view.width) * forward);
-    const dvec3 jy = focal / z * (down - held(y, double(view.axis.y), view.height) * forward);
+    const dvec3 jx =
+        focal / z * (right - held(x, double(view.axis_place().x), view.width) * forward);
+    const dvec3 jy =
+        focal / z * (down - held(y, double(view.axis_place().y), view.height) * forward);
     const dvec3 jw = -1 / (z * z) * forward;
     ReferenceSplat s;
     s.xx = dot(jx, cov * jx), s.xy = dot(jx, cov * jy), s.yy = dot(jy, cov * jy);
@@ -74,7 +76,7 @@ inline std::vector<ReferenceSplat> reference_splats(const scan::SplatSet& set,
     const double det = s.xx * s.yy - s.xy * s.xy;
     s.opacity = double(set.opacity[i]) * std::sqrt(sharp / det);
     if (s.opacity < 1 / 255.0) continue;
-    s.middle = dvec2(view.axis) + focal * dvec2(x, y);
+    s.middle = dvec2(view.axis_place()) + focal * dvec2(x, y);
     s.depth = z;
     s.nearness = 1 / z;
     const double wx = dot(jw, cov * jx), wy = dot(jw, cov * jy);
@@ -90,7 +92,7 @@ inline std::vector<ReferenceSplat> reference_splats(const scan::SplatSet& set,
   return splats;
 }
 
-// Draws one set, every splat of it; `surface` as in SplatSettings.
+// Draws one set, every splat of it; `surface` as in SplatDrawing.
 inline std::vector<ReferencePixel> draw_reference(const scan::SplatSet& set,
                                                   const scan::PlacedSplats& at,
                                                   const scan::ScanCamera& view, bool by_pixel,
@@ -135,7 +137,7 @@ inline double display_code(double linear) {
 }
 
 // Returns decibels, of display codes.
-inline double signal_to_noise(const scan::SplatPicture& picture,
+inline double signal_to_noise(const scan::SplatPlanes& picture,
                               const std::vector<ReferencePixel>& reference) {
   double sum = 0;
   for (size_t i = 0; i < reference.size(); i++)
@@ -209,13 +211,13 @@ inline scan::SplatSet make_floor_and_wall(int degree) {
   return set;
 }
 
-inline scan::SplatPicture draw_set(const scan::SplatSet& set, const scan::ScanCamera& view,
-                                   const scan::SplatSettings& settings = {},
-                                   scan::PlacedSplats at = {}) {
+inline scan::SplatPlanes draw_set(const scan::SplatSet& set, const scan::ScanCamera& view,
+                                  const scan::SplatDrawing& settings = {},
+                                  scan::PlacedSplats at = {}) {
   const scan::ShownSplats shown = scan::make_shown_splats(set);
   at.splats = &shown;
   scan::SplatDrawer drawer;
-  scan::SplatPicture picture;
+  scan::SplatPlanes picture;
   drawer.draw(picture, {&at, 1}, view, settings);
   return picture;
 }

@@ -8,15 +8,15 @@ using namespace wellspring::scan;
 
 namespace {
 
-SplatSettings every_splat(bool by_pixel) {
-  SplatSettings settings;
+SplatDrawing every_splat(bool by_pixel) {
+  SplatDrawing settings;
   settings.by_pixel = by_pixel;
   settings.project.cell_pixels = 0;
   return settings;
 }
 
 // Expects what comes through, and depths, to be the reference's but for few pixels.
-void expect_like(const SplatPicture& picture, const std::vector<ReferencePixel>& reference,
+void expect_like(const SplatPlanes& picture, const std::vector<ReferencePixel>& reference,
                  double decibels) {
   EXPECT_GE(signal_to_noise(picture, reference), decibels);
   size_t other_depths = 0;
@@ -75,12 +75,12 @@ TEST(SplatDraw, splats_are_hidden_behind_a_surface_and_blended_before_it) {
   for (size_t i = 0; i < surface.size(); i++)
     if (i % 90 > 30) surface[i] = 3.2f + 0.02f * float(i % 90);
   for (bool by_pixel : {false, true}) {
-    SplatSettings settings = every_splat(by_pixel);
+    SplatDrawing settings = every_splat(by_pixel);
     settings.surface = surface;
     expect_like(draw_set(set, view, settings), draw_reference(set, {}, view, by_pixel, surface),
                 46);
   }
-  SplatSettings settings = every_splat(false);
+  SplatDrawing settings = every_splat(false);
   std::fill(surface.begin(), surface.end(), 0.05f);
   settings.surface = surface;
   for (float clear : draw_set(set, view, settings).clear) ASSERT_EQ(clear, 1);
@@ -92,7 +92,7 @@ TEST(SplatDraw, flat_splats_are_as_far_as_their_planes) {
   const quat turn = glm::angleAxis(0.9f, glm::normalize(vec3(0.3f, 1, 0)));
   add_splat(set, vec3(0.1f, 0, -4), vec3(1.2f, 1.2f, 0), turn, 1, vec3(1));
   const ScanCamera view = make_test_view(64, 64);
-  const SplatPicture picture = draw_set(set, view, every_splat(true));
+  const SplatPlanes picture = draw_set(set, view, every_splat(true));
   const vec3 normal = turn * vec3(0, 0, 1);
   int compared = 0;
   for (int y = 0; y < 64; y++)
@@ -119,8 +119,8 @@ TEST(SplatDraw, by_pixel_nothing_pops_when_splats_change_their_order) {
     left.forward = glm::normalize(vec3(-1e-3f, 0, -1)), right.forward = vec3(1e-3f, 0, -1);
     left.right = vec3(-left.forward.z, 0, left.forward.x);
     right.right = vec3(1, 0, 1e-3f);
-    const SplatPicture a = draw_set(set, left, every_splat(by_pixel)),
-                       b = draw_set(set, right, every_splat(by_pixel));
+    const SplatPlanes a = draw_set(set, left, every_splat(by_pixel)),
+                      b = draw_set(set, right, every_splat(by_pixel));
     double sum = 0;
     for (size_t i = 0; i < a.light.size(); i++) sum += double(glm::length(a.light[i] - b.light[i]));
     return sum / double(a.light.size());
@@ -146,7 +146,7 @@ TEST(SplatDraw, laid_over_a_picture_it_is_blended_in_display_codes) {
   SplatSet set;
   add_splat(set, vec3(0, 0, -4), vec3(1), quat(1, 0, 0, 0), 0.5f, vec3(0.8f));
   const ScanCamera view = make_test_view(37, 21);
-  const SplatPicture picture = draw_set(set, view);
+  const SplatPlanes picture = draw_set(set, view);
   std::vector<vec3> linear(37 * 21, vec3(0.25f));
   lay_over(linear, picture, 2);
   const size_t middle = 10 * 37 + 18;

@@ -11,22 +11,23 @@ namespace wellspring::test {
 namespace {
 
 // Looks from `eye` to `at`.
-TreeView looking(dvec3 eye, dvec3 at) {
-  TreeView view;
+ScanCamera looking(dvec3 eye, dvec3 at) {
+  ScanCamera view;
   view.eye = eye;
   view.forward = vec3(glm::normalize(at - eye));
   view.right = glm::normalize(glm::cross(view.forward, vec3(0.1f, 1, 0)));
   view.up = glm::cross(view.right, view.forward);
-  view.tan_x = 0.7f, view.tan_y = 0.4f;
+  view.width = 1260, view.height = 720;
+  view.tan_half_fov = 0.4f;
+  view.near = 0.05f;
   return view;
 }
 
-bool sees(const TreeView& view, dvec3 place) {
+bool sees(const ScanCamera& view, dvec3 place) {
   const dvec3 to = place - view.eye;
   const double z = glm::dot(to, dvec3(view.forward));
-  return z > double(view.near) &&
-         std::abs(glm::dot(to, dvec3(view.right))) < z * double(view.tan_x) &&
-         std::abs(glm::dot(to, dvec3(view.up))) < z * double(view.tan_y);
+  return z > double(view.near) && std::abs(glm::dot(to, dvec3(view.right))) < z * 0.7 &&
+         std::abs(glm::dot(to, dvec3(view.up))) < z * 0.4;
 }
 
 // Returns the points of a solid ball, as a set of particles has them.
@@ -48,7 +49,7 @@ TEST(ChooseNodes, the_cut_has_all_points_that_are_seen_and_keeps_its_budget) {
   Rng rng(1);
   for (int i = 0; i < 12; i++) {
     const dvec3 eye = 12.0 * (dvec3(rng.uniform(), rng.uniform(), rng.uniform()) - 0.5);
-    const TreeView view = looking(eye, dvec3(0));
+    const ScanCamera view = looking(eye, dvec3(0));
     ChooseSettings settings;
     settings.pixels = 0.01f, settings.budget = 1000000;
     const ChosenNodes all = choose_nodes(tree, view, settings);
@@ -102,7 +103,7 @@ TEST(ChooseNodes, nodes_are_refined_until_their_spacing_is_that_of_pixels) {
     is_coarse = is_coarse || !tree.nodes[node.node].is_leaf();
   }
   EXPECT_TRUE(is_coarse);
-  TreeView away = looking({0, 0, 60}, {0, 0, 120});
+  ScanCamera away = looking({0, 0, 60}, {0, 0, 120});
   EXPECT_TRUE(choose_nodes(tree, away, settings).nodes.empty());
 }
 
@@ -110,7 +111,7 @@ TEST(ChooseNodes, what_lies_behind_opaque_nodes_is_left_out) {
   const PointTree tree = make_tree(made_source(made_ball(150000, 4)), plain_settings(3000));
   ChooseSettings settings;
   settings.pixels = 1, settings.budget = 10000000;
-  const TreeView view = looking({0, 0, 9}, dvec3(0));
+  const ScanCamera view = looking({0, 0, 9}, dvec3(0));
   const ChosenNodes all = choose_nodes(tree, view, settings);
   EXPECT_EQ(all.hidden, 0u);
   settings.threshold = 0.9f;
