@@ -10,9 +10,9 @@
 namespace wellspring::program {
 
 struct ScanImport {
-  std::vector<std::string> files;  // that open_scan() reads, all of one scan
+  std::vector<std::string> files;  // all of one scan; open_scan() reads them
   std::string out = ".";           // folder for the tree of points
-  std::string name;                // of the file that is made, without .points; empty: the first's
+  std::string name;                // the made file's, without .points; empty: the first's
   std::string up = "z";            // axis of the files that points up
   double unit = 0;                 // metres of a unit of the files; 0: as they say
   double turn = 0;                 // degrees, positive turns left

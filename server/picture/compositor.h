@@ -56,7 +56,7 @@ struct CompositorWork {
   std::vector<uint8_t> peaks;  // light beyond white of a picture for the eye
   std::vector<float> shares;   // shares of means in a picture at rest (mix_in_means())
   LaidWork laid;
-  std::vector<float> depth;  // of a picture for the eye whose caller wants none
+  std::vector<float> depth;  // a picture's for the eye, whose caller wants none
 };
 size_t memory_bytes(const CompositorWork& work);
 

@@ -18,8 +18,8 @@ namespace {
 
 constexpr size_t moving_points = 1'000'000, settled_points = 2'500'000;
 constexpr int block = 4;              // pixels across whose light is found once
-constexpr float least_share = 0.02f;  // of a block that faces or lies otherwise
-constexpr float most_step = 0.04f;    // of the depth, from a pixel to its block
+constexpr float least_share = 0.02f;  // a block's that faces or lies otherwise
+constexpr float most_step = 0.04f;    // from a pixel to its block, as a share of the depth
 constexpr std::array<glm::ivec2, 16> nearest_first = {{{2, 2},
                                                        {1, 1},
                                                        {2, 1},

@@ -37,7 +37,7 @@ ScanCamera view_of(const View& view) {
 
 void draw(std::span<const PlacedScan> scans, const View& view, std::span<const float> surface,
           bool by_pixel, SplatDrawer& drawer, SplatPlanes& picture) {
-  SplatSettings settings;
+  SplatDrawing settings;
   settings.by_pixel = by_pixel;
   settings.surface = surface;
   drawer.draw(picture, placed_splats(scans), view_of(view), settings);

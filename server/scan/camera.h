@@ -15,13 +15,11 @@ struct ScanCamera {
   vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   float tan_half_fov = 0.5f;  // half of the picture's height at a depth of 1
   int width = 1, height = 1;
-  // Where `forward` meets the picture, pixels from the top left; none: in its middle.
+  // `forward` meets the picture here, pixels from the top left; none: in its middle.
   std::optional<vec2> axis;
   float near = 0;     // metres along `forward` before which nothing is shown
-  vec2 offset{0.5f};  // where pixels are sampled, 0 to 1 from their top left
-  vec2 axis_place() const {
-    return axis ? *axis : vec2(0.5f * float(width), 0.5f * float(height));
-  }
+  vec2 offset{0.5f};  // pixels are sampled here, 0 to 1 from their top left
+  vec2 axis_place() const { return axis ? *axis : vec2(0.5f * float(width), 0.5f * float(height)); }
   float focal() const { return 0.5f * float(height) / tan_half_fov; }  // in pixels
 };
 

@@ -50,7 +50,7 @@ struct ScanInfo {
   uint16_t color_max = 255;        // 255 or 65535; 0: 65535, but 255 if no point has a larger value
   uint16_t intensity_max = 65535;  // the same
   std::vector<Station> stations;   // empty: unknown
-  std::vector<std::string> notices;  // what was odd and could be read all the same, sentences
+  std::vector<std::string> notices;  // sentences about odd things that could be read all the same
 };
 
 // Reads a file from its first point to its last one. One thread at a time.

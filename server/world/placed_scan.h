@@ -21,7 +21,7 @@ enum class ScanColors : uint8_t {
   lit,             // reflectance, on which the scene's light falls
   intensity,       // how much of the scanner's own light came back
   height,          // metres above the scan's lowest point, as a scale of colours
-  classification,  // what the points belong to, by codes of ASPRS
+  classification,  // a point's class, by codes of ASPRS
 };
 
 struct ScanLook {
@@ -33,7 +33,7 @@ struct ScanLook {
 struct PlacedScan {
   std::shared_ptr<const PointTree> points;  // one of the two is not null
   std::shared_ptr<const ShownSplats> splats;
-  vec3 position{0};         // of the scan's own zero, scene coordinates
+  vec3 position{0};         // the scan's own zero is there, scene coordinates
   quat turn{1, 0, 0, 0};    // from its own axes to the scene's, unit
   float scale = 1;          // metres of the scene to one of the scan
   float low = 0, high = 0;  // heights between which its points lie, its own metres

@@ -13,7 +13,7 @@
 namespace wellspring::light {
 namespace {
 
-constexpr float reach_in_sides = 0.85f;  // of the mean square
+constexpr float reach_in_sides = 0.85f;  // in sides of the mean square
 constexpr float least_facing = 0.2f;     // cosine between a place's normal and a square's
 
 }  // namespace

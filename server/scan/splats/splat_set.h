@@ -20,12 +20,12 @@ struct SplatSet {
   std::vector<quat> turn;      // unit
   std::vector<float> opacity;  // 0 to 1
   std::vector<vec3> color;     // sRGB-encoded, 0.5 + 0.2820948 f_dc; may leave 0 to 1
-  int degree = 0;              // of spherical harmonics, 0 to 3
+  int degree = 0;              // spherical harmonics' degree, 0 to 3
   // splat_harmonics[degree] colours a splat, one splat after the other, in the order and with the
   // signs of the reference's eval_sh: degree 1 is -y, z, -x.
   std::vector<vec3> harmonics;
   std::string format;                // its name, for people
-  std::vector<std::string> notices;  // what was odd and could be read all the same, sentences
+  std::vector<std::string> notices;  // sentences about odd things that could be read all the same
   size_t size() const { return place.size(); }
 };
 

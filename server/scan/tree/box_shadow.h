@@ -22,7 +22,6 @@ class BoxShadow {
   // Returns whether all sight lines from the eye to the other box go through this one. True also of
   // the box's own insides: the caller takes boxes that are disjoint.
   bool hides(const DoubleBox& other) const;
-  bool is_none() const { return count_ == 0; }
 
  private:
   struct Plane {

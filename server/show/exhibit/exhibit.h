@@ -185,7 +185,7 @@ struct ExhibitPiece {
   std::shared_ptr<const PieceNebula> nebula;          // null: it is a scan
   std::shared_ptr<const PointTree> points;            // null: it is no scan of points
   std::shared_ptr<const ShownSplats> splats;          // null: it is none of splats
-  PointBounds scan_box;                               // of either
+  PointBounds scan_box;                               // either one's bounds
   quat scan_turn{1, 0, 0, 0};                         // from its file's axes to +Y up
   bool is_scan() const { return points || splats; }
   float brightness = 1;  // a scan's, as it was captured

@@ -9,6 +9,8 @@
 #include "scan/splats/draw_shown.h"
 #include "scan/splats/splat_file.h"
 #include "scan/tree/coarse_cut.h"
+#include "scan/tree/import/write_tree.h"
+#include "scan/tree/tree_settings.h"
 #include "show/exhibit/exhibit_files.h"
 #include "world/load/stand_in.h"
 

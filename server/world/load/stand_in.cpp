@@ -9,8 +9,8 @@
 namespace wellspring::world {
 namespace {
 
-constexpr float half_side = 0.9f;  // of a square, in distances between points
-constexpr float steps = 65536;     // of a node's cube
+constexpr float half_side = 0.9f;  // a square's, in distances between points
+constexpr float steps = 65536;     // along a node's cube
 constexpr uint16_t no_normal = 0x8080;
 
 vec3 unfold(uint16_t octahedral) {
