@@ -12,9 +12,9 @@ namespace {
 
 using scan::PointBlock;
 
-constexpr float half_width = 12, half_depth = 8, height = 6;  // metres
-constexpr float column_radius = 0.4f, noise = 0.0015f;
-constexpr int columns = 12;
+constexpr float hall_half_width = 12, hall_half_depth = 8, hall_top = 6;  // metres
+constexpr float column_radius = 0.4f, hall_noise = 0.0015f;
+constexpr int hall_columns = 12;
 
 struct Part {
   float area;
@@ -25,26 +25,26 @@ struct Part {
 };
 
 vec3 floor_place(int, float u, float v) {
-  return {(2 * u - 1) * half_width, 0, (2 * v - 1) * half_depth};
+  return {(2 * u - 1) * hall_half_width, 0, (2 * v - 1) * hall_half_depth};
 }
 vec3 long_wall(int number, float u, float v) {
-  return {(2 * u - 1) * half_width, v * height, number ? half_depth : -half_depth};
+  return {(2 * u - 1) * hall_half_width, v * hall_top, number ? hall_half_depth : -hall_half_depth};
 }
 vec3 short_wall(int number, float u, float v) {
-  return {number ? half_width : -half_width, v * height, (2 * u - 1) * half_depth};
+  return {number ? hall_half_width : -hall_half_width, v * hall_top, (2 * u - 1) * hall_half_depth};
 }
 vec3 column_place(int number, float u, float v) {
   const float angle = 2 * pi * u;
   const vec3 middle(float(number % 6) * 3.6f - 9, 0, number < 6 ? -3.5f : 3.5f);
   return middle +
-         vec3(column_radius * std::cos(angle), v * height, column_radius * std::sin(angle));
+         vec3(column_radius * std::cos(angle), v * hall_top, column_radius * std::sin(angle));
 }
 
-const std::array<Part, 4> parts = {
-    {{4 * half_width * half_depth, floor_place},
-     {2 * half_width * height, long_wall, true, 2},
-     {2 * half_depth * height, short_wall, false, 2},
-     {2 * pi * column_radius * height, column_place, false, columns}}};
+const std::array<Part, 4> hall_parts = {
+    {{4 * hall_half_width * hall_half_depth, floor_place},
+     {2 * hall_half_width * hall_top, long_wall, true, 2},
+     {2 * hall_half_depth * hall_top, short_wall, false, 2},
+     {2 * pi * column_radius * hall_top, column_place, false, hall_columns}}};
 
 bool is_window(vec3 p) {
   const float across = std::abs(std::remainder(p.x, 4.0f));
@@ -72,7 +72,7 @@ class Site : public scan::PointSource {
     info_.file = "made", info_.format = "made";
     info_.points = points, info_.is_counted = true;
     info_.fields.color = true, info_.color_max = 255;
-    for (const Part& part : parts) area_ += part.area * float(part.count);
+    for (const Part& part : hall_parts) area_ += part.area * float(part.count);
   }
   bool read(PointBlock& block, size_t most) override {
     block.clear();
@@ -82,7 +82,7 @@ class Site : public scan::PointSource {
       left_--;
       block.color.push_back(stone(place));
       const vec3 off(random_.uniform(), random_.uniform(), random_.uniform());
-      block.place.push_back(dvec3(place + noise * (2.0f * off - 1.0f)));
+      block.place.push_back(dvec3(place + hall_noise * (2.0f * off - 1.0f)));
     }
     return block.size() > 0;
   }
@@ -90,7 +90,7 @@ class Site : public scan::PointSource {
  private:
   bool find(vec3& place) {
     float at = area_ * random_.uniform();
-    for (const Part& part : parts) {
+    for (const Part& part : hall_parts) {
       const float area = part.area * float(part.count);
       if (at >= area) {
         at -= area;

@@ -20,7 +20,7 @@
 namespace wellspring::test {
 namespace {
 
-constexpr int width = 1280, height = 720;
+constexpr int hall_width = 1280, hall_height = 720;
 
 ScanCamera view_of(const PointTree& tree) {
   ScanCamera view;
@@ -30,13 +30,13 @@ ScanCamera view_of(const PointTree& tree) {
   view.right = normalize(cross(forward, vec3(0, 1, 0)));
   view.up = cross(view.right, forward);
   view.tan_half_fov = std::tan(0.5f * glm::radians(60.0f));
-  view.width = width, view.height = height;
+  view.width = hall_width, view.height = hall_height;
   return view;
 }
 
 Frame frame_of(const PointBuffer& buffer) {
   Frame frame;
-  fit_frame(width, height, frame);
+  fit_frame(hall_width, hall_height, frame);
   for (size_t i = 0; i < frame.color.size(); i++)
     frame.color[i] = std::isfinite(buffer.depth[i]) ? captured_color(buffer.color[i]) : vec3(0.1f);
   return frame;

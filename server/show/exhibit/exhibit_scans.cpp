@@ -6,7 +6,7 @@
 
 #include "base/load_error.h"
 #include "scan/format/open_scan.h"
-#include "scan/splats/draw_shown.h"
+#include "scan/splat_draw/draw_shown.h"
 #include "scan/splats/splat_file.h"
 #include "scan/tree/coarse_cut.h"
 #include "scan/tree/import/write_tree.h"
