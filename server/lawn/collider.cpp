@@ -33,8 +33,15 @@ LaneMask push_out_of_capsule(const Collider& collider, const LaneMask& lanes, La
 LaneMask push_out_of_cube(const Collider& collider, const LaneMask& lanes, Lanes3& v) {
   constexpr int tries = 4;
   const mat3 back = transpose(collider.turn);
+  // Places outside of the mesh's box are outside of the mesh.
+  const Lanes3 from = v - all_lanes(collider.place);
+  const vec3 middle = collider.cube->middle(), half = collider.cube->half_size();
+  LaneMask near = lanes;
+  for (int axis = 0; axis < 3; axis++)
+    near &= lanes_abs(dot(from, all_lanes(collider.turn[axis])) - middle[axis]) <=
+            half[axis] + collider.margin;
   LaneMask inside{};
-  for (unsigned left = negative_lanes(lanes); left != 0; left &= left - 1) {
+  for (unsigned left = negative_lanes(near); left != 0; left &= left - 1) {
     const int lane = __builtin_ctz(left);
     vec3 p = back * (v.at(lane) - collider.place);
     DepthCube::Depth depth = collider.cube->at(p);
@@ -66,7 +73,10 @@ std::vector<Collider> find_colliders(const Walkers& walkers) {
     put.margin = margin_of(c.radius, max(abs(c.a), abs(c.b)));
   }
   for (const PlacedCube& c : walkers.cubes) {
-    if (!c.cube || !(c.cube->radius() > 0 && c.cube->radius() < most)) continue;
+    if (!c.cube) continue;
+    const vec3 half = c.cube->half_size();
+    const float size = max_component(half);
+    if (!(size > 0 && size < most)) continue;
     const vec3 middle = c.turn * c.cube->middle() + c.place;
     if (!is_place(middle) || !is_place(c.place)) continue;
     const mat3 unit = transpose(c.turn) * c.turn - mat3(1);
@@ -74,8 +84,9 @@ std::vector<Collider> find_colliders(const Walkers& walkers) {
     if (!(off < 1e-3f)) continue;  // it is no rotation
     Collider& put = found.emplace_back();
     put.cube = c.cube, put.place = c.place, put.turn = c.turn;
-    put.low = middle - c.cube->radius(), put.high = middle + c.cube->radius();
-    put.margin = margin_of(c.cube->radius(), middle);
+    const vec3 reach = abs(c.turn[0]) * half.x + abs(c.turn[1]) * half.y + abs(c.turn[2]) * half.z;
+    put.low = middle - reach, put.high = middle + reach;
+    put.margin = margin_of(size, middle);
   }
   return found;
 }

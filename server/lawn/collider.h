@@ -30,7 +30,7 @@ struct Walkers {
   std::vector<PlacedCube> cubes;
 };
 
-// One collider of either kind, checked, with the sphere or box around it.
+// One collider of either kind, checked, with the box around it.
 struct Collider {
   Capsule capsule;
   const DepthCube* cube = nullptr;  // null: it is the capsule

@@ -26,6 +26,7 @@ DepthCube::DepthCube(std::span<const vec3> places, std::span<const uvec3> triang
   const float widest = good.empty() ? 0 : max_component(high - low);
   if (!(widest > 0) || !std::isfinite(widest)) return;
   middle_ = 0.5f * low + 0.5f * high;
+  half_size_ = 0.5f * high - 0.5f * low;
   half_ = 0.5f * widest * (1 + 2 / float(side_));  // a pixel of margin
   for (auto& face : face_) face.assign(size_t(side_) * size_t(side_), {-infinity, {0, 1, 0}});
   for (std::array<vec3, 3>& corner : good) {

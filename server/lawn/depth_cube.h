@@ -30,9 +30,9 @@ class DepthCube {
     vec3 normal{0, 1, 0}, axis{0, 1, 0};
   };
   Depth at(vec3 v) const;
-  // Holds the sphere around the cube.
+  // Describe the box around the mesh: its middle, and half of its sides.
   vec3 middle() const { return middle_; }
-  float radius() const { return 1.7320508f * half_; }
+  vec3 half_size() const { return half_size_; }
 
  private:
   struct Texel {
@@ -42,7 +42,7 @@ class DepthCube {
   void draw(const std::array<vec3, 3>& corner);
 
   int side_;
-  vec3 middle_{0};
+  vec3 middle_{0}, half_size_{0};
   float half_ = 0;                          // half the cube's side, metres; 0: there is nothing
   std::array<std::vector<Texel>, 6> face_;  // +x, -x, +y, -y, +z, -z
 };
