@@ -89,7 +89,7 @@ class HoleFinder {
     const int margin = need.width - 1;
     constexpr int stride = block_side + 2 * most_width + lane_count;
     static thread_local std::vector<float> window(size_t(stride) * stride, endless);
-    Lanes least = all_lanes(endless);  // of the window
+    Lanes least = all_lanes(endless);  // the depths in the window
     const int first_x = std::max(left - margin, 0),
               last_x = std::min(left + block_side + margin, buffer_.width);
     for (int y = -margin; y < block_side + margin; y++) {
