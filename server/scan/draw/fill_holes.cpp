@@ -38,6 +38,12 @@ struct Hole {
   uint32_t color = 0;
 };
 
+float least_lane(const Lanes& a) {
+  float least = a[0];
+  for (int i = 1; i < lane_count; i++) least = std::min(least, a[i]);
+  return least;
+}
+
 // Mixes four bytes; `share` of b, 0 to 1.
 uint32_t mixed_color(uint32_t a, uint32_t b, float share) {
   uint32_t mix = 0;
@@ -83,6 +89,7 @@ class HoleFinder {
     const int margin = need.width - 1;
     constexpr int stride = block_side + 2 * most_width + lane_count;
     static thread_local std::vector<float> window(size_t(stride) * stride, endless);
+    Lanes least = all_lanes(endless);  // the depths in the window
     const int first_x = std::max(left - margin, 0),
               last_x = std::min(left + block_side + margin, buffer_.width);
     for (int y = -margin; y < block_side + margin; y++) {
@@ -91,15 +98,21 @@ class HoleFinder {
       if (top + y < 0 || top + y >= buffer_.height) continue;
       const float* from = &buffer_.depth[at(0, top + y)];
       std::copy(from + first_x, from + last_x, row + (first_x - left + margin));
+      for (int x = 0; x < block_side + 2 * margin; x += lane_count)
+        least = lanes_min(least, load_lanes(row + x));
     }
+    least = all_lanes(least_lane(least));
     const int width = std::min(block_side, buffer_.width - left),
               height = std::min(block_side, buffer_.height - top);
     for (int y = 0; y < height; y++)
       for (int x = 0; x < width; x += lane_count) {
         const float* middle = &window[size_t(y + margin) * stride + size_t(x + margin)];
         const Lanes limit = load_lanes(middle) - need.spacing;
+        if (!any_lane(limit > least)) continue;
         LaneMask agree{};
         for (int d = 0; d < directions; d++) {
+          // Directions that are left must suffice.
+          if (!any_lane(agree + (directions - d) >= agreeing)) break;
           const std::ptrdiff_t step = step_x[d] + step_y[d] * stride;
           Lanes before = all_lanes(endless), after = before;
           for (int t = 1; t <= margin; t++) {
