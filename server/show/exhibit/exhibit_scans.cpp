@@ -24,11 +24,13 @@ const std::initializer_list<const char*> axes = {"x", "y", "z", "-x", "-y", "-z"
 
 // Returns the turn that makes an axis, one of `axes`, point up.
 quat turn_up(const std::string& axis) {
-  vec3 up(0);
-  up[axis.back() - 'x'] = axis.front() == '-' ? -1.0f : 1.0f;
-  // A half turn keeps the right side on the right.
-  if (up.y < 0) return glm::angleAxis(pi, vec3(0, 0, 1));
-  return glm::rotation(up, vec3(0, 1, 0));
+  const bool is_below = axis.front() == '-';
+  const float quarter = 0.5f * pi * (is_below ? -1.0f : 1.0f);
+  switch (axis.back()) {
+    case 'x': return glm::angleAxis(quarter, vec3(0, 0, 1));
+    case 'z': return glm::angleAxis(-quarter, vec3(1, 0, 0));
+    default: return glm::angleAxis(is_below ? pi : 0, vec3(0, 0, 1));
+  }
 }
 
 PointBounds bounds_of_mesh(const Mesh& mesh, const quat& turn) {
