@@ -165,16 +165,14 @@ class ParticleTree::Culler {
     for (uint32_t i = 0; i < 2 && node(number).child; i++) hide(node(number).child + i);
   }
 
+  // Empty children have no say.
   void join(uint32_t number) {
     const uint32_t child = node(number).child;
-    int hidden = 0;
-    bool is_partial = false;
-    for (uint32_t i = 0; i < 2; i++) {
-      hidden += node(child + i).count == 0 || states_[child + i] == ParticleState::occluded;
-      is_partial = is_partial || states_[child + i] == ParticleState::partial;
-    }
-    if (hidden == 2) states_[number] = ParticleState::occluded;
-    else if (hidden == 1 || is_partial) states_[number] = ParticleState::partial;
+    const auto state = [&](uint32_t i, uint32_t other) {
+      return states_[node(i).count > 0 ? i : other];
+    };
+    const ParticleState lower = state(child, child + 1), upper = state(child + 1, child);
+    states_[number] = lower == upper ? lower : ParticleState::partial;
   }
 
   const ParticleTree& tree_;

@@ -27,7 +27,7 @@ struct TreeSettings {
   double turn = 0;        // radians around +Y after that, counterclockwise seen from above
   // Bytes of large arrays, at least 48 MiB; what sources themselves need is not counted.
   uint64_t memory = uint64_t(1) << 30;
-  uint32_t leaf_points = 50000;     // a leaf has no more, unless they lie in one place
+  uint32_t leaf_points = 100000;    // a leaf has no more, unless they lie in one place
   uint32_t chunk_points = 1000000;  // are indexed at once by a core; fewer if memory asks for it
 };
 

@@ -54,8 +54,8 @@ vec3 plane_normal(vec3 place, const vec3* nearest, int count) {
 
 void Neighbours::sort(const NodePlaces& places) {
   const size_t n = places.size();
-  // On a surface so many cells have about four points each.
-  side_ = std::clamp(int(std::sqrt(double(n) / 6)), 1, 96);
+  // On a surface so many cells have about three points each.
+  side_ = std::clamp(int(std::sqrt(double(n) / 4)), 1, 96);
   const auto side = uint32_t(side_);
   starts_.assign(size_t(side) * side * side + 1, 0);
   cells_.resize(n), order_.resize(n), x_.resize(n), y_.resize(n), z_.resize(n);
@@ -77,14 +77,22 @@ void Neighbours::sort(const NodePlaces& places) {
 void Neighbours::gather(int x, int y, int z, int ring) {
   const auto clamped = [this](int a) { return std::clamp(a, 0, side_ - 1); };
   const int x0 = clamped(x - ring), x1 = clamped(x + ring);
-  size_t all = 0;
+  // Rows that are near come first, so that the search finds near points early.
   const auto each_row = [&](const auto& take) {
-    for (int k = clamped(z - ring); k <= clamped(z + ring); k++)
-      for (int j = clamped(y - ring); j <= clamped(y + ring); j++) {
-        const size_t row = (size_t(k) * size_t(side_) + size_t(j)) * size_t(side_);
-        take(starts_[row + size_t(x0)], starts_[row + size_t(x1) + 1]);
+    for (int apart = 0; apart <= 2 * ring; apart++)
+      for (int k = std::max(-ring, -apart); k <= std::min(ring, apart); k++) {
+        const int left = apart - std::abs(k);
+        if (left > ring || z + k < 0 || z + k >= side_) continue;
+        for (const int j : {-left, left}) {
+          if (y + j >= 0 && y + j < side_) {
+            const size_t row = (size_t(z + k) * size_t(side_) + size_t(y + j)) * size_t(side_);
+            take(starts_[row + size_t(x0)], starts_[row + size_t(x1) + 1]);
+          }
+          if (left == 0) break;
+        }
       }
   };
+  size_t all = 0;
   each_row([&](uint32_t from, uint32_t to) { all += to - from; });
   const size_t step = all <= most_near ? 1 : (all + most_near - 1) / most_near;
   near_ = 0;
