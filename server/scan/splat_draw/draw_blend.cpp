@@ -45,6 +45,20 @@ bool blend_list(TilePixels& pixels, const DrawnSplats& drawn, std::span<const ui
     if (i + 12 < list.size()) __builtin_prefetch(&drawn.splats[list[i + 12]]);
     const DrawnSplat& splat = drawn.splats[list[i]];
     const SplatLanes lanes(splat);
+    const int left = std::max(splat.box.left - place.x, 0),
+              right = std::min(splat.box.right - place.x, tile_width - 1);
+    if (right - left < lane_count) {
+      // Most splats are so narrow that eight pixels hold any of their rows.
+      const int end = std::min(splat.box.bottom - place.y + 1, tile_height);
+      for (int r = std::max(splat.box.top - place.y, 0); r < end; r++) {
+        const float down = float(r + place.y) - splat.y;
+        const RowOfSplat row{splat.x - float(place.x) + splat.lean * down,
+                             splat.opacity - splat.fall_y * down * down, down, left, right};
+        blend_eight<behind_surface>(pixels, r * tile_stride + left, lanes, row, left,
+                                    place.surface);
+      }
+      continue;
+    }
     rows.find(splat, place.x, place.y, open);
     for (int r = rows.begin; r < rows.end; r++) {
       const RowOfSplat row = rows.row(r);

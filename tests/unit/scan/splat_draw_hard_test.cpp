@@ -72,6 +72,13 @@ TEST(SplatDrawHard, splats_of_no_size_are_not_seen) {
   // A line has no area either.
   set.scale[0] = vec3(1, 0, 0);
   expect_nothing(draw_both(set, make_test_view(33, 17)));
+  // Sets that were trained without the filter have it a pixel large, as opaque as it is.
+  set.scale[0] = vec3(0);
+  SplatDrawing settings;
+  settings.project.keep_opacity = true;
+  const SplatPlanes dot = draw_set(set, make_test_view(33, 17), settings);
+  EXPECT_NEAR(dot.clear[8 * 33 + 16], 0.01f, 1e-3f);
+  EXPECT_EQ(dot.clear[8 * 33 + 19], 1);
 }
 
 TEST(SplatDrawHard, splats_of_a_kilometre_fill_the_picture) {
