@@ -25,7 +25,7 @@ class E57Section {
   // The bytes of a stream that are read and not decoded yet.
   struct Pending {
     std::string bytes;
-    uint64_t bit = 0;  // where the next number begins
+    uint64_t bit = 0;  // the next number begins there
     bool is_wanted = false;
   };
   E57Pages* pages_;
