@@ -12,7 +12,7 @@ namespace {
 constexpr int splats_a_check = 64;
 
 template <bool behind_surface>
-inline void blend_eight(TilePixels& pixels, int at, const SplatLanes& s, const RowOfSplat& row,
+inline void blend_eight(SplatTile& pixels, int at, const SplatLanes& s, const RowOfSplat& row,
                         int x, const float* surface) {
   const Lanes across = lane_numbers + (float(x) - row.middle);
   const Lanes power = row.opacity - s.fall_x * (across * across);
@@ -36,8 +36,8 @@ inline void blend_eight(TilePixels& pixels, int at, const SplatLanes& s, const R
 }
 
 template <bool behind_surface>
-bool blend_list(TilePixels& pixels, const DrawnSplats& drawn, std::span<const uint32_t> list,
-                const TilePlace& place) {
+bool blend_list(SplatTile& pixels, const DrawnSplats& drawn, std::span<const uint32_t> list,
+                const SplatTilePlace& place) {
   RowLimits open;
   SplatRows rows;
   for (size_t i = 0; i < list.size(); i++) {
@@ -71,8 +71,8 @@ bool blend_list(TilePixels& pixels, const DrawnSplats& drawn, std::span<const ui
 
 }  // namespace
 
-bool blend_in_order(TilePixels& pixels, const DrawnSplats& drawn, std::span<const uint32_t> list,
-                    const TilePlace& place) {
+bool blend_in_order(SplatTile& pixels, const DrawnSplats& drawn, std::span<const uint32_t> list,
+                    const SplatTilePlace& place) {
   return place.surface != nullptr ? blend_list<true>(pixels, drawn, list, place)
                                   : blend_list<false>(pixels, drawn, list, place);
 }

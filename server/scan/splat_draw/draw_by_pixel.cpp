@@ -30,7 +30,7 @@ struct HeldPixels {
   }
 };
 
-void blend_held(TilePixels& pixels, size_t at, const HeldSplat& held, vec3 color) {
+void blend_held(SplatTile& pixels, size_t at, const HeldSplat& held, vec3 color) {
   float& clear = pixels.clear[at];
   if (clear < closed_pixel) return;
   const float weight = held.alpha * clear, rest = clear - weight;
@@ -41,7 +41,7 @@ void blend_held(TilePixels& pixels, size_t at, const HeldSplat& held, vec3 color
 
 class PixelOrder {
  public:
-  PixelOrder(TilePixels& pixels, HeldPixels& held, const DrawnSplats& drawn,
+  PixelOrder(SplatTile& pixels, HeldPixels& held, const DrawnSplats& drawn,
              std::span<const uint32_t> list)
       : pixels_(pixels), held_(held), drawn_(drawn), list_(list) {}
 
@@ -71,7 +71,7 @@ class PixelOrder {
   }
 
  private:
-  TilePixels& pixels_;
+  SplatTile& pixels_;
   HeldPixels& held_;
   const DrawnSplats& drawn_;
   const std::span<const uint32_t> list_;
@@ -79,8 +79,8 @@ class PixelOrder {
 
 }  // namespace
 
-void blend_by_pixel(TilePixels& pixels, const DrawnSplats& drawn, std::span<const uint32_t> list,
-                    const TilePlace& place) {
+void blend_by_pixel(SplatTile& pixels, const DrawnSplats& drawn, std::span<const uint32_t> list,
+                    const SplatTilePlace& place) {
   thread_local std::unique_ptr<HeldPixels> room;
   if (!room) room = std::make_unique<HeldPixels>();
   PixelOrder order(pixels, *room, drawn, list);

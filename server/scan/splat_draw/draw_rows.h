@@ -16,7 +16,7 @@ struct RowLimits {
 
 // Finds the pixels through which at least `threshold` of the light comes; returns whether there are
 // none.
-inline bool find_open(RowLimits& open, const TilePixels& pixels, float threshold) {
+inline bool find_open(RowLimits& open, const SplatTile& pixels, float threshold) {
   bool none = true;
   for (int row = 0; row < tile_height; row++) {
     int first = tile_width, last = -1;

@@ -37,7 +37,7 @@ float copy_surface(float* to, std::span<const float> surface, int width, int hei
   return least;
 }
 
-void begin_tile(TilePixels& tile, int columns, int rows) {
+void begin_tile(SplatTile& tile, int columns, int rows) {
   std::fill_n(&tile.color[0][0], 3 * tile_pixels, 0.0f);
   std::fill_n(tile.nearness, tile_pixels, 0.0f);
   std::fill_n(tile.clear, tile_pixels, 0.0f);
@@ -45,7 +45,7 @@ void begin_tile(TilePixels& tile, int columns, int rows) {
     std::fill_n(tile.clear + row * tile_stride, std::min(columns, tile_width), 1.0f);
 }
 
-void finish_tile(SplatPlanes& picture, const TilePixels& tile, int x, int y) {
+void finish_tile(SplatPlanes& picture, const SplatTile& tile, int x, int y) {
   for (int row = 0; row < std::min(tile_height, picture.height - y); row++)
     for (int i = 0; i < std::min(tile_width, picture.width - x); i += lane_count) {
       const int at = row * tile_stride + i, count = std::min(lane_count, picture.width - x - i);
@@ -64,13 +64,13 @@ void finish_tile(SplatPlanes& picture, const TilePixels& tile, int x, int y) {
 
 }  // namespace
 
-TilePlace SplatDrawer::place_of(const TileGrid& grid, int tile) const {
+SplatTilePlace SplatDrawer::place_of(const SplatGrid& grid, int tile) const {
   return {tile % grid.across * tile_width, tile / grid.across * tile_height,
           surface_.empty() ? nullptr : surface_.data() + size_t(tile) * tile_pixels};
 }
 
 // Draws some splats after the others, so tiles in which nothing more is seen get no more lists.
-void SplatDrawer::draw_in_order(const TileGrid& grid) {
+void SplatDrawer::draw_in_order(const SplatGrid& grid) {
   const std::span<const DrawnKey> keys = drawn_.keys;
   std::vector<uint64_t> entries((keys.size() + keys_a_count - 1) / keys_a_count);
   parallel_ranges(int(entries.size()), 4, [&](int begin, int end) {
@@ -100,7 +100,7 @@ void SplatDrawer::draw_in_order(const TileGrid& grid) {
 }
 
 // Draws some rows of tiles after the others, since pixels hold back splats.
-void SplatDrawer::draw_by_pixel(const TileGrid& grid) {
+void SplatDrawer::draw_by_pixel(const SplatGrid& grid) {
   std::vector<uint64_t> entries(size_t(grid.down));
   for (const PixelBox& box : boxes_)
     for (int row = box.top / tile_height; row <= box.bottom / tile_height; row++)
@@ -134,13 +134,13 @@ void SplatDrawer::draw(SplatPlanes& picture, std::span<const PlacedSplats> sets,
     }
   });
 
-  const TileGrid grid(view.width, view.height);
+  const SplatGrid grid(view.width, view.height);
   tiles_.resize(size_t(grid.count()));
   limits_.assign(size_t(grid.count()), 0);
   surface_.resize(settings.surface.empty() ? 0 : size_t(grid.count()) * tile_pixels);
   parallel_ranges(grid.count(), 8, [&](int begin, int end) {
     for (int tile = begin; tile < end; tile++) {
-      const TilePlace at = place_of(grid, tile);
+      const SplatTilePlace at = place_of(grid, tile);
       begin_tile(tiles_[size_t(tile)], view.width - at.x, view.height - at.y);
       if (!surface_.empty())
         limits_[size_t(tile)] = copy_surface(surface_.data() + size_t(tile) * tile_pixels,
@@ -158,7 +158,7 @@ void SplatDrawer::draw(SplatPlanes& picture, std::span<const PlacedSplats> sets,
   picture.looked_at = drawn_.looked_at, picture.drawn = int64_t(drawn_.keys.size());
   parallel_ranges(grid.count(), 8, [&](int begin, int end) {
     for (int tile = begin; tile < end; tile++) {
-      const TilePlace at = place_of(grid, tile);
+      const SplatTilePlace at = place_of(grid, tile);
       finish_tile(picture, tiles_[size_t(tile)], at.x, at.y);
     }
   });

@@ -42,16 +42,16 @@ class SplatDrawer {
             const SplatDrawing& settings);
 
  private:
-  void draw_in_order(const TileGrid& grid);
-  void draw_by_pixel(const TileGrid& grid);
-  TilePlace place_of(const TileGrid& grid, int tile) const;
+  void draw_in_order(const SplatGrid& grid);
+  void draw_by_pixel(const SplatGrid& grid);
+  SplatTilePlace place_of(const SplatGrid& grid, int tile) const;
 
   DrawnSplats drawn_;
   std::vector<DrawnKey> spare_;
   std::vector<PixelBox> boxes_;  // in the order of keys
-  TileLists lists_;
-  std::vector<TilePixels> tiles_;
-  // One over the depth of surfaces, as in TilePixels, if there are any; and for each tile the least
+  SplatLists lists_;
+  std::vector<SplatTile> tiles_;
+  // One over the depth of surfaces, as in SplatTile, if there are any; and for each tile the least
   // of them, infinity where no splat can be seen any more.
   std::vector<float> surface_, limits_;
 };

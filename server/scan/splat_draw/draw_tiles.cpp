@@ -54,8 +54,8 @@ struct Ellipse {
 
 // Calls body(tile) for all tiles that the splat touches, row by row.
 template <class Body>
-inline void each_tile(const DrawnSplat& s, const PixelBox& box, const TileGrid& grid, int first_row,
-                      int last_row, const Body& body) {
+inline void each_tile(const DrawnSplat& s, const PixelBox& box, const SplatGrid& grid,
+                      int first_row, int last_row, const Body& body) {
   const int left = box.left / tile_width, right = box.right / tile_width,
             top = std::max(box.top / tile_height, first_row),
             bottom = std::min(box.bottom / tile_height, last_row - 1);
@@ -93,8 +93,8 @@ void sort_by_depth(std::vector<DrawnKey>& keys, std::vector<DrawnKey>& spare) {
   sort_by_digit(keys, spare, digit_bits);
 }
 
-void list_splats(TileLists& lists, const DrawnSplats& drawn, std::span<const DrawnKey> keys,
-                 std::span<const PixelBox> boxes, const TileGrid& grid,
+void list_splats(SplatLists& lists, const DrawnSplats& drawn, std::span<const DrawnKey> keys,
+                 std::span<const PixelBox> boxes, const SplatGrid& grid,
                  std::span<const float> limits, int first_row, int last_row) {
   const size_t tiles = size_t(grid.count());
   const size_t a_part = std::max<size_t>(4096, (keys.size() + 15) / 16);

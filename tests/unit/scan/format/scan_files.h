@@ -86,7 +86,7 @@ inline std::string bytes_of_file(const std::filesystem::path& path) {
 
 // Cuts a file off at many places, and flips bytes of it: `read` may succeed or throw LoadError.
 inline void expect_no_harm(const Folder& folder, const std::string& name, const std::string& bytes,
-                           const std::function<void(const std::string&)>& read, int flips = 150) {
+                           const std::function<void(const std::string&)>& read, int flips = 100) {
   size_t refused = 0;
   const auto try_to = [&](const std::string& damaged) {
     const std::string path = folder.write(name, damaged);
