@@ -20,11 +20,7 @@ class InputFile {
 
   const std::string& path() const { return path_; }
   uint64_t size() const { return size_; }
-<<<<<<< HEAD
-  uint64_t place() const { return buffer_place_ + next_; }  // the next byte's place
-=======
   uint64_t place() const { return buffer_place_ + next_; }  // the next byte stands there
->>>>>>> formats
   uint64_t rest() const { return size_ - place(); }
 
   // Goes to a place, at most to the end.
@@ -46,11 +42,7 @@ class InputFile {
   int descriptor_ = -1;
   uint64_t size_ = 0;
   std::vector<char> buffer_;
-<<<<<<< HEAD
-  uint64_t buffer_place_ = 0;  // the place of the buffer's first byte in the file
-=======
   uint64_t buffer_place_ = 0;  // the buffer's first byte stands there in the file
->>>>>>> formats
   size_t next_ = 0, end_ = 0;  // in the buffer
 };
 
