@@ -11,7 +11,7 @@
 
 namespace wellspring::lawn {
 
-inline constexpr int bin_width = 64, bin_height = 32;  // pixels
+inline constexpr int bin_width = 64, bin_height = 64;  // pixels
 
 // Holds a blade in the picture, by its joints: places in pixels, half of the way from edge to edge,
 // inverse depths.
