@@ -13,7 +13,7 @@
 namespace wellspring::scan {
 namespace {
 
-constexpr size_t points_at_once = 1 << 16;
+constexpr size_t read_at_once = 1 << 16;
 
 glm::dmat3 frame_of(const TreeSettings& settings) {
   glm::dmat3 upright(1);
@@ -96,7 +96,7 @@ SourceFacts read_source(const TreeSource& source, const TreeSettings& settings, 
   SourceReader reader(*points, settings, facts);
   constexpr size_t block_bytes = 60;  // a point of a PointBlock takes so many
   const size_t most = std::clamp<size_t>(
-      size_t(settings.memory) / 16 / (block_bytes + sizeof(ReadPoint)), 1024, points_at_once);
+      size_t(settings.memory) / 16 / (block_bytes + sizeof(ReadPoint)), 1024, read_at_once);
   const Hold hold(held, most * (block_bytes + sizeof(ReadPoint)));
   std::vector<ReadPoint> records(most);
   PointBlock block;
