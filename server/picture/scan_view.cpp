@@ -18,6 +18,7 @@ namespace {
 
 constexpr size_t moving_points = 1'000'000, settled_points = 2'500'000;
 constexpr int block = 4;              // pixels across whose light is found once
+constexpr float least_turn = 0.25f;   // normals of points are noisy: none makes light vanish
 constexpr float least_share = 0.02f;  // a block's that faces or lies otherwise
 constexpr float most_step = 0.04f;    // from a pixel to its block, as a share of the depth
 constexpr std::array<glm::ivec2, 16> nearest_first = {{{2, 2},
@@ -109,7 +110,7 @@ ScanView::ScanView(const ShownScans& scans, const View& view, vec2 offset, bool 
     if (placed.look.colors == ScanColors::lit && scans.maps && placed.stand_in >= 0) {
       std::vector<LitBlock>& blocks = work.blocks[seen_.size()];
       light_blocks(find_light(scans, placed.stand_in, work), seen, blocks);
-      seen.blocks = &blocks;
+      seen.blocks = &blocks, seen.usual = scans.maps->usual;
     }
     seen_.push_back(seen);
   }
@@ -177,10 +178,11 @@ Lanes3 ScanView::light_at(const Seen& one, int x, int y, const Lanes& depth) con
     const Lanes off = (far - depth) * (1 / most_step) / depth;
     const Lanes facing = lanes_max(dot(own, normal), all_lanes(least_share));
     const Lanes weight = share * facing * facing / (1 + off * off * off * off);
-    sum = sum + light * (weight * positive_lanes(1 + dot(slope, normal - own)));
+    sum = sum + light * (weight * lanes_max(1 + dot(slope, normal - own), all_lanes(least_turn)));
     weights += weight;
   }
-  return sum * (weights > 0 ? 1 / weights : Lanes{});
+  const LaneMask known = weights > 0;
+  return choose(known, sum * (1 / weights), all_lanes(vec3(one.usual)));
 }
 
 // Returns the colour of what a pixel sees of a scan, `depth` metres along the axis.

@@ -72,6 +72,7 @@ class ScanView {
     float lowest, height;                           // metres of the scene
     mat3 turn{1};                                   // from the scan to the scene
     const std::vector<LitBlock>* blocks = nullptr;  // null: it is not lit
+    float usual = 0;                                // light where none is known
   };
   void light_blocks(const StandInLight& light, const Seen& seen,
                     std::vector<LitBlock>& blocks) const;

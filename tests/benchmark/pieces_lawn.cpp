@@ -120,8 +120,8 @@ ReportPage pieces_lawn_page() {
        "places of the pixels, with all blades."},
       {{.caption = "Grass",
         .rows = {{"blades", "blades"}},
-        .columns = {{"pieces.lawn.tick_ms", "a tick", 2, "ms"},
-                    {"pieces.lawn.tick_p95_ms", "95 of 100 ticks", 2, "ms"},
+        .columns = {{"pieces.lawn.tick_ms", "a tick", 1, "ms"},
+                    {"pieces.lawn.tick_p95_ms", "95 of 100 ticks", 1, "ms"},
                     {"pieces.lawn.draw_ms", "a picture", 1, "ms"},
                     {"pieces.lawn.flip", "FLIP", 1, ""}}}}};
 }

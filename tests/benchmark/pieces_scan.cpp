@@ -114,14 +114,14 @@ ReportPage pieces_scan_page() {
        "rest 2.5 million, blended."},
       {{.caption = "Pictures",
         .rows = {{"discs", "discs"}, {"budget", "points at most, millions"}},
-        .columns = {{"pieces.scan.points", "points", 2, "M"},
+        .columns = {{"pieces.scan.points", "points", 1, "M"},
                     {"pieces.scan.gbuffer_ms", "a picture", 1, "ms"},
                     {"pieces.scan.flip", "FLIP", 1, ""}}},
        {.caption = "Import, and the first picture after opening",
-        .columns = {{"pieces.scan.import_core_mps", "a core", 2, "M points/s"},
+        .columns = {{"pieces.scan.import_core_mps", "a core", 1, "M points/s"},
                     {"pieces.scan.import_seconds", "all", 1, "s"},
                     {"pieces.scan.bytes_per_point", "on the disk, a point", 1, "B"},
-                    {"pieces.scan.first_picture_ms", "first picture", 0, "ms"}}}}};
+                    {"pieces.scan.first_picture_ms", "first picture", 1, "ms"}}}}};
 }
 
 }  // namespace wellspring::test

@@ -63,6 +63,7 @@ void bench_load_seats(BenchReport& report, const BenchOptions& options);
 void bench_load_visitors(BenchReport& report, const BenchOptions& options);
 void bench_pieces_picture(BenchReport& report, const BenchOptions& options);
 void bench_pieces_scan(BenchReport& report, const BenchOptions& options);
+void bench_pieces_splats(BenchReport& report, const BenchOptions& options);
 void bench_pieces_lawn(BenchReport& report, const BenchOptions& options);
 void bench_volume_reconstruct(BenchReport& report, const BenchOptions& options);
 void bench_volume_march(BenchReport& report, const BenchOptions& options);

@@ -367,6 +367,7 @@ std::vector<ReportPage> declared_pages() {
           load_seats_page(),
           pieces_picture_page(),
           pieces_scan_page(),
+          pieces_splats_page(),
           pieces_lawn_page(),
           volume_reconstruct_page(),
           volume_march_page(),

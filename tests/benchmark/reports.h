@@ -40,6 +40,7 @@ ReportPage show_storyteller_page();
 ReportPage show_load_page();
 ReportPage pieces_picture_page();
 ReportPage pieces_scan_page();
+ReportPage pieces_splats_page();
 ReportPage pieces_lawn_page();
 ReportPage volume_reconstruct_page();
 ReportPage volume_march_page();
