@@ -23,9 +23,7 @@ std::span<const PlacedVolume> World::volumes() const { return impl_->volumes; }
 
 void World::place_scans(std::vector<PlacedScan> scans) { impl_->scans = std::move(scans); }
 
-void World::show_scan(int scan, const ScanLook& look) {
-  impl_->scans.at(size_t(scan)).look = look;
-}
+void World::show_scan(int scan, const ScanLook& look) { impl_->scans.at(size_t(scan)).look = look; }
 
 std::span<const PlacedScan> World::scans() const { return impl_->scans; }
 
