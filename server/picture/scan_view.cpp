@@ -18,6 +18,8 @@ namespace {
 
 constexpr size_t moving_points = 1'000'000, settled_points = 2'500'000;
 constexpr int block = 4;              // pixels across whose light is found once
+constexpr int most_normals = 6;       // a block's normal is the mean of so many
+constexpr float least_cosine = 0.5f;  // between a pixel's normal and its block's
 constexpr float least_turn = 0.25f;   // normals of points are noisy: none makes light vanish
 constexpr float least_share = 0.02f;  // a block's that faces or lies otherwise
 constexpr float most_step = 0.04f;    // from a pixel to its block, as a share of the depth
@@ -39,22 +41,29 @@ constexpr std::array<glm::ivec2, 16> nearest_first = {{{2, 2},
                                                        {0, 3}}};
 
 // Leads from the scene to a scan's own frame, in which one metre is 1 / scale of the scene's.
-ScanCamera view_of(const PlacedScan& placed, const View& view, vec2 offset) {
+ScanCamera camera_of(const PlacedScan& placed, const View& view, vec2 offset) {
   const glm::dquat back = glm::conjugate(glm::dquat(placed.turn));
   const auto way = [&](vec3 v) { return vec3(back * dvec3(v)); };
-  ScanCamera from;
-  const dvec3 eye = dvec3(view.position) - dvec3(placed.position);
-  from.eye = back * eye / double(placed.scale);
-  from.right = way(view.right), from.up = way(view.up), from.forward = way(view.forward);
-  from.tan_half_fov = view.tan_half_fov;
-  from.width = view.width, from.height = view.height;
-  from.axis = axis_place(view);
-  from.near = view.near / placed.scale;
-  from.offset = offset;
-  return from;
+  ScanCamera camera = picture::camera_of(view);
+  camera.eye = back * (camera.eye - dvec3(placed.position)) / double(placed.scale);
+  camera.right = way(view.right), camera.up = way(view.up), camera.forward = way(view.forward);
+  camera.near = view.near / placed.scale;
+  camera.offset = offset;
+  return camera;
 }
 
 }  // namespace
+
+ScanCamera camera_of(const View& view) {
+  ScanCamera camera;
+  camera.eye = dvec3(view.position);
+  camera.right = view.right, camera.up = view.up, camera.forward = view.forward;
+  camera.tan_half_fov = view.tan_half_fov;
+  camera.width = view.width, camera.height = view.height;
+  camera.axis = axis_place(view);
+  camera.near = view.near;
+  return camera;
+}
 
 size_t ScanWork::memory_bytes() const {
   size_t sum = 0;
@@ -94,16 +103,16 @@ ScanView::ScanView(const ShownScans& scans, const View& view, vec2 offset, bool 
   work.blocks.resize(work.buffers.size());
   for (const PlacedScan& placed : scans.all()) {
     if (!placed.points) continue;
-    const ScanCamera from = view_of(placed, view, offset);
+    const ScanCamera camera = camera_of(placed, view, offset);
     ChooseSettings choose;
     choose.budget = settled ? settled_points : moving_points;
-    const ChosenNodes chosen = choose_nodes(*placed.points, from, choose);
+    const ChosenNodes chosen = choose_nodes(*placed.points, camera, choose);
     if (chosen.nodes.empty()) continue;
     std::vector<NodePoints> nodes;
     for (const ChosenNode& one : chosen.nodes) nodes.push_back(placed.points->points_of(one.node));
     PointBuffer& buffer = work.buffers[seen_.size()];
-    work.raster.draw(buffer, nodes, from, {.blended = settled});
-    fill_holes(buffer, nodes, from);
+    work.raster.draw(buffer, nodes, camera, {.blended = settled});
+    fill_holes(buffer, nodes, camera);
     Seen seen{&placed, &buffer, placed.position.y + placed.scale * placed.low,
               std::max(placed.scale * (placed.high - placed.low), 1e-6f),
               glm::mat3_cast(placed.turn)};
@@ -124,7 +133,9 @@ vec3 ScanView::normal_at(const Seen& one, int x, int y) const {
   return one.turn * point_normal(word);
 }
 
-// Finds the light at a pixel of every block, the nearest to its middle that shows the scan.
+// Finds the light at a pixel of every block, the nearest to its middle that shows the scan. It
+// faces as a few pixels around do, those that look at the eye the most: on a floor that is seen
+// along itself noise turns single normals away from the eye, and so upside down.
 void ScanView::light_blocks(const StandInLight& light, const Seen& seen,
                             std::vector<LitBlock>& blocks) const {
   const int columns = (view_.width + block - 1) / block, rows = (view_.height + block - 1) / block;
@@ -134,18 +145,26 @@ void ScanView::light_blocks(const StandInLight& light, const Seen& seen,
     for (int column = 0; column < columns; column++) {
       LitBlock& lit = blocks[size_t(row) * size_t(columns) + size_t(column)];
       lit = {};
+      vec3 place(0);
+      float first = 0;
+      int known = 0;
       for (const glm::ivec2 from : nearest_first) {
         const int x = column * block + from.x, y = row * block + from.y;
         if (x >= view_.width || y >= view_.height) continue;
         const float depth =
             seen.buffer->depth[size_t(y) * size_t(view_.width) + size_t(x)] * seen.placed->scale;
         if (!std::isfinite(depth)) continue;
-        lit.normal = normal_at(seen, x, y);
-        const StandInLit found =
-            light.find(view_.position + depth * grid.at(float(x), float(y)), lit.normal);
-        if (found.known) lit.light = found.light, lit.slope = found.slope, lit.depth = depth;
-        break;
+        if (known == 0) first = depth, place = depth * grid.at(float(x), float(y));
+        if (std::abs(depth - first) > most_step * first) continue;
+        const vec3 normal = normal_at(seen, x, y);
+        lit.normal -= normal * dot(normal, glm::normalize(grid.at(float(x), float(y))));
+        if (++known == most_normals) break;
       }
+      const float length = glm::length(lit.normal);
+      if (!(length > 0)) continue;
+      lit.normal /= length;
+      const StandInLit found = light.find(view_.position + place, lit.normal);
+      if (found.known) lit.light = found.light, lit.slope = found.slope, lit.depth = first;
     }
   });
 }
@@ -176,9 +195,11 @@ Lanes3 ScanView::light_at(const Seen& one, int x, int y, const Lanes& depth) con
       share[k] = lit.depth > 0 ? share_x * share_y + least_share : 0;
     }
     const Lanes off = (far - depth) * (1 / most_step) / depth;
-    const Lanes facing = lanes_max(dot(own, normal), all_lanes(least_share));
+    const Lanes cosine = dot(own, normal), facing = lanes_max(cosine, all_lanes(least_share));
+    // A normal that turns away from all around is noise.
+    const Lanes turn = cosine > least_cosine ? 1 + dot(slope, normal - own) : all_lanes(1);
     const Lanes weight = share * facing * facing / (1 + off * off * off * off);
-    sum = sum + light * (weight * lanes_max(1 + dot(slope, normal - own), all_lanes(least_turn)));
+    sum = sum + light * (weight * lanes_max(turn, all_lanes(least_turn)));
     weights += weight;
   }
   const LaneMask known = weights > 0;

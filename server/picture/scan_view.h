@@ -11,11 +11,15 @@
 
 #include "base/simd.h"
 #include "light/kept/stand_in_light.h"
+#include "scan/camera.h"
 #include "scan/draw/draw_points.h"
 #include "world/placed_scan.h"
 #include "world/view.h"
 
 namespace wellspring::picture {
+
+// Returns the camera of a view in the scene's own frame.
+ScanCamera camera_of(const View& view);
 
 // Borrows the scans of a world, and the maps that light them; without these, reflectance is shown
 // as it were captured.

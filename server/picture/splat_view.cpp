@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "frame/tonemap.h"
+#include "picture/scan_view.h"
 
 namespace wellspring::picture {
 namespace {
@@ -24,23 +25,12 @@ std::vector<PlacedSplats> placed_splats(std::span<const PlacedScan> scans) {
   return sets;
 }
 
-ScanCamera view_of(const View& view) {
-  ScanCamera from;
-  from.eye = dvec3(view.position);
-  from.right = view.right, from.up = view.up, from.forward = view.forward;
-  from.tan_half_fov = view.tan_half_fov;
-  from.width = view.width, from.height = view.height;
-  from.axis = axis_place(view);
-  from.near = view.near;
-  return from;
-}
-
 void draw(std::span<const PlacedScan> scans, const View& view, std::span<const float> surface,
           bool by_pixel, SplatDrawer& drawer, SplatPlanes& picture) {
   SplatDrawing settings;
   settings.by_pixel = by_pixel;
   settings.surface = surface;
-  drawer.draw(picture, placed_splats(scans), view_of(view), settings);
+  drawer.draw(picture, placed_splats(scans), camera_of(view), settings);
 }
 
 size_t bytes_of_picture(const SplatPlanes& picture) {

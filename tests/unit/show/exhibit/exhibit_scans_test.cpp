@@ -123,8 +123,8 @@ TEST(ExhibitScans, WhatIsWrongIsNamed) {
   EXPECT_NE(broken.all().find("broken.xyz: line 1"), std::string::npos) << broken.all();
   const Scans missing(cloud("", "none.las"));
   EXPECT_FALSE(missing.problems.empty());
-  const Scans twice(
-      cloud(R"(, "looks": [{"id": "x", "label": {"en": "X"}}, {"id": "x", "label": {"en": "X"}}])"));
+  const Scans twice(cloud(
+      R"(, "looks": [{"id": "x", "label": {"en": "X"}}, {"id": "x", "label": {"en": "X"}}])"));
   EXPECT_NE(twice.all().find("another look 'x'"), std::string::npos) << twice.all();
   const Scans below(cloud(R"(, "up": "-z")"));
   EXPECT_NE(below.all().find("only for splats"), std::string::npos) << below.all();

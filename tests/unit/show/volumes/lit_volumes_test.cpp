@@ -114,11 +114,13 @@ TEST(LitVolumes, AnotherPresetComesWhenItIsMade) {
   room.begin();
   const auto skin = room.world->volumes()[0].look.preset;
   const uint64_t before = room.volumes.arrivals();
-  EXPECT_EQ(room.show({.layer = 1}).preset, skin) << "the one before stays meanwhile";
+  const auto meanwhile = room.show({.layer = 1}).preset;
   room.volumes.wait();
   EXPECT_EQ(room.volumes.arrivals(), before + 1);
   const auto core = room.show({.layer = 1}).preset;
   EXPECT_NE(core, skin);
+  // The thread that makes it may be done at once.
+  EXPECT_TRUE(meanwhile == skin || meanwhile == core) << "the one before stays meanwhile";
   EXPECT_GT(core->table.threshold(), skin->table.threshold());
   EXPECT_EQ(room.show({.layer = 0}).preset, skin) << "what was made is kept";
 }
@@ -127,7 +129,8 @@ TEST(LitVolumes, MixesTwoPresetsAsFarAsBothAreMade) {
   Room room;
   room.begin();
   const PieceChoice both{.layer = 0, .over = 1, .by = Blend::fade, .share = 0.3f};
-  EXPECT_EQ(room.show(both).share, 0);
+  const VolumeLook meanwhile = room.show(both);
+  EXPECT_EQ(meanwhile.share, meanwhile.over ? 0.3f : 0.0f);
   room.volumes.wait();
   const VolumeLook look = room.show(both);
   ASSERT_TRUE(look.over);
