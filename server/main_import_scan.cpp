@@ -58,7 +58,7 @@ void import_scan(const ScanImport& import) {
     sources.push_back({file, [file] { return open_scan(file); }});
   TreeSettings settings;
   settings.unit = import.unit;
-  settings.up = import.up == "x" ? UpAxis::x : import.up == "y" ? UpAxis::y : UpAxis::z;
+  settings.up = up_axis_of(import.up);
   settings.turn = glm::radians(import.turn);
   settings.memory = uint64_t(import.memory) << 20;
   const double began = seconds_now();

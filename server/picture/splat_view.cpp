@@ -80,10 +80,11 @@ void SplatLayer::lay_over(std::span<const PlacedScan> scans, const View& view, f
     draw(scans, view, frame.depth, true, work.drawer, picture_);
   }
   wellspring::scan::lay_over(frame.color, picture_, exposure);
+  const uint32_t object = object_of(scans);
   for (size_t i = 0; i < frame.depth.size(); i++) {
     if (!(picture_.depth[i] < frame.depth[i])) continue;
     frame.depth[i] = picture_.depth[i];
-    frame.object[i] = object_of(scans);
+    frame.object[i] = object;
   }
 }
 

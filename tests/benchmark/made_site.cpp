@@ -113,4 +113,15 @@ std::unique_ptr<scan::PointSource> made_site(uint64_t points) {
   return std::make_unique<Site>(points);
 }
 
+scan::ScanCamera made_site_view() {
+  scan::ScanCamera view;
+  view.eye = dvec3(-9.5, 1.65, 6.5);
+  view.forward = normalize(vec3(0.9f, 0.02f, -0.6f));
+  view.right = normalize(cross(view.forward, vec3(0, 1, 0)));
+  view.up = cross(view.right, view.forward);
+  view.tan_half_fov = std::tan(0.5f * glm::radians(60.0f));
+  view.width = 1280, view.height = 720;
+  return view;
+}
+
 }  // namespace wellspring::test

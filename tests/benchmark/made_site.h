@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "scan/camera.h"
 #include "scan/points.h"
 
 namespace wellspring::test {
@@ -11,5 +12,8 @@ namespace wellspring::test {
 // Gives so many points of its surfaces, as if they were measured from everywhere: evenly spread, in
 // no order, each off by some millimetre. Metres, +Y up; the floor's middle is the origin.
 std::unique_ptr<scan::PointSource> made_site(uint64_t points);
+
+// Returns a view of it from a corner, 1280 x 720.
+scan::ScanCamera made_site_view();
 
 }  // namespace wellspring::test

@@ -20,23 +20,15 @@
 namespace wellspring::test {
 namespace {
 
-constexpr int hall_width = 1280, hall_height = 720;
-
 ScanCamera view_of(const PointTree& tree) {
-  ScanCamera view;
-  view.eye = dvec3(-9.5, 1.65, 6.5) - tree.origin;
-  const vec3 forward = normalize(vec3(0.9f, 0.02f, -0.6f));
-  view.forward = forward;
-  view.right = normalize(cross(forward, vec3(0, 1, 0)));
-  view.up = cross(view.right, forward);
-  view.tan_half_fov = std::tan(0.5f * glm::radians(60.0f));
-  view.width = hall_width, view.height = hall_height;
+  ScanCamera view = made_site_view();
+  view.eye -= tree.origin;
   return view;
 }
 
 Frame frame_of(const PointBuffer& buffer) {
   Frame frame;
-  fit_frame(hall_width, hall_height, frame);
+  fit_frame(buffer.width, buffer.height, frame);
   for (size_t i = 0; i < frame.color.size(); i++)
     frame.color[i] = std::isfinite(buffer.depth[i]) ? captured_color(buffer.color[i]) : vec3(0.1f);
   return frame;

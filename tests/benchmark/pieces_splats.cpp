@@ -15,8 +15,6 @@
 namespace wellspring::test {
 namespace {
 
-constexpr int splats_width = 1280, splats_height = 720;
-
 // Puts a flat, clear splat at each of so many points of the hall, as training leaves them.
 SplatSet made_splats(size_t count) {
   SplatSet set;
@@ -40,20 +38,9 @@ SplatSet made_splats(size_t count) {
   return set;
 }
 
-ScanCamera splats_camera() {
-  ScanCamera view;
-  view.eye = dvec3(-9.5, 1.65, 6.5);
-  view.forward = normalize(vec3(0.9f, 0.02f, -0.6f));
-  view.right = normalize(cross(view.forward, vec3(0, 1, 0)));
-  view.up = cross(view.right, view.forward);
-  view.tan_half_fov = std::tan(0.5f * glm::radians(60.0f));
-  view.width = splats_width, view.height = splats_height;
-  return view;
-}
-
 Frame frame_of(const SplatPlanes& planes) {
   Frame frame;
-  fit_frame(splats_width, splats_height, frame);
+  fit_frame(planes.width, planes.height, frame);
   std::fill(frame.color.begin(), frame.color.end(), vec3(0.1f));
   scan::lay_over(frame.color, planes, 1);
   return frame;
@@ -64,7 +51,7 @@ Frame frame_of(const SplatPlanes& planes) {
 void bench_pieces_splats(BenchReport& report, const BenchOptions& options) {
   std::vector<size_t> counts = {100'000, 300'000, 1'000'000};
   if (options.quick) counts.pop_back();
-  const ScanCamera view = splats_camera();
+  const ScanCamera view = made_site_view();
   for (const size_t count : counts) {
     const ShownSplats shown = make_shown_splats(made_splats(count));
     const PlacedSplats placed{.splats = &shown};

@@ -16,6 +16,13 @@ namespace {
 constexpr float reach_in_sides = 0.85f;  // in sides of the mean square
 constexpr float least_facing = 0.2f;     // cosine between a place's normal and a square's
 
+// Returns the key of a cell, which is not 0.
+uint64_t key_of(glm::ivec3 cell) {
+  constexpr int bits = 21, half = 1 << (bits - 1);
+  auto part = [&](int x) { return uint64_t(uint32_t(x + half) & ((1u << bits) - 1)); };
+  return uint64_t(1) << 63 | part(cell.x) << (2 * bits) | part(cell.y) << bits | part(cell.z);
+}
+
 }  // namespace
 
 StandInLight::StandInLight(const World& world, uint32_t instance, const IlluminationMap& map) {
@@ -47,12 +54,6 @@ StandInLight::StandInLight(const World& world, uint32_t instance, const Illumina
   if (squares.empty()) return;
   reach_ = std::max(reach_in_sides * float(sides / double(squares.size())), 1e-6f);
   sort_into_cells(std::move(squares));
-}
-
-uint64_t StandInLight::key_of(glm::ivec3 cell) const {
-  constexpr int bits = 21, half = 1 << (bits - 1);
-  auto part = [&](int x) { return uint64_t(uint32_t(x + half) & ((1u << bits) - 1)); };
-  return uint64_t(1) << 63 | part(cell.x) << (2 * bits) | part(cell.y) << bits | part(cell.z);
 }
 
 void StandInLight::sort_into_cells(std::vector<Square> squares) {

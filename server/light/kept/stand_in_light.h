@@ -35,7 +35,6 @@ class StandInLight {
     vec3 place{0}, normal{0};
     Side front, back;
   };
-  uint64_t key_of(glm::ivec3 cell) const;
   void sort_into_cells(std::vector<Square> squares);
   void add(const Square& square, vec3 place, vec3 normal, float& weights, StandInLit& sum) const;
 

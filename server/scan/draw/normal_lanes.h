@@ -2,10 +2,11 @@
 // Unpacks octahedral normals of points (NodePoints::normal), eight at a time.
 #pragma once
 #include "base/simd.h"
+#include "scan/tree/octahedral.h"
 
 namespace wellspring::scan {
 
-inline constexpr int no_point_normal = 0x8080;
+inline constexpr int no_point_normal = no_normal;
 
 // Holds places on the unfolded octahedron, -1 to 1.
 struct UnfoldedNormals {

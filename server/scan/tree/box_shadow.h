@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a box hides from an eye (paper on large particle sets, section 4.3.1). The paper projects
-// the box to the picture, takes the convex silhouette of its corners, and compares depths with
-// planes through them. Here is the same in space, so that it needs no picture and holds for what
-// lies behind the eye, too: each edge of the silhouette spans a plane with the eye, and the faces
-// that look at the eye are the depth planes. A convex thing within all planes is hidden.
+// Finds what a box hides from an eye (paper on large particle sets, section 4.3.1). The paper
+// projects the box to the picture, takes the convex silhouette of its corners, and compares depths
+// with planes through them. Here is the same in space, so that it needs no picture and holds for
+// what lies behind the eye, too: each edge of the silhouette spans a plane with the eye, and the
+// faces that look at the eye are the depth planes. A convex thing within all planes is hidden.
 #pragma once
 #include <array>
 

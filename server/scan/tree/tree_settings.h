@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scan/points.h"
@@ -20,6 +21,10 @@ struct TreeSource {
 };
 
 enum class UpAxis : uint8_t { x, y, z };
+// Returns the axis of that name; z for any other.
+inline UpAxis up_axis_of(std::string_view name) {
+  return name == "x" ? UpAxis::x : name == "y" ? UpAxis::y : UpAxis::z;
+}
 
 struct TreeSettings {
   double unit = 0;        // metres of the sources' unit; 0: as each source says

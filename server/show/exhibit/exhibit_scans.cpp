@@ -60,7 +60,7 @@ Mesh open_points(const std::string& path, const std::string& up, double unit, Fi
     piece.points = std::make_shared<PointTree>(open_tree(path));
   } else {
     TreeSettings settings;
-    settings.up = up == "x" ? UpAxis::x : up == "y" ? UpAxis::y : UpAxis::z;
+    settings.up = up_axis_of(up);
     if (up.starts_with('-')) fields.fail("up", "may be below only for splats");
     settings.unit = unit;
     piece.points = std::make_shared<PointTree>(

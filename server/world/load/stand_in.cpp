@@ -5,22 +5,13 @@
 #include <cmath>
 
 #include "image/srgb.h"
+#include "scan/tree/octahedral.h"
 
 namespace wellspring::world {
 namespace {
 
 constexpr float half_side = 0.9f;  // a square's, in distances between points
 constexpr float steps = 65536;     // along a node's cube
-constexpr uint16_t no_normal = 0x8080;
-
-vec3 unfold(uint16_t octahedral) {
-  const vec2 at = vec2(int8_t(octahedral & 0xff), int8_t(octahedral >> 8)) / 127.0f;
-  vec3 normal(at, 1 - std::abs(at.x) - std::abs(at.y));
-  const float over = std::max(-normal.z, 0.0f);
-  normal.x += normal.x < 0 ? over : -over;
-  normal.y += normal.y < 0 ? over : -over;
-  return glm::normalize(normal);
-}
 
 // Adds a rectangle with these half sides.
 void add_rectangle(vec3 place, vec3 along, vec3 across, vec4 color, Mesh& mesh) {
@@ -54,7 +45,7 @@ Mesh make_stand_in(std::span<const NodePoints> nodes) {
       const vec4 color(decode_srgb(uint8_t(code)), decode_srgb(uint8_t(code >> 8)),
                        decode_srgb(uint8_t(code >> 16)), 1);
       if (node.normal[i] != no_normal) {
-        add_square(place, unfold(node.normal[i]), half, color, mesh);
+        add_square(place, decode_octahedral(node.normal[i]), half, color, mesh);
         continue;
       }
       for (const vec3 axis : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)})
