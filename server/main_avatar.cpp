@@ -19,7 +19,7 @@
 #include "base/log.h"
 #include "base/unicode.h"
 #include "frame/picture_file.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/storyteller/story_clip.h"
 
 namespace wellspring::program {

@@ -19,9 +19,9 @@
 #include "light/kept/complete_map.h"
 #include "light/kept/finish_bake.h"
 #include "light/kept/map_file.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/exhibit/exhibit_objects.h"
-#include "show/exhibit/exhibit_volumes.h"
+#include "show/exhibit/pieces/exhibit_volumes.h"
 
 using namespace wellspring;
 using namespace wellspring::program;
@@ -68,7 +68,7 @@ struct Bakery {
   std::string file, light;  // state of the bake, to go on with; finished map
 
   Bakery(const Options& options, const BakeSettings& settings)
-      : exhibit(load_exhibit(options.package)),
+      : exhibit(load_exhibit(options.package, options.cache)),
         key(hash_scene(exhibit.scene)),
         world(exhibit.scene),
         file(options.out),

@@ -9,8 +9,9 @@
 #include "base/log.h"
 #include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_lights.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/exhibit/exhibit_objects.h"
+#include "show/exhibit/pieces/exhibit_scans.h"
 #include "show/house/house.h"
 #include "show/storyteller/recordings.h"
 #include "show/visit/tour.h"
@@ -56,8 +57,10 @@ int main(int argc, char** argv) {
         std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
     if (usable) {
       World world(exhibit.scene);
+      place_scans(exhibit, world);
       check_places(exhibit, world, problems);
       check_sides(exhibit, world, problems);
+      check_lawns(exhibit, world, problems);
       check_light(exhibit, world, problems);
       check_ground(exhibit, world, problems);
       make_tour_roads(exhibit, world, problems);

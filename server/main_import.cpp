@@ -2,8 +2,9 @@
 // Runs `wellspring import picture FILE...`: makes tiled TIFFs with smaller versions inside of
 // pictures of any format that vips reads, for `pieces` of exhibit.json; and `wellspring import
 // volume PATH`: reads a scanned volume, of DICOM by dcm2niix, and puts it into an exhibit; and
-// `wellspring import scan FILE...`: makes a tree of the points of a place or thing. Exit status: 0
-// done, 1 the input is wrong, 2 the command line is wrong.
+// `wellspring import scan FILE...`: makes a tree of the points of a place or thing; and `wellspring
+// import bands PATH`: makes a tiled TIFF of a picture of many bands. Exit status: 0 done, 1 the
+// input is wrong, 2 the command line is wrong.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -16,8 +17,10 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "main_import_bands.h"
 #include "main_import_scan.h"
 #include "main_import_volume.h"
+#include "store/bands/bands.h"
 #include "store/open/open_picture.h"
 #include "volume/format/raw_json.h"
 
@@ -96,6 +99,38 @@ void import_picture(const Options& options, const std::string& file) {
             << ", \"place\": {\"position\": [0, 1.5, 0], \"yaw_deg\": 0}}\n";
 }
 
+void add_band_options(CLI::App& app, BandImport& import) {
+  CLI::App& bands = *app.add_subcommand(
+      "bands", "a picture of many bands, as a tiled TIFF; prints a piece for exhibit.json");
+  bands
+      .add_option("path", import.path,
+                  "NAME.bands.json, a TIFF whose samples or pages are bands, or a folder of a PNG "
+                  "or TIFF for each")
+      ->required();
+  bands.add_option("--out", import.out, "folder for the picture")->capture_default_str();
+  bands.add_option("--name", import.name, "of the picture; without it that of the path");
+  bands.add_option("--width", import.width, "of the picture, in metres")
+      ->check(CLI::Range(0.001, 1000.0));
+  bands.add_option("--bits", import.bits, "of a value: 8 of its square root, or 16 of itself")
+      ->check(CLI::IsMember({8, 16}))
+      ->capture_default_str();
+  bands
+      .add_option("--quality", import.quality,
+                  "of JPEG tiles, which are a third as large; without it nothing else is lost")
+      ->check(CLI::Range(1, 100));
+  bands.add_option("--lamps", import.lamps, "of layers that are proposed")
+      ->delimiter(',')
+      ->capture_default_str();
+  bands.add_flag("--overwrite", import.overwrite, "replace what is there");
+  bands.add_flag_callback(
+      "--schema",
+      [] {
+        std::cout << bands_schema().dump(2) << "\n";
+        throw CLI::Success();
+      },
+      "print the JSON Schema of NAME.bands.json");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -147,9 +182,11 @@ int main(int argc, char** argv) {
       "scan", "points of a place or thing, as a tree that is larger than memory; prints a piece");
   points
       .add_option("files", place.files,
-                  "LAS, LAZ, COPC, EPT, E57, PLY, PTS, XYZ, PCD or glTF; all of one scan")
+                  "LAS, LAZ, COPC, EPT, E57, PLY, PTS, XYZ, PCD or glTF; all of one scan; or a "
+                  ".scanner.json, which scans a scene")
       ->required();
-  points.add_option("--out", place.out, "folder for the tree")->capture_default_str();
+  points.add_option("--out", place.out,
+                    "folder for the tree; the current one, of a .scanner.json its own");
   points.add_option("--name", place.name, "of the tree; without it that of the first file");
   points.add_option("--up", place.up, "axis of the files that points up")
       ->check(CLI::IsMember({"x", "y", "z"}))
@@ -162,6 +199,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();
   points.add_flag("--overwrite", place.overwrite, "replace what is there");
+  BandImport bands;
+  add_band_options(app, bands);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -170,6 +209,7 @@ int main(int argc, char** argv) {
   try {
     if (volume.parsed()) return import_volume(scan), 0;
     if (points.parsed()) return import_scan(place), 0;
+    if (!bands.path.empty()) return import_bands(bands), 0;
     fs::create_directories(options.out);
     for (const std::string& file : options.files) import_picture(options, file);
     return 0;

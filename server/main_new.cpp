@@ -8,7 +8,7 @@
 #include "about/version.h"
 #include "base/log.h"
 #include "show/check/check_scene.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/proposal/new_exhibit.h"
 #include "show/proposal/new_gallery.h"
 

@@ -26,8 +26,9 @@
 #include "light/transport_plan.h"
 #include "light/visible/guides.h"
 #include "show/exhibit/exhibit_lights.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/moving/exhibit_scene.h"
+#include "world/load/lamp.h"
 #include "world/load/scene_load.h"
 #include "world/sky.h"
 #include "world/view.h"
@@ -151,7 +152,7 @@ void check_resources(const Options& o, ivec2 size) {
 
 struct LoadedScene {
   Scene scene;
-  std::vector<char> lamps;  // 1: the exhibit's lamp is on
+  std::vector<LampSwitch> lamps;
   std::optional<Day> day;
   float exposure = 1;
 };
@@ -168,7 +169,7 @@ const SceneKind scene_kinds[] = {
      [](const std::string& path) { return std::filesystem::exists(path + "/exhibit.json"); },
      [](const std::string& path, double time) {
        Exhibit exhibit = load_exhibit(path);
-       std::vector<char> lamps = first_lamps(exhibit);
+       std::vector<LampSwitch> lamps = first_lamps(exhibit);
        std::optional<Day> day = exhibit.day;
        float exposure = float(exhibit.exposure);
        return LoadedScene{make_exhibit_scene(std::move(exhibit), time), lamps, day, exposure};
@@ -194,12 +195,10 @@ LoadedScene load_any_scene(const std::string& path, double time) {
 
 // Applies --lamp, which changes the lamps' first states.
 void apply_lamps(const std::vector<std::string>& orders, const Scene& scene,
-                 std::vector<char>& lamps) {
+                 std::vector<LampSwitch>& lamps) {
   for (const std::string& order : orders) {
     size_t cut = std::min(order.rfind('='), order.size());
-    std::string name = order.substr(0, cut), state = order.substr(cut), names;
-    if (state != "=on" && state != "=off")
-      throw UsageError("--lamp " + order + ": NAME=on or NAME=off expected");
+    std::string name = order.substr(0, cut), names, states;
     size_t found = lamps.size();
     for (size_t i = 0; i < lamps.size(); i++) {
       if (scene.lamps[i].name == nfc(name)) found = i;
@@ -208,7 +207,10 @@ void apply_lamps(const std::vector<std::string>& orders, const Scene& scene,
     if (found == lamps.size())
       throw UsageError("--lamp " + order + ": no such lamp; " +
                        (names.empty() ? "the scene has none" : "there are " + names));
-    lamps[found] = state == "=on";
+    const auto to = find_switch(scene, scene.lamps[found],
+                                order.substr(std::min(cut + 1, order.size())), states);
+    if (!to) throw UsageError("--lamp " + order + ": NAME=STATE expected, of: " + states);
+    lamps[found] = *to;
   }
 }
 

@@ -11,6 +11,9 @@ export const asked_viewpoint = fresh ? asks.get('viewpoint') : null;
 export const asked_story = fresh ? asks.get('story') : null;
 export const asked_group = fresh ? asks.get('group') : null;
 
+// Name of the wall of screens that this visit leads; null: none.
+export const asked_wall = asks.get('wall');
+
 // "local": this page draws the picture; "server": it comes finished; null: nothing is asked.
 export const asked_display = asks.get('display');
 

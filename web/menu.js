@@ -4,6 +4,7 @@ import { read_address } from './address.js';
 import { by_id } from './element.js';
 import { make_hour } from './hour.js';
 import { kept } from './kept.js';
+import { follow_lamps, show_lamps } from './lamps.js';
 import { language_names, translate_page, word } from './words.js';
 
 function button(text, on_click) {
@@ -14,23 +15,8 @@ function button(text, on_click) {
   return element;
 }
 
-// A check box that is read as what it is: on or off.
-function lamp_switch({ name, title, on }, on_change) {
-  const label = document.createElement('label'), input = document.createElement('input'),
-      text = document.createElement('span');
-  label.className = 'switch';
-  input.type = 'checkbox';
-  input.setAttribute('role', 'switch');
-  input.checked = on;
-  input.dataset.lamp = name;
-  input.addEventListener('change', () => on_change(name, input.checked));
-  text.textContent = title || name;
-  label.append(input, text);
-  return label;
-}
-
 // orders: {viewpoint(name), object(id), tour(action, id), story(id), storyteller(fields),
-// lamp(name, on), hour(hour), lang(tag), subtitles(on), attention(share)}
+// lamp(name, on, light), hour(hour), lang(tag), subtitles(on), attention(share)}
 export function make_menu(orders) {
   const menu = by_id('menu'), opener = by_id('menu-button');
   let lang = 'en', before = opener;  // before: what had the focus when it was opened
@@ -106,8 +92,7 @@ export function make_menu(orders) {
         return element;
       }));
       by_id('tellers').hidden = message.storytellers.length < 2;
-      const lamps = message.lamps.map((lamp) => lamp_switch(lamp, orders.lamp));
-      by_id('lamps').replaceChildren(...lamps);
+      show_lamps(by_id('lamps'), message.lamps, orders.lamp);
       by_id('lamps-section').hidden = message.lamps.length === 0;
       hour.welcome(message);
       by_id('languages').replaceChildren(...message.languages.map((tag) => {
@@ -117,8 +102,7 @@ export function make_menu(orders) {
       }));
     },
     state(message) {
-      for (const input of by_id('lamps').querySelectorAll('input'))
-        input.checked = message.lamps?.[input.dataset.lamp] ?? input.checked;
+      follow_lamps(by_id('lamps'), message);
       hour.state(message);
     },
     agent(message) {

@@ -37,10 +37,31 @@ function read_keyframe(buffer, view, header) {
   return good ? { color_bytes, cuts: view.getUint32(32, true), unit, view: seen } : null;
 }
 
-// {frame, seq, time_us, width, height, quality, still, parts, keyframe, around, layer, lens, zoom,
-// payload: Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of one
-// without depth; around: it is a wide one; layer: it is what moves, over what stands still; lens:
-// it is what a glass shows, where things are `zoom` times as large as beside it.
+const sway_bytes = 116;
+
+// Reads how wind moves what a keyframe, or parts of one, show, from `at` on: {columns, rows, unit,
+// time, waves: [{push, wave, rate, phase}], codes: bytes to be inflated}, or null. `before`: bytes
+// of the payload that are something else.
+function read_sway(buffer, view, at, header, before) {
+  if (header < at + sway_bytes) return null;
+  const real = (n) => view.getFloat32(n, true), pair = (n) => [real(n), real(n + 4)];
+  const bytes = view.getUint32(at, true);
+  const [columns, rows] = [at + 4, at + 6].map((n) => view.getUint16(n, true));
+  const unit = real(at + 8), time = view.getFloat64(at + 12, true);
+  const waves = [0, 1, 2, 3].map((i) => at + 20 + 24 * i).map((n) =>
+    ({ push: pair(n), wave: pair(n + 8), rate: real(n + 16), phase: real(n + 20) }));
+  const numbers = waves.flatMap(({ push, wave, rate, phase }) => [...push, ...wave, rate, phase]);
+  if (!columns || !rows || !(unit > 0) || ![unit, time, ...numbers].every(Number.isFinite)
+    || header + before + bytes > buffer.byteLength) return null;
+  const codes = new Uint8Array(buffer, buffer.byteLength - bytes, bytes);
+  return { columns, rows, unit, time, waves, codes };
+}
+
+// {frame, seq, time_us, width, height, quality, still, parts, keyframe, around, layer, sway, lens,
+// zoom, payload: Blob-able bytes}, or null. parts: null of a complete picture; keyframe: null of
+// one without depth; around: it is a wide one; layer: it is what moves, over what stands still;
+// sway: how wind moves it, or null; lens: it is what a glass shows, where things are `zoom` times
+// as large as beside it.
 export function read_picture(buffer) {
   if (buffer.byteLength < 28) return null;
   const view = new DataView(buffer);
@@ -56,6 +77,11 @@ export function read_picture(buffer) {
   const deep = complete && (flags & 4) !== 0;
   const keyframe = deep ? read_keyframe(buffer, view, header) : null;
   if (deep && !keyframe) return null;
+  const sways = (deep || !complete) && (flags & 64) !== 0;
+  const sway = !sways ? null : deep ? read_sway(buffer, view, 116, header, keyframe.color_bytes)
+    : read_sway(buffer, view, 30 + 12 * parts.length, header,
+        parts.reduce((sum, { payload }) => sum + payload.length, 0));
+  if (sways && !sway) return null;
   return {
     frame: view.getUint32(4, true),
     seq: view.getUint32(8, true),
@@ -70,7 +96,9 @@ export function read_picture(buffer) {
     layer: deep && (flags & 16) !== 0,
     lens,
     zoom: lens ? view.getFloat32(28, true) : 1,
-    payload: new Uint8Array(buffer, header),
+    sway,
+    payload: new Uint8Array(buffer, header,
+        buffer.byteLength - header - (sway?.codes.length ?? 0)),
   };
 }
 

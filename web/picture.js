@@ -3,8 +3,12 @@
 // meanwhile is kept, and the parts that came after it.
 import { read_picture } from './packet.js';
 
-/** @param {Blob} blob @returns {Promise<ImageBitmap | HTMLImageElement>} */
-async function decode_jpeg(blob) {
+/**
+ * @param {Uint8Array<ArrayBuffer>} bytes of a JPEG
+ * @returns {Promise<ImageBitmap | HTMLImageElement>}
+ */
+export async function decode_jpeg(bytes) {
+  const blob = new Blob([bytes], { type: 'image/jpeg' });
   if ('createImageBitmap' in window) return createImageBitmap(blob);
   const image = new Image();
   image.src = URL.createObjectURL(blob);
@@ -24,8 +28,6 @@ function copy_of(canvas) {
   return copy;
 }
 
-const decode = (bytes) => decode_jpeg(new Blob([bytes], { type: 'image/jpeg' }));
-
 // on_shown({frame, seq, shown, decoded_ms, ...}) after a picture is on the canvas. shown: false: it
 // could not be decoded.
 export function make_picture(canvas, on_shown) {
@@ -43,7 +45,7 @@ export function make_picture(canvas, on_shown) {
 
   async function show(picture) {
     const pieces = picture.parts ?? [{ x: 0, y: 0, payload: picture.payload }];
-    const bitmaps = await Promise.all(pieces.map((piece) => decode(piece.payload)));
+    const bitmaps = await Promise.all(pieces.map((piece) => decode_jpeg(piece.payload)));
     if (picture.parts) fit(picture.width, picture.height, true);
     else fit(bitmaps[0].width, bitmaps[0].height, false);
     bitmaps.forEach((bitmap, i) => {

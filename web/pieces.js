@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Offers on the card of a piece all that can be done with it: of a very large picture the year of
-// a map, another layer, two of them compared, a glass over it; of a scanned volume see volume.js.
+// a map, another layer, two of them compared, a glass over it; of what was scanned see volume.js.
 import { by_id, element } from './element.js';
 import { make_choice, make_slider } from './piece_choice.js';
 import { as_at_first, make_volume } from './volume.js';
@@ -19,6 +19,7 @@ export function make_pieces(orders, glass, ruler) {
   let changed_at = -settles, held = false, kept = {};
 
   const first = () => shown.layers[0];
+  const has_inside = () => Boolean(shown?.volume ?? shown?.scan);
   const dated = () => shown.layers.every((layer) => layer.year !== undefined);
   const title = (layer) => (layer === first() && !dated() ? word(lang, 'as_it_is') : layer.label);
   const layer_of = (id) => shown.layers.find((layer) => layer.id === id) ?? first();
@@ -113,10 +114,10 @@ export function make_pieces(orders, glass, ruler) {
   function fill() {
     room.replaceChildren();
     room.hidden = !shown;
-    room.classList.toggle('volume', Boolean(shown?.volume));
+    room.classList.toggle('volume', has_inside());
     held = Boolean(glass.held());
     if (!shown) return;
-    if (shown.volume) {
+    if (has_inside()) {
       room.append(...make_volume({ piece: shown, name, lang, choice: () => choice,
         orders: { change, say }, glass, kept }),
       element('div.row', {}, make_ruler_button(), make_reset_button()));
@@ -165,7 +166,7 @@ export function make_pieces(orders, glass, ruler) {
       say(null);
       choice = shown && (state?.pieces?.[shown.id]
         ?? { layer: first().id, over: '', by: 'none', share: 0.5,
-          ...(shown.volume && as_at_first) });
+          ...(has_inside() && as_at_first) });
       kept = {};
       glass.put_down();
       ruler.use(false);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The visitor's page: joins connection, picture, controls and menu.
-import { asked_exhibit, asked_place, asked_story, asked_viewpoint, read_place }
+import { asked_exhibit, asked_place, asked_story, asked_viewpoint, asked_wall, read_place }
   from './address.js';
 import { make_ambience } from './ambience.js';
 import { announce } from './announce.js';
@@ -55,7 +55,7 @@ function note_shown(shown) {
 }
 
 const screen = make_screen(canvas, { on_shown: note_shown,
-  send: (message) => connection?.send(message) });
+  send: (message) => connection?.send(message), calm: () => comfort.leaps() });
 
 const sound = make_sound(by_id('sound-button'), {
   on_wanted: (on) => connection?.send({ type: 'settings', sound: on }),
@@ -77,7 +77,8 @@ const dark = make_leap(canvas);
 const leap = () => dark.begin(seq);
 
 const hello = () => ({ type: 'hello', exhibit, lang, role: 'visitor', parts: true,
-  ...comfort.size(), resume: of_tab.get(visit_key) ?? '', ...screen.hello() });
+  ...comfort.size(), resume: of_tab.get(visit_key) ?? '', ...screen.hello(),
+  ...(asked_wall && { wall: { name: asked_wall }, token: of_tab.get('kiosk-token') ?? '' }) });
 
 // Says which wish of the address is unknown.
 function say_what_is_unknown(message) {
@@ -278,7 +279,7 @@ const menu = make_menu({
   tour: tour_action,
   story: (story) => connection.send({ type: 'storyteller', story }),
   storyteller: (fields) => connection.send({ type: 'storyteller', ...fields }),
-  lamp: (name, on) => connection.send({ type: 'lamp', name, on }),
+  lamp: (name, on, light) => connection.send({ type: 'lamp', name, on, light }),
   hour: (value) => connection.send({ type: 'hour', value }),
   lang(tag) {
     lang = tag;

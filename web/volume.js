@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Offers on the card of a scanned volume all that can be done with it: another preset, one that is
 // unwrapped to another, a turntable, cuts from three sides, a glass that shows another preset or
-// cuts into it.
+// cuts into it. A scanned place is neither unwrapped nor turned; its layers are looks.
 import { element } from './element.js';
 import { make_choice, make_slider } from './piece_choice.js';
 import { say_length } from './ruler.js';
@@ -43,7 +43,8 @@ export function make_volume({ piece, name, lang, choice, orders, glass, kept }) 
   const layer_of = (id) => piece.layers.find((layer) => layer.id === id) ?? piece.layers[0];
   const others = () => piece.layers.filter(({ id }) => id !== choice().layer)
       .map(({ id, label }) => [id, label]);
-  const deepest = Math.max(piece.volume.size[0], piece.volume.size[2]);
+  const { size } = piece.volume ?? piece.scan;
+  const deepest = Math.max(size[0], size[2]);
   const depth_step = 10 ** Math.floor(Math.log10(deepest)) / 20;  // of round numbers
   const in_steps = (metres) => Number((depth_step * Math.ceil(metres / depth_step)).toFixed(6));
 
@@ -135,7 +136,7 @@ export function make_volume({ piece, name, lang, choice, orders, glass, kept }) 
 
   // A nebula has a slider for how its axis leans to the eye; at first it is as it was found.
   function make_tilt() {
-    const { tilt } = piece.volume;
+    const tilt = piece.volume?.tilt;
     if (tilt === undefined) return null;
     return make_valued(word(lang, 'tilt'), most_tilt, 1,
         Math.round(choice().tilt || Math.abs(tilt)), (degrees) => `${degrees}°`,
@@ -164,7 +165,7 @@ export function make_volume({ piece, name, lang, choice, orders, glass, kept }) 
         glass_choice.replaceWith(glass_choice = make_glass_choice());
         scale.replaceWith(scale = make_scale());
       });
-  const several = piece.layers.length > 1;
-  return [several ? layers : null, scale, make_turntable(), make_tilt(), several ? unwrap : null,
-    make_cuts(), glass_choice].filter(Boolean);
+  const several = piece.layers.length > 1, { volume } = piece;
+  return [several ? layers : null, scale, volume ? make_turntable() : null, make_tilt(),
+    several && volume ? unwrap : null, make_cuts(), glass_choice].filter(Boolean);
 }

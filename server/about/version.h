@@ -103,6 +103,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libwebp.", "WebP", "BSD-3-Clause", "WebP pictures"},
     {"libX", "X.Org libraries", "MIT", "for Cairo; not used"},
     {"libxcb", "XCB", "MIT", "for Cairo; not used"},
+    {"libyaml-cpp.", "yaml-cpp", "MIT", "dispersion of glass and gems"},
     {"libz.", "zlib", "Zlib", "compression"},
     {"libzstd.", "Zstandard", "BSD-3-Clause", "light that packages carry"},
     // The rest are headers that are compiled in.

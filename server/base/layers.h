@@ -11,6 +11,7 @@ namespace json {}
 namespace wire {}
 namespace ledger {}
 namespace image {}
+namespace spectrum {}
 namespace store {}
 namespace volume {}
 namespace scan {}
@@ -29,11 +30,16 @@ namespace museum {}
 namespace stream {}
 namespace kiosk {}
 
+namespace spectrum {
+using namespace json;
+}  // namespace spectrum
+
 namespace frame {
 using namespace image;
 }  // namespace frame
 
 namespace store {
+using namespace spectrum;
 using namespace image;
 using namespace json;
 }  // namespace store
@@ -65,6 +71,7 @@ using namespace frame;
 }  // namespace attention
 
 namespace world {
+using namespace spectrum;
 using namespace gltf;
 using namespace image;
 using namespace store;
@@ -74,6 +81,7 @@ using namespace lawn;
 }  // namespace world
 
 namespace light {
+using namespace spectrum;
 using namespace world;
 using namespace store;
 using namespace volume;
@@ -89,6 +97,7 @@ using namespace frame;
 }  // namespace cache
 
 namespace picture {
+using namespace spectrum;
 using namespace cache;
 using namespace denoise;
 using namespace light;
@@ -104,6 +113,7 @@ using namespace json;
 }  // namespace avatar
 
 namespace show {
+using namespace spectrum;
 using namespace picture;
 using namespace store;
 using namespace volume;
@@ -146,6 +156,7 @@ using namespace json;
 using namespace wire;
 using namespace ledger;
 using namespace image;
+using namespace spectrum;
 using namespace store;
 using namespace volume;
 using namespace scan;

@@ -126,6 +126,7 @@ void LawnDrawer::project(const Lawn& lawn, const LawnState& state, const WindNow
   for (int at = 0; at < seen.most; at += lane_count) {
     const size_t first = size_t(tile.begin + at);
     const BladeShapes shapes = eval_shapes(lawn, state, wind, seen.tile, int(first));
+    const BladeSway sway = eval_sway(lawn, int(first), shapes);
     // Which of them the root's depth shows, and how wide.
     const Lanes root_depth =
         lanes_max(dot(shapes.joint[0] - all_lanes(view.eye), forward), all_lanes(least_depth));
@@ -188,9 +189,7 @@ void LawnDrawer::project(const Lawn& lawn, const LawnState& state, const WindNow
         const vec3 n = flip[lane] * normal[k].at(lane);
         const float part = float(k) / segments;
         const vec3 color = mix(lawn.colors.root, tip, std::min(1.5f * part, 1.0f));
-        // Blades are thicker towards the root.
-        const float through = lawn.colors.transmission * (0.5f + 0.5f * part);
-        strip.value[k] = Lanes{n.x, n.y, n.z, color.x, color.y, color.z, part, through};
+        strip.value[k] = Lanes{n.x, n.y, n.z, color.x, color.y, color.z, part, sway.joint[k][lane]};
       }
       const vec3 turn = roundness * edge.at(lane);
       strip.aside = Lanes{turn.x, turn.y, turn.z, 0, 0, 0, 0, 0};
@@ -246,7 +245,7 @@ struct LawnDrawer::Filler {
     std::fill_n(&picture.normal[row], count, vec3(0));
     std::fill_n(&picture.color[row], count, vec3(0));
     std::fill_n(&picture.height_share[row], count, 0.0f);
-    std::fill_n(&picture.transmission[row], count, 0.0f);
+    std::fill_n(&picture.sway[row], count, 0.0f);
     std::fill_n(&picture.coverage[row], count, 0.0f);
   }
 
@@ -284,7 +283,7 @@ struct LawnDrawer::Filler {
       };
       store(picture.depth, some ? load_lanes(&pixels.depth[from]) : all_lanes(no_depth));
       store(picture.height_share, value[6] * scale);
-      store(picture.transmission, value[7] * scale);
+      store(picture.sway, value[7] * scale);
       store(picture.coverage, lanes_min(cover, all_lanes(1)));
     }
   }
@@ -311,7 +310,7 @@ LawnCounts LawnDrawer::draw(const Lawn& lawn, const LawnState& state, const Wind
   picture.width = view.width, picture.height = view.height;
   const size_t size = size_t(view.width) * size_t(view.height);
   picture.depth.resize(size), picture.normal.resize(size), picture.color.resize(size);
-  picture.transmission.resize(size), picture.height_share.resize(size);
+  picture.height_share.resize(size), picture.sway.resize(size);
   picture.coverage.resize(size);
 
   LawnDrawSettings checked = settings;

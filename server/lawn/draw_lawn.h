@@ -44,8 +44,8 @@ struct LawnPicture {
   std::vector<float> depth;         // along the axis, metres; of parts: of the nearer half
   std::vector<vec3> normal;         // unit; towards the eye
   std::vector<vec3> color;          // linear reflectance
-  std::vector<float> transmission;  // share of the light from behind to that from before
   std::vector<float> height_share;  // 0 at the root, 1 at the tip: roots have less light
+  std::vector<float> sway;          // metres that a push of 1 moves it aside (lawn/shape.h)
   std::vector<float> coverage;      // share of the pixel, 0 to 1
 };
 

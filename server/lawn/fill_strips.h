@@ -18,7 +18,7 @@ inline constexpr int bin_width = 64, bin_height = 64;  // pixels
 struct Strip {
   float x[joints], y[joints], inverse[joints], half_x[joints], half_y[joints];
   float unused[4];
-  // Normal, colour, share of the height and transmission at joints; and what they change by from
+  // Normal, colour, share of the height and sway at joints; and what they change by from
   // the middle to the edge to which `half_x` and `half_y` lead.
   Lanes value[joints], aside;
 };

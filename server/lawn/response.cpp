@@ -208,6 +208,7 @@ BladeShapes eval_shapes(const Lawn& lawn, const LawnState& state, const WindNow&
   if (!any_lane(is_bent)) return shapes;
   const Lanes left = lanes_max(lanes_min(1.0f - (age - s.lie) / s.rise, all_lanes(1)), Lanes{});
   const Lanes ease = left * left * left;
+  shapes.free = is_bent ? 1.0f - ease : shapes.free;
   const Lanes stretched = positive_lanes(1.0f - age / s.settle);
   Lanes3 before = shapes.joint[0], joint = before;  // as they are mixed, and with their length
   for (int k = 1; k < joints; k++) {

@@ -2,6 +2,12 @@
 #include "lawn/shape.h"
 
 namespace wellspring::lawn {
+namespace {
+
+// Returns the share of a push that turns a segment: roots are stiff.
+constexpr float stiffness_share(int segment) { return (float(segment) + 0.5f) / segments; }
+
+}  // namespace
 
 BladeShapes eval_wind_shapes(const Lawn& lawn, int first, const WindNow& wind) {
   const size_t at = size_t(first);
@@ -16,11 +22,27 @@ BladeShapes eval_wind_shapes(const Lawn& lawn, int first, const WindNow& wind) {
   const Lanes bend_x = push_x * give - load(lawn.side_z) * droop,
               bend_z = push_z * give + load(lawn.side_x) * droop;
   for (int k = 0; k < segments; k++) {
-    const float share = (float(k) + 0.5f) / segments;  // roots are stiff
+    const float share = stiffness_share(k);
     const Lanes3 way = {grow.x + bend_x * share, grow.y, grow.z + bend_z * share};
     shapes.joint[k + 1] = shapes.joint[k] + unit_lanes(way) * shapes.length;
   }
   return shapes;
+}
+
+BladeSway eval_sway(const Lawn& lawn, int first, const BladeShapes& shapes) {
+  const size_t at = size_t(first);
+  const Lanes give = load_lanes(&lawn.give[at]);
+  // A segment's way has the height that the blade grows up, so its length follows from its slope.
+  const Lanes grow_up = lanes_max(load_lanes(&lawn.grow_y[at]), all_lanes(0.1f));
+  BladeSway sway;
+  sway.joint[0] = Lanes{};
+  for (int k = 0; k < segments; k++) {
+    const Lanes up = positive_lanes(unit_lanes(shapes.joint[k + 1] - shapes.joint[k]).y);
+    const Lanes aside = 0.5f * (1.0f + up * up);  // share of a push that is across the segment
+    sway.joint[k + 1] = sway.joint[k] + stiffness_share(k) * give * shapes.free * shapes.length *
+                                            up * aside / grow_up;
+  }
+  return sway;
 }
 
 }  // namespace wellspring::lawn

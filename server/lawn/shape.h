@@ -7,15 +7,23 @@
 
 namespace wellspring::lawn {
 
-// Holds the joints of eight strips from root to tip; `length` is that of a segment.
+// Holds the joints of eight strips from root to tip; `length` is that of a segment, `free` the
+// share that wind has in where they are: 0 while they lie, 1 where nothing has touched them.
 struct BladeShapes {
   Lanes3 joint[joints];
-  Lanes length{};
+  Lanes length{}, free = all_lanes(1);
 };
 
 // Returns how wind alone bends the blades from `first` on, a multiple of eight. Segments turn and
 // keep their length.
 BladeShapes eval_wind_shapes(const Lawn& lawn, int first, const WindNow& wind);
+
+// Returns how far wind moves joints from where they are: metres aside for a push of 1, as far as
+// that is linear, in the mean of all directions.
+struct BladeSway {
+  Lanes joint[joints];
+};
+BladeSway eval_sway(const Lawn& lawn, int first, const BladeShapes& shapes);
 
 // Returns unit vectors; (0, 1, 0) for what has no length.
 inline Lanes3 unit_lanes(const Lanes3& v) {

@@ -52,7 +52,11 @@ struct Sample {
   vec3 known{1};
   float raised = 0;  // light that `known` has beyond the map's; `smooth` counts it, too
   uint8_t flags = 0;
-  vec3 radiance() const { return albedo * max(smooth * known - vec3(raised), vec3(0)) + rest; }
+  // Light is not below zero but for hues beyond a display's (light/material/wavelengths.h), which
+  // mix in the mean.
+  vec3 radiance() const {
+    return albedo * max(smooth * known - vec3(raised), min(smooth, vec3(0))) + rest;
+  }
 };
 
 }  // namespace wellspring::light

@@ -10,7 +10,7 @@ namespace {
 constexpr const char* names[] = {
     "area lights",     "light tree", "emission pictures", "punctual lights", "environment",
     "environment map", "panes",      "refraction",        "absorption",      "dispersion",
-    "coats",           "caustics",   "kept light",        "dynamic lights"};
+    "spectra",         "coats",      "caustics",          "kept light",      "dynamic lights"};
 static_assert(std::size(names) == transport_parts);
 
 // Holds what the decisions are made from.
@@ -191,6 +191,11 @@ void decide_materials(Deciding& d) {
   d.by_material(dispersion, &MaterialUse::disperses, "splits colours",
                 "nothing splits colours: walks have no wavelength",
                 [](const Material& m) { return m.dispersion > 0; });
+  d.by_material(
+      spectra, &MaterialUse::spectral, "known by wavelength",
+      "no surface is known by wavelength: three colours are all, and a lamp's are those of "
+      "its light",
+      [](const Material& m) { return knows_wavelengths(m); });
   d.by_material(
       coats, &MaterialUse::coated, "clearcoat or sheen", "no clearcoat, no sheen",
       [](const Material& m) { return m.clearcoat > 0 || max_component(m.sheen_color) > 0; });

@@ -29,6 +29,7 @@ enum class TransportPart : uint8_t {
   refraction,              // solids with an inside; else no walk asks what it runs in
   absorption,              // solids that tint light inside; else none is tinted
   dispersion,              // solids that bend wavelengths apart; else no walk has a wavelength
+  spectra,                 // light and surfaces known by wavelength; else three colours are all
   coats,                   // clearcoat or sheen over the base
   caustics,                // light from a specular thing onto a rough one: photons
   kept_light,              // results may persist: what stands still, lit by what stands still

@@ -19,7 +19,7 @@
 #include "museum/upkeep.h"
 #include "show/answer/come_back.h"
 #include "show/check/check_scene.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/house/house.h"
 #include "show/state/renderer.h"
 #include "show/state/make_show.h"
@@ -231,7 +231,7 @@ struct Museum::Impl {
 
   // Loads, checks and lights an exhibit, ready to be ticked. The first one reads the house file.
   std::unique_ptr<Show> prepare(const std::string& id, bool is_first) const {
-    Exhibit exhibit = load_exhibit(settings.content + "/" + id);
+    Exhibit exhibit = load_exhibit(settings.content + "/" + id, settings.recordings.cache);
     read_recordings_or_fail(exhibit, settings.recordings);
     ShowSettings own = settings.show;
     own.cache = settings.recordings.cache;

@@ -189,7 +189,7 @@ bool Reception::place(std::shared_ptr<Link>& link, Heard heard, size_t door,
   const double pixels = std::min(double(hello.width) * hello.height, settings_.most_pixels);
   const SeatSize size(pixels, hello.display == "local");
   std::unique_ptr<Seat> seat;
-  if (hello.role == "kiosk") seat = capacity_->give_seat(size);
+  if (hello.role == "kiosk" || hello.wall) seat = capacity_->give_seat(size);
   else if (queue_.size() == 0) seat = capacity_->find_seat(size, link->address);
   if (seat) {
     link->put_back(std::move(heard));

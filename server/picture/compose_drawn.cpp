@@ -11,7 +11,7 @@
 #include "picture/drawn_planes.h"
 #include "picture/drawn_run.h"
 #include "picture/laid_view.h"
-#include "picture/pixel_light.h"
+#include "picture/cells/pixel_light.h"
 #include "picture/soften_edges.h"
 
 namespace wellspring::picture {

@@ -80,6 +80,30 @@ void put_lanes(const Keyframe& keyframe, const Lanes3& added, size_t at, int cou
   for (int k = 0; k < count; k++) peaks[at + size_t(k)] = uint8_t(peak[k]);
 }
 
+// Lays grass over pixels of a window whose surfaces, still and moving, are not nearer.
+void lay_grass_over(const GrassView& grass, const PictureWindow& window, const Tonemap& tonemap,
+                    std::span<const float> still, std::span<const float> moving, Image8& image) {
+  parallel_ranges(window.height, 4, [&](int begin, int end) {
+    for (int y = window.top + begin; y < window.top + end; y++)
+      for (int x = window.left; x < window.left + window.width; x += lane_count) {
+        if (!grass.shows(x, y, lane_count)) continue;
+        const SeenLawn seen = grass.look(x, y);
+        const int count = std::min(lane_count, window.left + window.width - x);
+        for (int k = 0; k < count; k++) {
+          const size_t i = size_t(y) * size_t(image.width) + size_t(x + k);
+          const float nearest = std::max(still[i], moving[i]);
+          if (!(seen.cover[k] > 0) || !(seen.depth[k] * nearest < 1)) continue;
+          uint8_t* rgb = &image.rgb[3 * i];
+          const vec3 behind = light_of(uint32_t(rgb[0] | rgb[1] << 8 | rgb[2] << 16));
+          const vec3 light = (1 - seen.cover[k]) * behind + tonemap.exposure * seen.light.at(k);
+          uint8_t bytes[3 * lane_count];
+          store_pixels(bytes, eval_tone_curve(all_lanes(light)));
+          std::copy_n(bytes, 3, rgb);
+        }
+      }
+  });
+}
+
 }  // namespace
 
 void relight(const Keyframe& keyframe, const BackdropLight& backdrop, const Tonemap& tonemap,
@@ -165,7 +189,9 @@ void Compositor::draw_laid(RenderCache& cache, const View& view, const Compose& 
   draw(cache, view, [&](float) {
     KeptLight kept = kept_;
     std::optional<LaidView> laid;
-    if (!laid_.empty()) kept.laid = &laid.emplace(laid_, view, vec2(0.5f), false, 0, work_->laid);
+    if (!laid_.empty())
+      kept.laid = &laid.emplace(laid_, view, vec2(0.5f), false, 0, work_->laid,
+                                std::span<const float>(), kept.dynamic);
     compose(kept);
   });
 }
@@ -184,12 +210,12 @@ void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass
                       const Tonemap& tonemap, Image8& image, std::vector<float>* depth) {
   if (!cache.has_projected(view)) cache.project(view);
   begin(cache);
-  const std::span<const PlacedScan> scans = laid_.scans.all();
-  if (!depth && has_splats(scans)) depth = &work_->depth;
+  const bool splats = has_splats(laid_.scans.all());
+  if (!depth && splats) depth = &work_->depth;
   draw_laid(cache, view, [&](const KeptLight& kept) {
     compose_drawn(view, visibility, cells_, known_, work_->light, kept, tonemap, work_->peaks,
                   image, depth);
-    if (has_splats(scans)) lay_splats_over(scans, view, work_->laid.splats, image, *depth);
+    if (splats) lay_splats_over(laid_.scans, view, work_->laid.splats, image, *depth);
   });
 }
 
@@ -246,22 +272,35 @@ void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
                              MovingPicture& picture) {
   const View& view = backdrop.view;
   const PictureWindow all{0, 0, view.width, view.height}, moves = moving_window(world, view);
+  const PictureWindow sways = sways_ ? lawn_window(laid_.lawns, view) : PictureWindow{};
   MovingLayer& layer = picture.layer;
   picture.view = view;
-  picture.window = relit ? all : in_layer ? PictureWindow{} : moves;
+  picture.window = relit ? all : in_layer ? sways : joined(moves, sways);
   layer.window = in_layer ? moves : PictureWindow{};
   if (relit) relight(backdrop, *relit, tonemap, work.picture, work.peaks);
-  if (relit && in_layer) take_window(work.picture, all, picture.rgb);
-  if (!moves.empty()) {
-    const PictureWindow runs = whole_runs(moves, view);
-    if (!relit) {
-      copy_colors(backdrop, runs, work.picture);
-      guess_peaks(work.picture, runs, work.peaks);
-    }
-    still_.count.resize(backdrop.disparity.size(), 0);
-    work.disparity.assign(in_layer ? backdrop.disparity.size() : 0, 0.0f);
-    compose_moving(view, visibility, runs, tonemap, backdrop.disparity, still_.count, kept_, work);
+  if (const PictureWindow some = joined(moves, sways); !relit && !some.empty()) {
+    const PictureWindow runs = whole_runs(some, view);
+    copy_colors(backdrop, runs, work.picture);
+    guess_peaks(work.picture, runs, work.peaks);
   }
+  work.disparity.assign(in_layer || !sways.empty() ? backdrop.disparity.size() : 0, 0.0f);
+  auto lay_grass = [&] {
+    if (sways.empty()) return;
+    const GrassView grass(laid_.lawns, {&world, laid_.scans.lights, kept_.dynamic}, view,
+                          vec2(0.5f), {}, work_->laid.lawns);
+    if (grass.any())
+      lay_grass_over(grass, sways, tonemap, backdrop.disparity, work.disparity, work.picture);
+  };
+  if (in_layer) lay_grass();
+  picture.sway = {};
+  if (in_layer && !relit && !sways.empty()) picture.sway = find_sway(backdrop);
+  if (in_layer && !picture.empty()) take_window(work.picture, picture.window, picture.rgb);
+  if (!moves.empty()) {
+    still_.count.resize(backdrop.disparity.size(), 0);
+    compose_moving(view, visibility, whole_runs(moves, view), tonemap, backdrop.disparity,
+                   still_.count, kept_, work);
+  }
+  if (!in_layer) lay_grass();
   if (!in_layer && !picture.empty()) take_window(work.picture, picture.window, picture.rgb);
   if (layer.window.empty()) return;
   take_window(work.picture, layer.window, layer.rgb);

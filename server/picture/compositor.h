@@ -12,11 +12,11 @@
 #include "frame/tonemap.h"
 #include "light/virtual/dynamic_image.h"
 #include "light/visible/visibility.h"
-#include "picture/cells.h"
+#include "picture/cells/cells.h"
 #include "picture/compose_drawn.h"
 #include "picture/keyframe.h"
 #include "picture/still/still_samples.h"
-#include "picture/surface_image.h"
+#include "picture/cells/surface_image.h"
 #include "picture/laid_view.h"
 
 namespace wellspring::picture {
@@ -52,7 +52,7 @@ enum class StillShows : uint8_t { all, backdrop };  // backdrop: all that does n
 // Holds memory that is needed only while a picture is drawn. Compositors that are never at work at
 // the same time may share it.
 struct CompositorWork {
-  Frame light;                 // packed (picture/surface_image.h)
+  Frame light;                 // packed (picture/cells/surface_image.h)
   std::vector<uint8_t> peaks;  // light beyond white of a picture for the eye
   std::vector<float> shares;   // shares of means in a picture at rest (mix_in_means())
   LaidWork laid;
@@ -90,9 +90,17 @@ class Compositor {
   // pixels each time.
   void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                   Frame& frame, StillShows shows = StillShows::all);
-  // Lays them over a picture at rest, the better the more often it is done for a view.
-  void lay_over_still(const View& view, Frame& frame) {
-    layer_.lay_over(laid_, view, 1, work_->laid, frame);
+  // Lays them over a picture at rest, the better the more often it is done for a view. `sways`:
+  // lawns move, so that they are left to draw_moving().
+  void lay_over_still(const View& view, Frame& frame, bool sways = false) {
+    sways_ = sways;
+    LaidThings things = laid_;
+    if (sways) things.lawns = {};
+    layer_.lay_over(things, view, 1, work_->laid, frame);
+  }
+  // Lays scans over what lights that move light of the keyframe.
+  void lay_over_backdrop(const Keyframe& keyframe, BackdropSurfaces& backdrop) {
+    lay_scans_over(laid_.scans, keyframe, work_->laid.scans, backdrop);
   }
   // Forgets the samples of pixels at which RenderCache::remember(), called before at rest, has
   // found changed light since the last picture.
@@ -109,13 +117,20 @@ class Compositor {
   // too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
   // Draws what moves, as the world is now, to be laid over the last draw_still() without it, whose
-  // keyframe is `backdrop`; in the light that is kept on its skin, and that of set_dynamic(). Needs
+  // keyframe is `backdrop`; in the light that is kept on its skin, and that of set_dynamic(); and
+  // lawns that the last lay_over_still() left out, which never go into a layer. Needs
   // visibility.rasterises(backdrop.view) and set_skin(). The picture is empty if nothing that moves
   // shows. `relit`: unless null, all of the picture is drawn, the backdrop with that light.
   // `in_layer`: what moves goes into the picture's layer instead.
   void draw_moving(const World& world, const Keyframe& backdrop, const BackdropLight* relit,
                    const VisibilityPass& visibility, const Tonemap& tonemap, bool in_layer,
                    MovingLight& work, MovingPicture& picture);
+
+  // Returns how wind moves the grass of the picture that draw() has just made, which is now a
+  // keyframe.
+  SwayImage find_sway(const Keyframe& keyframe) const {
+    return picture::find_sway(laid_.lawns, work_->laid.lawns, keyframe);
+  }
 
   // Returns the samples that the pixels of a view at rest have had; empty before.
   const StillSamples& samples() const { return samples_; }
@@ -142,6 +157,7 @@ class Compositor {
   View sampled_;  // the view of samples_
   LaidThings laid_;
   LaidLayer layer_;
+  bool sways_ = false;  // lawns are not in the picture at rest
   bool reconstructed_ = false;
   uint64_t projection_ = 0;  // RenderCache::projection() of the means that are kept
   uint32_t pictures_ = 0;

@@ -5,7 +5,7 @@
 
 #include "frame/frame.h"
 #include "frame/tonemap.h"
-#include "picture/pixel_light.h"
+#include "picture/cells/pixel_light.h"
 
 namespace wellspring::picture {
 
@@ -134,7 +134,7 @@ struct EyePlanes {
   }
 };
 
-// Reads the points of eight pixels of a picture, as picture/surface_image.h packs them.
+// Reads the points of eight pixels of a picture, as picture/cells/surface_image.h packs them.
 
 struct OwnLight {
   LaneBits plane[surface_planes];

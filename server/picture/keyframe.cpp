@@ -143,7 +143,7 @@ void make_keyframe(const View& view, const Image8& picture, std::span<const floa
       depth.size() != width * height)
     throw std::invalid_argument("make_keyframe: picture and depth are not of the view's size");
   Keyframe& k = keyframe;
-  k.view = view;
+  k.view = view, k.sway = {};
   k.color.resize(width * height + 1);
   k.disparity.resize(width * height + 1);
   k.columns = (view.width + Keyframe::block - 1) / Keyframe::block;
@@ -169,7 +169,8 @@ void make_keyframe(const View& view, const Image8& picture, std::span<const floa
 }
 
 size_t memory_bytes(const Keyframe& keyframe) {
-  return bytes_of(keyframe.color, keyframe.disparity, keyframe.farthest, keyframe.nearest);
+  return bytes_of(keyframe.color, keyframe.disparity, keyframe.farthest, keyframe.nearest,
+                  keyframe.sway.code);
 }
 
 namespace {
@@ -210,7 +211,7 @@ int whole(float v, int most) { return int(std::clamp(v, 0.0f, float(most))); }
 }  // namespace
 
 size_t memory_bytes(const MovingPicture& picture) {
-  return bytes_of(picture.rgb, picture.layer.rgb, picture.layer.disparity);
+  return bytes_of(picture.rgb, picture.layer.rgb, picture.layer.disparity, picture.sway.code);
 }
 size_t memory_bytes(const MovingLight& light) {
   return bytes_of(light.picture.rgb, light.peaks, light.disparity);
@@ -249,8 +250,12 @@ PictureWindow window_of(const Extent& extent, const View& view) {
 
 }  // namespace
 
-PictureWindow window_around(std::span<const vec3> places, const View& view) {
-  const Extent extent = extent_of(places, view);
+PictureWindow window_around(const Bounds& box, const View& view) {
+  vec3 corners[8];
+  for (int i = 0; i < 8; i++)
+    corners[i] = {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
+                  i & 4 ? box.high.z : box.low.z};
+  const Extent extent = extent_of(corners, view);
   if (extent.ahead() && extent.behind) return {0, 0, view.width, view.height};
   return window_of(extent, view);
 }
@@ -266,6 +271,16 @@ PictureWindow moving_window(const World& world, const View& view) {
     extent.add(of_mesh);
   }
   return window_of(extent, view);
+}
+
+PictureWindow joined(const PictureWindow& a, const PictureWindow& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  PictureWindow both;
+  both.left = std::min(a.left, b.left), both.top = std::min(a.top, b.top);
+  both.width = std::max(a.left + a.width, b.left + b.width) - both.left;
+  both.height = std::max(a.top + a.height, b.top + b.height) - both.top;
+  return both;
 }
 
 PictureWindow whole_runs(const PictureWindow& window, const View& view) {

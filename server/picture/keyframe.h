@@ -10,7 +10,8 @@
 #include "frame/frame.h"
 #include "frame/tonemap.h"
 #include "light/visible/visibility.h"
-#include "picture/cells.h"
+#include "picture/cells/cells.h"
+#include "picture/sway_image.h"
 #include "world/view.h"
 
 namespace wellspring::picture {
@@ -29,6 +30,7 @@ struct Keyframe {
   // around them.
   int columns = 0, rows = 0;
   std::vector<float> farthest, nearest;
+  SwayImage sway;  // empty unless it is asked for
 
   bool empty() const { return color.empty(); }
 };
@@ -78,6 +80,7 @@ struct MovingPicture {
   PictureWindow window;
   std::vector<uint8_t> rgb;  // colours of the window, row after row
   MovingLayer layer;  // moving meshes, if a layer is asked for: they are not in the window then
+  SwayImage sway;     // the sway of the grass in the window, if a layer is asked for
   bool empty() const { return window.empty(); }
 };
 size_t memory_bytes(const MovingPicture& picture);
@@ -97,9 +100,11 @@ size_t memory_bytes(const MovingLight& light);
 // Returns the window of `view` in which visible moving meshes of the world may show, with a margin
 // that edges reach; it is empty if they show nowhere.
 PictureWindow moving_window(const World& world, const View& view);
-// Returns the window in which a shape that these corners span may show, in the same way; all of the
-// picture if it reaches behind the eye.
-PictureWindow window_around(std::span<const vec3> places, const View& view);
+// Returns the window in which a box may show, in the same way; all of the picture if it reaches
+// behind the eye.
+PictureWindow window_around(const Bounds& box, const View& view);
+// Returns the least window around both.
+PictureWindow joined(const PictureWindow& a, const PictureWindow& b);
 // Returns the window widened to whole runs of Raster.
 PictureWindow whole_runs(const PictureWindow& window, const View& view);
 

@@ -18,32 +18,51 @@ constexpr uint32_t most_pictures = 64;  // whose mean is shown at rest
 // Returns the part of the picture around all that may show something.
 PictureWindow window_of(const LaidThings& things, const View& view) {
   const bool points = std::ranges::any_of(
-      things.scans.all(), [](const PlacedScan& placed) { return placed.points != nullptr; });
-  if (!points) return VolumeView(things.volumes, view, true, 0).window();
+      things.scans.all(), [](const PlacedScan& placed) { return !placed.sets.empty(); });
+  if (!points)
+    return joined(VolumeView(things.volumes, view, true, 0).window(),
+                  lawn_window(things.lawns, view));
   return {0, 0, view.width, view.height};
 }
 
 }  // namespace
 
 LaidView::LaidView(const LaidThings& things, const View& view, vec2 offset, bool settled,
-                   uint32_t turn, LaidWork& work)
+                   uint32_t turn, LaidWork& work, std::span<const float> before,
+                   const DynamicImage* dynamic)
     : view_(view),
       offset_(offset),
       volumes_(things.volumes, view, settled, turn),
-      scans_(things.scans, view, offset, settled, work.scans) {}
+      scans_(things.scans, view, offset, settled, work.scans, dynamic),
+      grass_(things.lawns, {things.scans.world, things.scans.lights, dynamic}, view, offset, before,
+             work.lawns) {}
+
+namespace {
+
+// Lays `cover` of something opaque, whose light is already times that, behind what is laid.
+void add_behind(const LaneMask& which, const Lanes3& light, const Lanes& cover, const Lanes& depth,
+                const LaneBits& object, Laid& laid) {
+  laid.light = laid.light + light * keep_lanes(which, laid.clear);
+  const LaneMask first = which & (cover >= 0.5f) & (laid.depth > depth);
+  laid.depth = first ? depth : laid.depth;
+  laid.object = first ? object : laid.object;
+  laid.clear *= 1.0f - keep_lanes(which, cover);
+}
+
+}  // namespace
 
 Laid LaidView::look(int x, int y, const Lanes& surface) const {
   const SeenScan scan = scans_.any() ? scans_.look(x, y) : SeenScan{};
   const LaneMask near = scan.depth < surface;
+  const Lanes solid = near ? scan.depth : surface;
+  const bool grows = grass_.shows(x, y, lane_count);
+  const SeenLawn grass = grows ? grass_.look(x, y) : SeenLawn{};
+  const LaneMask grown = grass.depth < solid;
   Laid laid;
   if (volumes_.shows(x, y, lane_count))
-    laid = volumes_.look(x, y, offset_, near ? scan.depth : surface);
-  const Lanes through = keep_lanes(near, laid.clear);
-  laid.light = laid.light + scan.light * through;
-  const LaneMask behind = near & (laid.depth > scan.depth);
-  laid.depth = behind ? scan.depth : laid.depth;
-  laid.object = behind ? scan.object : laid.object;
-  laid.clear = keep_lanes(~near, laid.clear);
+    laid = volumes_.look(x, y, offset_, grown & (grass.cover >= 0.5f) ? grass.depth : solid);
+  if (grows) add_behind(grown, grass.light, grass.cover, grass.depth, grass.object, laid);
+  add_behind(near, scan.light, all_lanes(1), scan.depth, scan.object, laid);
   return laid;
 }
 
@@ -65,11 +84,16 @@ bool LaidLayer::begins(const LaidThings& things, const View& view) {
   for (const PlacedVolume& placed : things.volumes)
     looks.push_back(placed.look), arrivals += placed.shown().arrivals();
   for (const PlacedScan& placed : things.scans.all()) scan_looks.push_back(placed.look);
-  if (view == view_ && looks == looks_ && scan_looks == scan_looks_ && arrivals == arrivals_ &&
-      things.scans.maps == maps_)
+  std::vector<std::pair<std::shared_ptr<const LawnLight>, uint64_t>> lawns;
+  for (const ShownLawn& shown : things.lawns) lawns.emplace_back(shown.light, shown.moment);
+  const Bounds moving = things.moving();
+  if (!has_moved(moving_, moving) && view == view_ && looks == looks_ &&
+      scan_looks == scan_looks_ && arrivals == arrivals_ && things.scans.maps == maps_ &&
+      lawns == lawns_)
     return false;
   view_ = view, looks_ = std::move(looks), scan_looks_ = std::move(scan_looks);
-  arrivals_ = arrivals, maps_ = things.scans.maps, pictures_ = 0;
+  moving_ = moving, arrivals_ = arrivals, maps_ = things.scans.maps;
+  lawns_ = std::move(lawns), pictures_ = 0;
   return true;
 }
 
@@ -117,11 +141,14 @@ void LaidLayer::lay_over(const LaidThings& things, const View& view, int places,
     splats_.forget();
   }
   if (!window_.empty()) {
+    const std::span<const float> before =
+        places > 1 ? std::span<const float>(frame.depth) : std::span<const float>();
     for (; places > 0 && pictures_ < most_pictures; places--, pictures_++)
-      add(LaidView(things, view, spread_in_pixel(int(pictures_)), true, pictures_, work), frame);
+      add(LaidView(things, view, spread_in_pixel(int(pictures_)), true, pictures_, work, before),
+          frame);
     lay_mean_over(frame);
   }
-  splats_.lay_over(things.scans.all(), view, things.exposure, work.splats, frame);
+  splats_.lay_over(things.scans, view, things.exposure, work.splats, frame);
 }
 
 size_t LaidLayer::memory_bytes() const {

@@ -2,14 +2,16 @@
 #include "picture/scan_view.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "light/visible/surface_buffer.h"
+#include "picture/keyframe.h"
 #include "scan/draw/fill_holes.h"
 #include "scan/draw/point_colors.h"
+#include "scan/draw/spheres.h"
 #include "scan/tree/choose_nodes.h"
 #include "scan/tree/point_tree.h"
 
@@ -17,38 +19,21 @@ namespace wellspring::picture {
 namespace {
 
 constexpr size_t moving_points = 1'000'000, settled_points = 2'500'000;
-constexpr int block = 4;              // pixels across whose light is found once
-constexpr int most_normals = 6;       // a block's normal is the mean of so many
-constexpr float least_cosine = 0.5f;  // between a pixel's normal and its block's
-constexpr float least_turn = 0.25f;   // normals of points are noisy: none makes light vanish
-constexpr float least_share = 0.02f;  // a block's that faces or lies otherwise
-constexpr float most_step = 0.04f;    // from a pixel to its block, as a share of the depth
-constexpr std::array<glm::ivec2, 16> nearest_first = {{{2, 2},
-                                                       {1, 1},
-                                                       {2, 1},
-                                                       {1, 2},
-                                                       {3, 2},
-                                                       {2, 3},
-                                                       {0, 1},
-                                                       {1, 0},
-                                                       {3, 1},
-                                                       {1, 3},
-                                                       {0, 2},
-                                                       {2, 0},
-                                                       {3, 3},
-                                                       {0, 0},
-                                                       {3, 0},
-                                                       {0, 3}}};
+// Spheres are opaque: those behind cells that are so opaque are not drawn.
+constexpr float opaque_cell = 0.9f;
 
 // Leads from the scene to a scan's own frame, in which one metre is 1 / scale of the scene's.
-ScanCamera camera_of(const PlacedScan& placed, const View& view, vec2 offset) {
+ScanCamera camera_of(const PlacedScan& placed, const dvec3& zero, const View& view, vec2 offset) {
   const glm::dquat back = glm::conjugate(glm::dquat(placed.turn));
   const auto way = [&](vec3 v) { return vec3(back * dvec3(v)); };
   ScanCamera camera = picture::camera_of(view);
-  camera.eye = back * (camera.eye - dvec3(placed.position)) / double(placed.scale);
+  camera.eye = back * (camera.eye - dvec3(placed.position)) / double(placed.scale) - zero;
   camera.right = way(view.right), camera.up = way(view.up), camera.forward = way(view.forward);
   camera.near = view.near / placed.scale;
   camera.offset = offset;
+  for (const ScanCut& cut : placed.look.cuts)
+    camera.cuts.push_back(
+        {way(cut.normal), (cut.offset - dot(cut.normal, placed.position)) / placed.scale});
   return camera;
 }
 
@@ -65,13 +50,26 @@ ScanCamera camera_of(const View& view) {
   return camera;
 }
 
+PictureWindow shaded_window(const MovingShade& shade, const View& view) {
+  return shade.any() ? window_around(shade.bounds(), view) : PictureWindow{};
+}
+
+bool has_moved(const Bounds& before, const Bounds& now) {
+  constexpr float sways = 0.25f;  // metres
+  // Nothing moves where low is above high, infinite both.
+  return !(before.low == now.low && before.high == now.high) &&
+         !(max_component(glm::abs(before.low - now.low)) < sways &&
+           max_component(glm::abs(before.high - now.high)) < sways);
+}
+
 size_t ScanWork::memory_bytes() const {
-  size_t sum = 0;
+  size_t sum = raster.memory_bytes();
   for (const PointBuffer& one : buffers)
     sum += bytes_of(one.depth, one.color, one.normal, one.classification, one.node);
-  for (const std::vector<LitBlock>& one : blocks) sum += bytes_of(one);
+  for (const LitBlocks& one : blocks) sum += one.memory_bytes();
   for (const Known& one : known) sum += one.light->memory_bytes();
-  return sum;
+  return sum + light::memory_bytes(surfaces) + light::memory_bytes(bounce) +
+         light::memory_bytes(light);
 }
 
 namespace {
@@ -97,32 +95,82 @@ const StandInLight& find_light(const ShownScans& scans, int stand_in, ScanWork& 
 }  // namespace
 
 ScanView::ScanView(const ShownScans& scans, const View& view, vec2 offset, bool settled,
-                   ScanWork& work)
+                   ScanWork& work, const DynamicImage* dynamic)
     : view_(view), offset_(offset) {
   work.buffers.resize(std::max(work.buffers.size(), scans.all().size()));
   work.blocks.resize(work.buffers.size());
+  std::optional<MovingShade> shade;
   for (const PlacedScan& placed : scans.all()) {
-    if (!placed.points) continue;
-    const ScanCamera camera = camera_of(placed, view, offset);
+    if (placed.sets.empty()) continue;
+    const ScanSet& set = placed.sets[size_t(placed.look.set)];
+    const ScanCamera camera = camera_of(placed, set.offset, view, offset);
+    const bool spheres = placed.sphere > 0;
+    const DiscStyle style{.spheres = spheres, .blended = settled};
     ChooseSettings choose;
+    if (spheres) choose.threshold = opaque_cell;
     choose.budget = settled ? settled_points : moving_points;
-    const ChosenNodes chosen = choose_nodes(*placed.points, camera, choose);
+    const ChosenNodes chosen = choose_nodes(*set.points, camera, choose);
     if (chosen.nodes.empty()) continue;
     std::vector<NodePoints> nodes;
-    for (const ChosenNode& one : chosen.nodes) nodes.push_back(placed.points->points_of(one.node));
+    for (const ChosenNode& one : chosen.nodes)
+      nodes.push_back(spheres ? spheres_of(*set.points, one.node, placed.sphere, style)
+                              : set.points->points_of(one.node));
     PointBuffer& buffer = work.buffers[seen_.size()];
-    work.raster.draw(buffer, nodes, camera, {.blended = settled});
-    fill_holes(buffer, nodes, camera);
+    work.raster.draw(buffer, nodes, camera, style);
+    if (!spheres) fill_holes(buffer, nodes, camera);
     Seen seen{&placed, &buffer, placed.position.y + placed.scale * placed.low,
               std::max(placed.scale * (placed.high - placed.low), 1e-6f),
               glm::mat3_cast(placed.turn)};
-    if (placed.look.colors == ScanColors::lit && scans.maps && placed.stand_in >= 0) {
-      std::vector<LitBlock>& blocks = work.blocks[seen_.size()];
-      light_blocks(find_light(scans, placed.stand_in, work), seen, blocks);
-      seen.blocks = &blocks, seen.usual = scans.maps->usual;
-    }
+    if (!shade) shade.emplace(*scans.world);
+    light(scans, *shade, dynamic, seen, work.blocks[seen_.size()], work);
     seen_.push_back(seen);
   }
+}
+
+// Finds the light on a scan: of reflectance all, of others the share that what moves leaves.
+void ScanView::light(const ShownScans& scans, const MovingShade& shade, const DynamicImage* dynamic,
+                     Seen& seen, LitBlocks& blocks, ScanWork& work) const {
+  const PlacedScan& placed = *seen.placed;
+  const ScanColors colors = placed.look.colors;
+  if (colors != ScanColors::captured && colors != ScanColors::lit) return;
+  auto depth_at = [&](int x, int y) {
+    return seen.buffer->depth[size_t(y) * size_t(view_.width) + size_t(x)] * placed.scale;
+  };
+  auto facing = [&](int x, int y) { return normal_at(seen, x, y); };
+  seen.is_lit = colors == ScanColors::lit && scans.maps && placed.stand_in >= 0;
+  const PictureWindow whole{0, 0, view_.width, view_.height};
+  if (!seen.is_lit) {
+    const PictureWindow window = shaded_window(shade, view_);
+    if (window.empty()) return;
+    blocks.begin(view_, offset_, window);
+    blocks.fill(depth_at, facing, [&](vec3 place, LitBlock& lit) {
+      if (!shade.reaches(place)) return false;
+      lit.light = vec3(shade.eval_open(place, lit.normal, vec3(0)));
+      return true;
+    });
+    seen.blocks = &blocks;
+    return;
+  }
+  const StandInLight& known = find_light(scans, placed.stand_in, work);
+  blocks.begin(view_, offset_, whole);
+  const float block_width = LitBlocks::side * 2 * view_.tan_half_fov / float(view_.height);
+  blocks.fill(depth_at, facing, [&](vec3 place, LitBlock& lit) {
+    const StandInLit found = known.find(place, lit.normal);
+    lit.slope = found.slope;
+    lit.light = found.known && shade.any()
+                    ? shade.shade(*scans.world, *scans.lights->tables, place, lit.normal, found,
+                                  uint32_t(placed.stand_in), known.reach(),
+                                  block_width * dot(place - view_.position, view_.forward))
+                    : found.light;
+    return found.known;
+  });
+  if (dynamic) {
+    blocks.describe(known.reach(), work.surfaces);
+    light_others(*scans.world, *scans.lights, *dynamic, dynamic->from, work.surfaces, work.bounce,
+                 work.light);
+    blocks.add(work.light);
+  }
+  seen.blocks = &blocks, seen.usual = scans.maps->usual;
 }
 
 // Returns the normal of what a pixel sees, in the scene, towards the eye.
@@ -133,77 +181,11 @@ vec3 ScanView::normal_at(const Seen& one, int x, int y) const {
   return one.turn * point_normal(word);
 }
 
-// Finds the light at a pixel of every block, the nearest to its middle that shows the scan. It
-// faces as a few pixels around do, those that look at the eye the most: on a floor that is seen
-// along itself noise turns single normals away from the eye, and so upside down.
-void ScanView::light_blocks(const StandInLight& light, const Seen& seen,
-                            std::vector<LitBlock>& blocks) const {
-  const int columns = (view_.width + block - 1) / block, rows = (view_.height + block - 1) / block;
-  blocks.resize(size_t(columns) * size_t(rows));
-  const PixelGrid grid(view_, offset_);
-  parallel_each(rows, [&](int row) {
-    for (int column = 0; column < columns; column++) {
-      LitBlock& lit = blocks[size_t(row) * size_t(columns) + size_t(column)];
-      lit = {};
-      vec3 place(0);
-      float first = 0;
-      int known = 0;
-      for (const glm::ivec2 from : nearest_first) {
-        const int x = column * block + from.x, y = row * block + from.y;
-        if (x >= view_.width || y >= view_.height) continue;
-        const float depth =
-            seen.buffer->depth[size_t(y) * size_t(view_.width) + size_t(x)] * seen.placed->scale;
-        if (!std::isfinite(depth)) continue;
-        if (known == 0) first = depth, place = depth * grid.at(float(x), float(y));
-        if (std::abs(depth - first) > most_step * first) continue;
-        const vec3 normal = normal_at(seen, x, y);
-        lit.normal -= normal * dot(normal, glm::normalize(grid.at(float(x), float(y))));
-        if (++known == most_normals) break;
-      }
-      const float length = glm::length(lit.normal);
-      if (!(length > 0)) continue;
-      lit.normal /= length;
-      const StandInLit found = light.find(view_.position + place, lit.normal);
-      if (found.known) lit.light = found.light, lit.slope = found.slope, lit.depth = first;
-    }
-  });
-}
-
-// Returns the light on eight pixels: that of the four blocks around each, as far as they lie on the
-// same surface.
-Lanes3 ScanView::light_at(const Seen& one, int x, int y, const Lanes& depth) const {
-  const int columns = (view_.width + block - 1) / block, rows = (view_.height + block - 1) / block;
-  const float at_y = (float(y) + 0.5f) / block - 0.5f;
-  const int row = int(std::floor(at_y));
-  Lanes3 normal, sum;
+Lanes3 ScanView::normals_at(const Seen& one, int x, int y, const Lanes& depth) const {
+  Lanes3 normal;
   for (int k = 0; k < lane_count; k++)
     if (std::isfinite(depth[k])) normal.set(k, normal_at(one, x + k, y));
-  Lanes weights{};
-  for (int tap = 0; tap < 4; tap++) {
-    const int down = std::clamp(row + (tap >> 1), 0, rows - 1);
-    const float share_y = tap >> 1 ? at_y - float(row) : 1 - (at_y - float(row));
-    Lanes3 light, slope, own;
-    Lanes far{}, share{};
-    for (int k = 0; k < lane_count; k++) {
-      const float at_x = (float(x + k) + 0.5f) / block - 0.5f;
-      const int column = int(std::floor(at_x));
-      const float share_x = tap & 1 ? at_x - float(column) : 1 - (at_x - float(column));
-      const LitBlock& lit = (*one.blocks)[size_t(down) * size_t(columns) +
-                                          size_t(std::clamp(column + (tap & 1), 0, columns - 1))];
-      light.set(k, lit.light), slope.set(k, lit.slope), own.set(k, lit.normal);
-      far[k] = lit.depth;
-      share[k] = lit.depth > 0 ? share_x * share_y + least_share : 0;
-    }
-    const Lanes off = (far - depth) * (1 / most_step) / depth;
-    const Lanes cosine = dot(own, normal), facing = lanes_max(cosine, all_lanes(least_share));
-    // A normal that turns away from all around is noise.
-    const Lanes turn = cosine > least_cosine ? 1 + dot(slope, normal - own) : all_lanes(1);
-    const Lanes weight = share * facing * facing / (1 + off * off * off * off);
-    sum = sum + light * (weight * lanes_max(turn, all_lanes(least_turn)));
-    weights += weight;
-  }
-  const LaneMask known = weights > 0;
-  return choose(known, sum * (1 / weights), all_lanes(vec3(one.usual)));
+  return normal;
 }
 
 // Returns the colour of what a pixel sees of a scan, `depth` metres along the axis.
@@ -239,12 +221,57 @@ SeenScan ScanView::look(int x, int y) const {
     }
     const LaneMask near = depth < found.depth;
     if (!any_lane(near)) continue;
-    if (one.blocks) color = color * light_at(one, x, y, depth);
+    if (one.blocks && one.blocks->reach(x, y))
+      color = color * one.blocks->at(x, y, depth, normals_at(one, x, y, depth), one.usual);
     found.light = choose(near, color, found.light);
     found.depth = near ? depth : found.depth;
     found.object = near ? all_lane_bits(one.placed->object) : found.object;
   }
   return found;
+}
+
+ScanSurface ScanView::surface(int x, int y) const {
+  ScanSurface found;
+  const size_t at = size_t(y) * size_t(view_.width) + size_t(x);
+  for (const Seen& one : seen_) {
+    const float depth = one.buffer->depth[at] * one.placed->scale;
+    if (!(depth < found.depth)) continue;
+    found = {depth, normal_at(one, x, y), one.is_lit ? color_at(one, x, y, depth) : vec3(0),
+             one.placed->object};
+  }
+  return found;
+}
+
+void lay_scans_over(const ShownScans& scans, const Keyframe& keyframe, ScanWork& work,
+                    BackdropSurfaces& backdrop) {
+  constexpr float lift = 0.1f;        // metres; stand-ins are coarser than points
+  constexpr float tolerance = 1.02f;  // the keyframe's pixels are means
+  SurfaceBuffer& lit = backdrop.surfaces;
+  const View &view = keyframe.view, light_view = lit.view;
+  auto each = [](const View& of, const auto& take) {
+    parallel_each(of.height, [&](int y) {
+      for (int x = 0; x < of.width; x++) take(x, y, size_t(y) * size_t(of.width) + size_t(x));
+    });
+  };
+  const ScanView coarse(scans, light_view, vec2(0.5f), true, work);
+  if (!coarse.any()) return;
+  lit.lift.assign(lit.depth.size(), 0);
+  each(light_view, [&](int x, int y, size_t at) {
+    const ScanSurface seen = coarse.surface(x, y);
+    if (!(seen.depth < lit.depth[at])) return;
+    lit.depth[at] = seen.depth, lit.object[at] = seen.object, lit.lift[at] = lift;
+    lit.nx[at] = seen.normal.x, lit.ny[at] = seen.normal.y, lit.nz[at] = seen.normal.z;
+    if (!lit.gloss.empty()) lit.gloss[at] = 0, lit.metallic[at] = 0;
+  });
+  const PixelGrid grid(light_view), own(view);
+  const ScanView fine(scans, view, vec2(0.5f), true, work);
+  each(view, [&](int x, int y, size_t at) {
+    const ScanSurface seen = fine.surface(x, y);
+    if (!(seen.depth * keyframe.disparity[at] < tolerance)) return;
+    const vec3 place = seen.depth * own.at(float(x), float(y));
+    show_pixel(backdrop, grid, x, y, {place, seen.normal, seen.depth, seen.object},
+               seen.reflectance);
+  });
 }
 
 }  // namespace wellspring::picture

@@ -63,11 +63,7 @@ VolumeView::VolumeView(std::span<const PlacedVolume> volumes, const View& view, 
     if (!placed.look.preset) continue;
     Seen seen{.placed = &placed, .to_volume = ToVolume(placed), .bounds = bounds_of(placed)};
     const Bounds& box = seen.bounds;
-    vec3 corners[8];
-    for (int i = 0; i < 8; i++)
-      corners[i] = vec3(i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
-                        i & 4 ? box.high.z : box.low.z);
-    seen.window = window_around(corners, view);
+    seen.window = window_around(box, view);
     if (seen.window.empty()) continue;
     const vec3 nearest = glm::clamp(view.position, box.low, box.high);
     const float pixel = 2 * view.tan_half_fov / float(view.height);

@@ -2,10 +2,18 @@
 // Says from where, and which way, a picture of scanned things is made.
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "base/vec.h"
 
 namespace wellspring::scan {
+
+// Keeps what lies on one side of a plane: places where dot(normal, place) >= offset.
+struct ScanCut {
+  vec3 normal{0};    // unit
+  float offset = 0;  // metres
+  bool operator==(const ScanCut&) const = default;
+};
 
 // Holds a camera with orthonormal axes. Rows of the picture go from the top; a place at `depth`
 // metres along `forward` and `x` metres to the right lies focal() * x / depth pixels right of
@@ -19,6 +27,8 @@ struct ScanCamera {
   std::optional<vec2> axis;
   float near = 0;     // metres along `forward` before which nothing is shown
   vec2 offset{0.5f};  // pixels are sampled here, 0 to 1 from their top left
+  // Points are shown only where all of these keep them; in the frame of what is drawn.
+  std::vector<ScanCut> cuts;
   vec2 axis_place() const { return axis ? *axis : vec2(0.5f * float(width), 0.5f * float(height)); }
   float focal() const { return 0.5f * float(height) / tan_half_fov; }  // in pixels
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/log.h"
@@ -14,6 +15,7 @@
 #include "show/answer/idle.h"
 #include "show/answer/orders.h"
 #include "show/answer/sound.h"
+#include "show/answer/walls.h"
 #include "show/count/count.h"
 #include "show/draw/carry_out.h"
 #include "show/draw/make_picture_job.h"
@@ -25,6 +27,7 @@
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
+#include "show/state/make_show.h"
 #include "show/state/visitor_picture.h"
 #include "show/storyteller/held_prop.h"
 #include "wire/json.h"
@@ -62,13 +65,7 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       continue;
     }
     log::info("visitor {} connected from {}", one.link->id, one.link->peer);
-    Visitor& visitor = show.visits.visitors.emplace_back();
-    visitor.link = std::move(one.link);
-    visitor.seat = std::move(one.seat);
-    visitor.came_at = show.time;
-    visitor.picture->cache = RenderCache({}, show.drawing->renderer.work.cache);
-    visitor.picture->compositor = Compositor(show.drawing->renderer.work.compositor);
-    visitor.picture->compositor.set_skin(&show.stage.skin, &show.stage.lights);
+    begin_visit(show, std::move(one.link)).seat = std::move(one.seat);
   }
 }
 
@@ -92,6 +89,7 @@ void read_visitors(Show& show, double dt) {
   watch_presence(show, dt);
   forget_visits(show);
   forget_absent_listeners(show);
+  follow_walls(show);
 }
 
 void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance,
@@ -339,7 +337,8 @@ void send_state(Show& show, Visitor& visitor) {
   double interval = visitor.hearing.utterance != 0 ? heard_state_interval : state_interval;
   if (show.time - visitor.state_sent_at < interval) return;
   visitor.state_sent_at = show.time;
-  visitor.link->send_text(state_message(show, visitor));
+  const Visitor* camera = camera_of(std::as_const(show.visits), visitor);
+  visitor.link->send_text(state_message(show, camera ? *camera : visitor));
 }
 
 }  // namespace
@@ -379,7 +378,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   }
   send_sounds(show);
   for (Visitor& visitor : show.visits.visitors) {
-    if (!visitor.welcomed) continue;
+    if (!visitor.welcomed || visitor.wall.role == WallRole::tile) continue;
     std::optional<dvec3> person;
     const Teller& teller = teller_of(show.cast, show.visits, visitor);
     if (const StorytellerPlace* who =
@@ -388,7 +387,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     pace_tour(visitor);
     TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.stage.world,
                                  show.stage.exhibit, show.stage.roads, person, dt);
-    count_place(show, visitor, step.finished, double(dt));
+    if (!is_of_wall(visitor)) count_place(show, visitor, step.finished, double(dt));
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
     follow_leader(show.visits, show.time, visitor, dt);
     look_through(show, visitor, dt);
@@ -403,10 +402,10 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   steer(show);
   present_all(show);
   for (Visitor& visitor : show.visits.visitors) {
-    if (!visitor.welcomed) continue;
+    if (!visitor.welcomed || visitor.wall.role == WallRole::camera) continue;
     send_pose(show.stage, show.visits, show.time, visitor);
     send_state(show, visitor);
-    send_token(show, visitor);
+    if (!is_of_wall(visitor)) send_token(show, visitor);
   }
   show.totals.tick_ms = float(1000 * (seconds_now() - began));
 }

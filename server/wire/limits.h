@@ -24,6 +24,7 @@ inline constexpr double min_fps = 0, max_fps = 240;   // settings.fps; 0: the se
 inline constexpr int min_jpeg_quality = 1,
                      max_jpeg_quality = 100;  // settings.quality and .max_quality
 inline constexpr int min_bandwidth = 0, max_bandwidth = 10'000'000;  // settings.bandwidth, kbit/s
+inline constexpr int max_wall_side = 8;   // screens of a wall beside, and above, one another
 inline constexpr size_t max_people = 32;  // most people in one observation
 
 }  // namespace wellspring::wire

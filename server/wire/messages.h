@@ -11,6 +11,7 @@
 #include "base/vec.h"
 #include "json/text.h"
 #include "wire/limits.h"
+#include "wire/wall_part.h"
 
 namespace wellspring::wire {
 
@@ -113,6 +114,7 @@ struct Hello {
   std::string token;          // token of a kiosk (wire/tokens.h); empty: none
   std::optional<bool> parts;  // packet.h
   std::string display;        // "local" or "server"; empty: as "server"
+  std::optional<WallPart> wall;
   static void list(auto& message, auto& fields) {
     fields.text("exhibit", message.exhibit, "id, empty for the one shown");
     fields.token("resume", message.resume,
@@ -128,6 +130,7 @@ struct Hello {
     fields.word("display", {"server", "local"}, message.display,
                 "local: pictures come as keyframes with depth, which the page shows from where its "
                 "visitor is by then; server or left out: as they are to be shown");
+    list_part("wall", message.wall, fields);
   }
   bool operator==(const Hello&) const = default;
 };
@@ -227,11 +230,13 @@ struct LampOrder {
   static constexpr const char* type = "lamp";
   std::string name;
   bool on = true;
+  std::string light{};  // one of the lamp's dial; empty: its own
   static void list(auto& message, auto& fields) {
     fields.text("name", message.name, "a lamp's name", Need::required);
     fields.boolean("on", message.on,
                    "boolean: for this visitor, or for everybody where it is shared",
                    Need::required);
+    fields.text("light", message.light, "one of the lamp's dial; else its own");
   }
   bool operator==(const LampOrder&) const = default;
 };
@@ -269,12 +274,12 @@ struct PieceOrder {
     fields.number("share", 0, 1, message.share, "0..1, of the picture's width or of the mixture");
     fields.number("turn", -720, 720, message.turn, "degrees that a volume is turned to the left");
     fields.vector("low", 1, message.low,
-                  "[x, y, z], 0..1: a volume is cut off before these shares of its width, height "
-                  "and depth, counted from its left, bottom and back");
+                  "[x, y, z], 0..1: a volume or scan is cut off before these shares of its width, "
+                  "height and depth, counted from its left, bottom and back");
     fields.vector("high", 1, message.high, "[x, y, z], 0..1: likewise, and behind these");
     fields.vector("plane", 1000, message.plane,
-                  "[x, y, z, m]: of a volume only what lies that way of a plane is kept, m metres "
-                  "from its middle");
+                  "[x, y, z, m]: of a volume or scan only what lies that way of a plane is kept, m "
+                  "metres from its middle");
     fields.number("tilt", 0, 90, message.tilt,
                   "degrees between a nebula's axis and the eye; 0: as it was found");
   }
@@ -304,7 +309,8 @@ struct LensOrder {
     fields.boolean("difference", message.difference,
                    "boolean: by how much the layer differs from what is shown");
     fields.number("depth", 0, 1000, message.depth,
-                  "metres of a volume that are cut away in it, from the side that is seen");
+                  "metres of a volume that are cut away in it, from the side that is seen; of a "
+                  "scan around the eye, from there");
   }
   bool operator==(const LensOrder&) const = default;
 };

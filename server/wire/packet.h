@@ -18,6 +18,14 @@
 // for places that keyframes do not show. With the flag `layer` it is a dynamic layer, to be laid
 // over keyframes with the flag `still` until the next one: pixels with a disparity of 0 are empty.
 //
+// With the flag `sway` a keyframe, or parts of one, show what wind moves. The header goes on behind
+// that: u32 bytes of codes, u16 columns, u16 rows, f32 pixels a code, f64 seconds of the wind's
+// clock, then four waves of the wind: f32 x, z of what it pushes, x, z of its radians a metre, its
+// radians a second, its radians at the eye at that time. At (x, z) from the eye and t later a push
+// is the sum of push * sin(dot(wave, (x, z)) + phase - rate * t). The payload ends with the codes,
+// a zlib stream of u8, row after row: as far is what their part of the picture shows moved by a
+// push of 1 that is seen from the side.
+//
 // With the flag `lens` a complete picture is what a visitor's glass shows: a square of three times
 // its radius, around its middle at the time of the message `lens` that seq names. Its header goes
 // on: 28 f32 how many times larger things are in it than beside it.
@@ -76,6 +84,7 @@ inline constexpr uint8_t packet_depth = 4;     // complete, and with the depth o
 inline constexpr uint8_t packet_around = 8;    // with depth: the surroundings, in fewer pixels
 inline constexpr uint8_t packet_layer = 16;  // with depth: what moves, laid over what stands still
 inline constexpr uint8_t packet_lens = 32;   // complete: what the visitor's glass shows
+inline constexpr uint8_t packet_sway = 64;   // with depth, or parts: wind moves some of it
 
 struct PacketHeader {
   uint32_t frame = 0, seq = 0;
@@ -104,6 +113,22 @@ struct KeyframeHeader {
 };
 inline constexpr size_t keyframe_header_bytes = 116;
 
+// One of the wind's waves, as seen from the eye of a keyframe at its time.
+struct SwayWave {
+  vec2 push{0}, wave{0};  // x and z
+  float rate = 0, phase = 0;
+  bool operator==(const SwayWave&) const = default;
+};
+struct SwayHeader {
+  uint32_t bytes = 0;
+  uint16_t columns = 0, rows = 0;
+  float unit = 0;
+  double time = 0;
+  std::array<SwayWave, 4> waves;
+  bool operator==(const SwayHeader&) const = default;
+};
+inline constexpr size_t sway_header_bytes = 20 + 4 * 24;
+
 inline constexpr size_t max_parts = 16;  // most parts of a picture
 inline constexpr size_t parts_header_bytes(size_t parts) {
   return packet_header_bytes + 2 + 12 * parts;
@@ -123,14 +148,18 @@ void write_packet_header(const PacketHeader& header, const KeyframeHeader& keyfr
 // Writes the header of what a glass shows over the first lens_header_bytes of `packet`.
 inline constexpr size_t lens_header_bytes = packet_header_bytes + 4;
 void write_packet_header(const PacketHeader& header, float zoom, std::span<uint8_t> packet);
+// Adds to a whole packet, a keyframe's or one of parts, how wind moves what it shows: a header
+// behind its own, whose `bytes` it sets, and the codes at its end, one for each column of each row.
+void add_sway(SwayHeader sway, std::span<const uint8_t> codes, Packet& packet);
 // Holds a packet as read; read_packet() returns none if the bytes are no picture message (short,
 // other magic, header length < 28 or past the end; parts that are past the end, or not within the
 // picture; a keyframe of no size, or whose view or unit is no finite number; a zoom that is no
-// positive number).
+// positive number; a sway of no size, whose numbers are not finite, or whose codes are not there).
 struct PacketView {
   PacketHeader header;
   std::vector<PicturePart> parts;          // parts of a picture that is not complete
   std::optional<KeyframeHeader> keyframe;  // for a picture with depth
+  std::optional<SwayHeader> sway;          // likewise, or for parts; its codes end the payload
   std::optional<float> zoom;               // for what a glass shows
   std::span<const uint8_t> payload;
 };

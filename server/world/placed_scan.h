@@ -5,7 +5,9 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "scan/camera.h"
 #include "world/scene.h"
 
 namespace wellspring::scan {
@@ -26,13 +28,22 @@ enum class ScanColors : uint8_t {
 
 struct ScanLook {
   ScanColors colors = ScanColors::captured;
-  float brightness = 1;  // radiance of white, captured
+  float brightness = 1;       // radiance of white, captured
+  int set = 0;                // index into PlacedScan::sets
+  std::vector<ScanCut> cuts;  // in scene coordinates: only what all of these keep is seen
   bool operator==(const ScanLook&) const = default;
 };
 
+// One of a scan's sets of points, as of a day of a dig.
+struct ScanSet {
+  std::shared_ptr<const PointTree> points;
+  dvec3 offset{0};  // its zero in the first set's frame, the scan's own metres
+};
+
 struct PlacedScan {
-  std::shared_ptr<const PointTree> points;  // one of the two is not null
-  std::shared_ptr<const ShownSplats> splats;
+  std::vector<ScanSet> sets;                  // empty: it is one of splats
+  std::shared_ptr<const ShownSplats> splats;  // null: it has sets of points
+  float sphere = 0;         // the scan's own metres; above 0: points are spheres of that radius
   vec3 position{0};         // the scan's own zero is there, scene coordinates
   quat turn{1, 0, 0, 0};    // from its own axes to the scene's, unit
   float scale = 1;          // metres of the scene to one of the scan

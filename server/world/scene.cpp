@@ -16,11 +16,12 @@ Material repainted(const Material& m, const Repaint& change) {
   return made;
 }
 
-Material dimmed(const Material& m, float brightness) {
+Material dimmed(const Material& m, vec3 factor, int spectrum) {
   Material made = m;
-  made.emission *= brightness;
+  made.emission *= factor;
+  if (spectrum >= 0) made.spectra.emission = spectrum;
   // An unlit material's colour is its light.
-  if (m.unlit) made.base_color = vec4(vec3(m.base_color) * brightness, m.base_color.w);
+  if (m.unlit) made.base_color = vec4(vec3(m.base_color) * factor, m.base_color.w);
   return made;
 }
 

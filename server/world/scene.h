@@ -10,9 +10,27 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "spectrum/spectrum.h"
 #include "world/texture.h"
 
 namespace wellspring::world {
+
+// Names what a scene knows of light by wavelength, as indices into Scene::spectra; -1: nothing, and
+// red, green and blue are all there is.
+struct MaterialSpectra {
+  int reflectance = -1;  // its colour is in the base colour's factor
+  int index = -1;        // index of refraction
+  int absorption = -1;   // per metre of the solid
+  int emission = -1;     // relative power
+  // The reflectance as it is in base_color: under D65, in linear Rec. 709, each channel above 0.
+  vec3 base{1};
+};
+
+// Holds a quantity over wavelength. world/load/scene_spectra.h puts them into a scene.
+struct SceneSpectrum {
+  std::string name;
+  Spectrum value;
+};
 
 // Defines light that is no surface: KHR_lights_punctual and the environment. Emissive surfaces are
 // found by their material (light/sample/lights.h gathers them).
@@ -29,15 +47,23 @@ struct PunctualLight {
   vec3 intensity{1};         // point, spot: W/sr; directional: W/m^2 on a facing surface
   float range = std::numeric_limits<float>::infinity();
   float inner_cone = 0, outer_cone = pi / 4;  // radians from the axis
+  int spectrum = -1;  // relative power, index into Scene::spectra; `intensity` has its colour
 };
 
 // A lamp is what is switched together: a chandelier with all its candles, the spots of a show-case.
 // Nothing belongs to two lamps. Lamps come into a scene by world/load/lamp.h.
+// Holds one of the lights that a lamp can shine with.
+struct LampLight {
+  int spectrum = -1;  // relative power, index into Scene::spectra; -1: the lamp's own
+  vec3 factor{1};     // its colour over the lamp's own; luminance stays
+};
 struct Lamp {
   std::string name;
   std::vector<int> lights;     // indices into Scene::lights
   std::vector<int> materials;  // indices into Scene::materials; only the lamp's surfaces have them
+  std::vector<LampLight> dial{};  // other lights that it can shine with, at most most_dial_lights
 };
+inline constexpr size_t most_dial_lights = 16;
 
 // Holds a disc at infinity, equally bright all over: the sun. No radiance: there is no sun.
 struct SunDisc {
@@ -98,6 +124,7 @@ struct Material {
   TextureRef sheen_roughness_texture;             // A
   float anisotropy = 0, anisotropy_rotation = 0;  // 0..1; radians from the tangent
   TextureRef anisotropy_texture;                  // RG: direction, B: strength
+  MaterialSpectra spectra{};
   // World::repaint() may change its colours and how its pictures lie: no conclusions may be drawn
   // from these.
   bool repaints = false;
@@ -131,8 +158,8 @@ void each_texture(M& m, Body&& body) {
 // Returns `m` with these changes: colours stay within their ranges, numbers that are not finite
 // change nothing.
 Material repainted(const Material& m, const Repaint& change);
-// Returns `m` with its own light times `brightness`.
-Material dimmed(const Material& m, float brightness);
+// Returns `m` with its own light times `factor`, of that relative power; -1: its own.
+Material dimmed(const Material& m, vec3 factor, int spectrum = -1);
 
 // Holds indexed triangles of one material. `normals` is never empty (made from the faces if the
 // file had none); uv, colors and tangents are empty or as long as positions.
@@ -195,6 +222,7 @@ struct Scene {
   std::vector<SceneNode> nodes;
   std::vector<int> object_nodes, light_nodes;
   std::vector<PunctualLight> lights;
+  std::vector<SceneSpectrum> spectra;
   std::vector<Lamp> lamps;  // lights and emissive materials that can be switched
   int dynamic_lights = 0;   // number of lights that move or change, none of them in `lights`
   Environment environment;

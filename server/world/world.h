@@ -20,22 +20,43 @@ struct ShownPicture;  // store/picture/sample_picture.h
 
 namespace wellspring::world {
 
-// Says how bright a lamp of the scene is: 0 off, lamp_full as the scene has it.
+// Says how a lamp of the scene shines.
 
-using LampLevel = uint8_t;
+inline constexpr uint8_t lamp_full = 255;
+struct LampLevel {
+  uint8_t level = lamp_full;  // 0: off; lamp_full: as bright as the scene has it
+  uint8_t light = 0;          // 0: its own light; else one of Lamp::dial, counted from 1
+  constexpr LampLevel() = default;
+  constexpr LampLevel(int level, uint8_t light = 0) : level(uint8_t(level)), light(light) {}
+  auto operator<=>(const LampLevel&) const = default;
+};
 using LampLevels = std::vector<LampLevel>;  // one for each of the scene's lamps
-inline constexpr LampLevel lamp_full = 255;
+// Says how a lamp is switched: 0: off; 1: on; more: on with that light of Lamp::dial, counted from
+// 2.
+using LampSwitch = uint8_t;
 
 // Returns the factor of the scene's own light; exactly 0 and 1 at the ends. The square of the
 // level, so that steps in the dark are small, too.
 inline float brightness_of(LampLevel level) {
-  const float share = float(level) / float(lamp_full);
+  const float share = float(level.level) / float(lamp_full);
   return share * share;
 }
+// Returns the light that a lamp is set to; null: its own.
+inline const LampLight* dialed(const Lamp& lamp, LampLevel level) {
+  return level.light > 0 && level.light <= lamp.dial.size() ? &lamp.dial[level.light - 1u]
+                                                            : nullptr;
+}
+// Returns the factor of a lamp's own light, by brightness and colour.
+inline vec3 factor_of(const Lamp& lamp, LampLevel level) {
+  const LampLight* light = dialed(lamp, level);
+  return brightness_of(level) * (light ? light->factor : vec3(1));
+}
+// Returns these of all lamps of a scene.
+std::vector<vec3> lamp_factors(const Scene& scene, std::span<const LampLevel> levels);
 
 // Returns the level of that brightness, 0 to 1.
-inline LampLevel level_of(float brightness) {
-  return LampLevel(std::lround(float(lamp_full) * std::sqrt(brightness)));
+inline uint8_t level_of(float brightness) {
+  return uint8_t(std::lround(float(lamp_full) * std::sqrt(brightness)));
 }
 
 struct Ray {
@@ -163,8 +184,8 @@ class World {
   void repaint(int material, const Repaint& change);
   uint64_t paints() const;  // number of repaints so far
 
-  // Dims the scene's lamps, by their numbers; all are full at first. While no ray is being traced.
-  // Lights have to be updated, too: light/kept/lamps.h.
+  // Dims the scene's lamps, or sets another light of theirs, by their numbers; all are full at
+  // first. While no ray is being traced. Lights have to be updated, too: light/kept/lamps.h.
   void set_lamp(int lamp, LampLevel level);
   const LampLevels& lamp_levels() const;
 

@@ -132,11 +132,21 @@ void World::set_lamp(int lamp, LampLevel level) {
   Impl& w = *impl_;
   if (w.lamp_levels.at(size_t(lamp)) == level) return;
   w.lamp_levels[size_t(lamp)] = level;
-  for (int material : w.scene->lamps[size_t(lamp)].materials)
+  const Lamp& set = w.scene->lamps[size_t(lamp)];
+  const LampLight* light = dialed(set, level);
+  for (int material : set.materials)
     for (auto& [number, worn] : w.of_lamps) {
       if (number != material) continue;
-      *worn = dimmed(w.scene->materials[size_t(material)], brightness_of(level));
+      *worn = dimmed(w.scene->materials[size_t(material)], factor_of(set, level),
+                     light ? light->spectrum : -1);
     }
+}
+
+std::vector<vec3> lamp_factors(const Scene& scene, std::span<const LampLevel> levels) {
+  std::vector<vec3> factors;
+  for (size_t i = 0; i < levels.size(); i++)
+    factors.push_back(factor_of(scene.lamps[i], levels[i]));
+  return factors;
 }
 
 const LampLevels& World::lamp_levels() const { return impl_->lamp_levels; }

@@ -15,7 +15,7 @@
 #include "light_scenes.h"
 #include "picture/compositor.h"
 #include "report.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 
 namespace wellspring::test {
 namespace {

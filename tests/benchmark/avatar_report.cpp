@@ -10,7 +10,7 @@
 #include "base/clock.h"
 #include "frame/picture_file.h"
 #include "report.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/moving/figure.h"
 
 namespace wellspring::test {

@@ -11,7 +11,7 @@
 #include "light/walk/known_light.h"
 #include "light_scenes.h"
 #include "report.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/exhibit/exhibit_objects.h"
 #include "world/surface.h"
 

@@ -19,7 +19,7 @@
 #include "light_scenes.h"
 #include "report.h"
 #include "show/draw/decide.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 
 namespace wellspring::test {
 namespace {

@@ -13,7 +13,7 @@
 #include "judge/flip.h"
 #include "light_scenes.h"
 #include "report.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 
 namespace wellspring::test {
 namespace {

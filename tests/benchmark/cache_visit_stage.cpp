@@ -7,7 +7,7 @@
 #include "light/technique/technique.h"
 #include "show/answer/events.h"
 #include "show/exhibit/exhibit_lights.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
 

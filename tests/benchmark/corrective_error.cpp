@@ -11,7 +11,7 @@
 #include "corrective/corrected_visit.h"
 #include "judge/flip.h"
 #include "report.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 
 namespace wellspring::test {
 namespace {

@@ -84,7 +84,8 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
         PhotonCells cells;
         for (const FirstSurface& first : seen[set]) {
           PlaceLight sum;
-          shade_by_photons(grids[size_t(set)], 8, {&first.surface, &first.bsdf}, cells, sum);
+          shade_by_photons(transport, grids[size_t(set)], 8, {&first.surface, &first.bsdf}, cells,
+                           sum);
           found += max_component(sum.sum()) > 0;
         }
       }

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "base/load_error.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "world/load/scene_load.h"
 
 namespace wellspring::test {

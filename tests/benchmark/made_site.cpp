@@ -20,6 +20,7 @@ struct Part {
   float area;
   // Returns a place for two numbers from 0 to 1, and whether anything is there.
   vec3 (*place)(int number, float u, float v);
+  vec3 (*normal)(int number, vec3 place);
   bool has_windows = false;
   int count = 1;
 };
@@ -40,11 +41,20 @@ vec3 column_place(int number, float u, float v) {
          vec3(column_radius * std::cos(angle), v * hall_top, column_radius * std::sin(angle));
 }
 
+vec3 floor_normal(int, vec3) { return {0, 1, 0}; }
+vec3 long_normal(int, vec3) { return {0, 0, 1}; }
+vec3 short_normal(int, vec3) { return {1, 0, 0}; }
+vec3 column_normal(int number, vec3 place) {
+  vec3 way = place - column_place(number, 0, 0);
+  way += vec3(column_radius, 0, 0), way.y = 0;
+  return way / column_radius;
+}
+
 const std::array<Part, 4> hall_parts = {
-    {{4 * hall_half_width * hall_half_depth, floor_place},
-     {2 * hall_half_width * hall_top, long_wall, true, 2},
-     {2 * hall_half_depth * hall_top, short_wall, false, 2},
-     {2 * pi * column_radius * hall_top, column_place, false, hall_columns}}};
+    {{4 * hall_half_width * hall_half_depth, floor_place, floor_normal},
+     {2 * hall_half_width * hall_top, long_wall, long_normal, true, 2},
+     {2 * hall_half_depth * hall_top, short_wall, short_normal, false, 2},
+     {2 * pi * column_radius * hall_top, column_place, column_normal, false, hall_columns}}};
 
 bool is_window(vec3 p) {
   const float across = std::abs(std::remainder(p.x, 4.0f));
@@ -66,9 +76,23 @@ std::array<uint16_t, 3> stone(vec3 p) {
   return {uint16_t(tone), uint16_t(0.92f * tone), uint16_t(0.8f * tone)};
 }
 
+// Returns the share of a place's points that stations keep: as many lines of theirs meet it, all
+// being at least two metres away.
+float scanned_share(vec3 place, vec3 normal) {
+  constexpr vec3 stations[] = {{-7.5f, 1.6f, 1}, {4, 1.6f, -1.5f}};
+  constexpr float nearest = 2;
+  float share = 0;
+  for (const vec3& station : stations) {
+    const vec3 way = station - place;
+    const float far2 = dot(way, way);
+    share += std::abs(dot(normal, way)) / std::sqrt(far2) * nearest * nearest / far2;
+  }
+  return share;
+}
+
 class Site : public scan::PointSource {
  public:
-  explicit Site(uint64_t points) : left_(points) {
+  Site(uint64_t points, SiteScan scan) : left_(points), scan_(scan) {
     info_.file = "made", info_.format = "made";
     info_.points = points, info_.is_counted = true;
     info_.fields.color = true, info_.color_max = 255;
@@ -98,19 +122,22 @@ class Site : public scan::PointSource {
       }
       const int number = std::min(int(at / part.area), part.count - 1);
       place = part.place(number, random_.uniform(), random_.uniform());
-      return !part.has_windows || !is_window(place);
+      if (part.has_windows && is_window(place)) return false;
+      return scan_ == SiteScan::everywhere ||
+             random_.uniform() < scanned_share(place, part.normal(number, place));
     }
     return false;
   }
   uint64_t left_;
+  SiteScan scan_;
   float area_ = 0;
   Rng random_{1};
 };
 
 }  // namespace
 
-std::unique_ptr<scan::PointSource> made_site(uint64_t points) {
-  return std::make_unique<Site>(points);
+std::unique_ptr<scan::PointSource> made_site(uint64_t points, SiteScan scan) {
+  return std::make_unique<Site>(points, scan);
 }
 
 scan::ScanCamera made_site_view() {

@@ -13,7 +13,7 @@
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "report.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 
 namespace wellspring::test {
 namespace {

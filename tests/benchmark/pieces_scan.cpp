@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // pieces.scan: what a picture of a scanned place costs by the number of its points, and how much it
-// differs from one that shows all of them; how quickly a scan is imported.
+// differs from one that shows all of them; what of it tears if points are unevenly spread; how
+// quickly a scan is imported.
 #include <algorithm>
 #include <cmath>
 
@@ -59,6 +60,38 @@ Drawn draw(PointRaster& raster, const PointTree& tree, const ChooseSettings& cho
   return drawn;
 }
 
+// Returns the share of pixels that see through a surface that `whole` has, or nothing of it.
+double torn_share(const PointBuffer& buffer, const PointBuffer& whole) {
+  constexpr float through = 1.05f;  // times the surface's depth
+  size_t covered = 0, torn = 0;
+  for (size_t i = 0; i < whole.depth.size(); i++) {
+    if (!std::isfinite(whole.depth[i])) continue;
+    covered++;
+    torn += !(buffer.depth[i] < through * whole.depth[i]);
+  }
+  return double(torn) / double(covered);
+}
+
+// Measures a scan by two stations of a tenth of the points, as pictures in motion and at rest show
+// it, against the whole one.
+void bench_uneven(BenchReport& report, uint64_t points, const std::string& file,
+                  PointRaster& raster, const PointBuffer& whole, int times) {
+  TreeSettings settings;
+  settings.up = UpAxis::y;
+  write_tree({{"made", [points] { return made_site(points / 10, SiteScan::stations); }}}, file,
+             settings);
+  const PointTree tree = open_tree(file);
+  for (const bool blended : {false, true}) {
+    const Drawn drawn =
+        draw(raster, tree, {.budget = blended ? 2'500'000u : 1'000'000u}, blended, times);
+    const nlohmann::json where = {{"discs", blended ? "blended" : "nearest"}};
+    report.add("pieces.scan.uneven_points", double(drawn.points) / 1e6, "M", where);
+    report.add("pieces.scan.uneven_ms", drawn.ms, "ms", where);
+    report.add("pieces.scan.uneven_torn", 100 * torn_share(drawn.buffer, whole), "%", where);
+    report.add("pieces.scan.uneven_flip", flip(frame_of(drawn.buffer), frame_of(whole)), "", where);
+  }
+}
+
 }  // namespace
 
 void bench_pieces_scan(BenchReport& report, const BenchOptions& options) {
@@ -92,6 +125,7 @@ void bench_pieces_scan(BenchReport& report, const BenchOptions& options) {
       report.add("pieces.scan.gbuffer_ms", drawn.ms, "ms", where);
       report.add("pieces.scan.flip", flip(frame_of(drawn.buffer), reference), "", where);
     }
+  bench_uneven(report, points, folder.path() + "/uneven.points", raster, all.buffer, times);
 }
 
 ReportPage pieces_scan_page() {
@@ -108,12 +142,21 @@ ReportPage pieces_scan_page() {
         .rows = {{"discs", "discs"}, {"budget", "points at most, millions"}},
         .columns = {{"pieces.scan.points", "points", 1, "M"},
                     {"pieces.scan.gbuffer_ms", "a picture", 1, "ms"},
-                    {"pieces.scan.flip", "FLIP", 1, ""}}},
+                    {"pieces.scan.flip", "FLIP", 1, ""}},
+        .most_rows = 8},
+       {.caption = "A tenth of the points, scanned from two stations",
+        .rows = {{"discs", "discs"}},
+        .columns = {{"pieces.scan.uneven_points", "points", 1, "M"},
+                    {"pieces.scan.uneven_ms", "a picture", 1, "ms"},
+                    {"pieces.scan.uneven_torn", "torn pixels", 1, "%"},
+                    {"pieces.scan.uneven_flip", "FLIP", 1, ""}},
+        .most_rows = 2},
        {.caption = "Import, and the first picture after opening",
         .columns = {{"pieces.scan.import_core_mps", "a core", 1, "M points/s"},
                     {"pieces.scan.import_seconds", "all", 1, "s"},
                     {"pieces.scan.bytes_per_point", "on the disk, a point", 1, "B"},
-                    {"pieces.scan.first_picture_ms", "first picture", 1, "ms"}}}}};
+                    {"pieces.scan.first_picture_ms", "first picture", 1, "ms"}},
+        .most_rows = 4}}};
 }
 
 }  // namespace wellspring::test

@@ -7,7 +7,7 @@
 #include "judge/flip.h"
 #include "light/visible/guides.h"
 #include "show/exhibit/exhibit_lights.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 
 namespace wellspring::test {
 namespace {
@@ -33,11 +33,12 @@ double mean_flip_within(const Image8& test, const Image8& reference, const Conve
 
 // Returns changing lights as show/http/still.cpp takes them for a still picture, but for flicker.
 std::vector<PunctualLight> mean_changing_lights(const Exhibit& exhibit, const LampLevels& levels) {
+  const std::vector<vec3> factors = lamp_factors(exhibit.scene, levels);
   std::vector<PunctualLight> lights;
   for (ChangingLight light : exhibit.lights) {
     light.flicker.depth = 0;
     lights.push_back(eval_light(light, 0));
-    if (light.lamp >= 0) lights.back().intensity *= brightness_of(levels[size_t(light.lamp)]);
+    if (light.lamp >= 0) lights.back().intensity *= factors[size_t(light.lamp)];
   }
   return lights;
 }

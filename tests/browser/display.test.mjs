@@ -32,11 +32,11 @@ async function open(display, from = server, context = { viewport: { width: 480, 
 const shot = (page) => look(page, 48, 13, { x: 0, y: 60, width: 480, height: 130 });
 
 // The page once nothing fades and no turn goes on.
-async function settled(page) {
-  let last = await shot(page);
+async function settled(page, see = () => shot(page)) {
+  let last = await see();
   await until(async () => {
     const before = last;
-    last = await shot(page);
+    last = await see();
     return difference(before, last) < 0.5;
   }, 'it stands');
   return last;
@@ -115,7 +115,7 @@ test('it goes on while the server is frozen, and says so', { skip }, async (t) =
 
 test('an upright phone of three pixels a point is shown as sharply', { skip }, async () => {
   const phone = { viewport: { width: 270, height: 480 }, deviceScaleFactor: 3, isMobile: true };
-  const shots = [];
+  let shown;
   for (const display of ['server', 'local']) {
     const { page, problems } = await open(display, server, phone);
     if (display === 'local') {
@@ -128,8 +128,12 @@ test('an upright phone of three pixels a point is shown as sharply', { skip }, a
     }
     const clip = { x: 0, y: 100, width: 270, height: 240 };
     const see = () => look(page, 27, 24, clip);
-    if (display === 'server') shots.push(await see());
-    else await until(async () => difference(shots[0], await see()) < 4, 'both show the same');
+    if (display === 'server') shown = await settled(page, see);
+    let differs;
+    await until(async () => {
+      differs = difference(shown, await see());
+      return differs < 4;
+    }, () => `both show the same: they differ by ${differs}`);
     assert.deepEqual(problems, []);
     await page.close();
   }

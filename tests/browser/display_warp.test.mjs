@@ -10,6 +10,7 @@ import { cross } from '../../web/display/view.js';
 import { read_picture } from '../../web/packet.js';
 import { Visitor, run, start_server, until } from '../server.mjs';
 import { by_processor, launch, pictures, skip } from './chromium.mjs';
+import { begin_in_page } from './keyframes.mjs';
 
 const most_flip = 0.01;
 
@@ -63,40 +64,23 @@ function moved({ view }, [right, up, forward], turn = 0) {
 
 // Returns each view's pixels, as the page draws them.
 const draw = (page, steps) => page.evaluate(async (all) => {
-  const at = (file) => import(new URL(file, location.href).href);
-  const [{ make_warp }, { read_picture: read }] =
-      await Promise.all([at('/display/warp.js'), at('/packet.js')]);
-  const canvas = document.createElement('canvas');
-  const warp = make_warp(canvas, () => { throw new Error('the context is lost'); });
-  const worker = new Worker('/display/decoder.js', { type: 'module' });
-  const decode = (picture) => new Promise((resolve) => {
-    const { payload, keyframe: { color_bytes, view: { width, height } } } = picture;
-    worker.onmessage = ({ data }) => resolve(data);
-    worker.postMessage({ id: 0, color: payload.slice(0, color_bytes),
-      depth: payload.slice(color_bytes), width, height });
-  });
+  const { warp, load, pixels, end } = /** @type {any} */ (globalThis).drawing;
   const drawn = {};
   for (const { bytes, name, view } of all) {
     if (bytes) {
-      const picture = read(Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0)).buffer);
-      const { view: seen, unit, cuts } = picture.keyframe;
-      const { problem, bitmap, units, blocks } = await decode(picture);
-      if (problem) throw new Error(problem);
-      const keyframe = { view: seen, unit, cuts, bitmap, units, blocks };
+      const { picture, keyframe } = await load(bytes);
       if (picture.around) warp.set_around(keyframe);
       else warp.add(keyframe, 0, false);
       continue;
     }
-    const { width, height } = view, gl = canvas.getContext('webgl2');
     if (!warp.show(view, 1e6)) throw new Error(`${name} is not drawn`);
-    const rows = new Uint8Array(4 * width * height), rgb = [];
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
+    const { width, height } = view, rows = pixels(view), rgb = [];
     for (let y = height - 1; y >= 0; y--)  // the lowest row is the first
       for (let i = 4 * y * width; i < 4 * (y + 1) * width; i += 4)
         rgb.push(rows[i], rows[i + 1], rows[i + 2]);
     drawn[name] = rgb;
   }
-  worker.terminate();
+  end();
   return drawn;
 }, steps);
 
@@ -116,6 +100,7 @@ test('shader and server draw the same picture', { skip }, async () => {
   ];
   const page = await browser.newPage();
   await page.goto(`${server.url}/healthz`);
+  await page.evaluate(begin_in_page);
   const drawn = await draw(page, steps.map(({ packet, ...step }) =>
     packet ? { bytes: packet.bytes.toString('base64') } : step));
   for (const [name, rgb] of Object.entries(drawn))

@@ -17,7 +17,7 @@ void fuzz_cached_map(Bytes bytes) {
   const auto map = load_map(baked_square().world, file, cached_key).map;
   if (!map) return;
   mapped_objects(scene, *map);
-  relit(*map, LampLevels(scene.lamps.size(), 100));
+  relit(*map, lamp_factors(scene, LampLevels(scene.lamps.size(), 100)));
   const auto& charts = map->places->charts;
   for (size_t i = 0; i < std::min<size_t>(charts.size(), 8); i++)
     for (vec2 at : {vec2(0), vec2(0.5f), vec2(1e9f), vec2(-1)})

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // exhibit.json, in a package whose other files are right (tests/fuzz/package).
 #include "fuzz/fuzz.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 
 namespace wellspring::fuzz {
 

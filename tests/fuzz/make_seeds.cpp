@@ -13,6 +13,7 @@
 #include "unit/denoise/tza.h"
 #include "unit/folder.h"
 #include "unit/show/exhibit/room_package.h"
+#include "unit/store/band_files/made_bands.h"
 #include "unit/store/format/pictures.h"
 #include "unit/volume/format/volume_files.h"
 
@@ -180,6 +181,22 @@ void write_sums(const Corpus& corpus) {
   corpus.put("sums_file", "sums.sqlite", corpus.folder.read("sums.sqlite"));
 }
 
+void write_many_bands(const Corpus& corpus) {
+  MadeBands made;
+  made.width = 20, made.height = 9;
+  made.value = [](int x, int y, int band) { return 9 * x + 5 * y + 20 * band; };
+  const auto put = [&](const char* name) {
+    write_bands_tiff(corpus.folder.file("bands.tif"), made);
+    corpus.put("bands", name,
+               wavelengths_json(3, 430, 100) + '\0' + corpus.folder.read("bands.tif"));
+  };
+  put("tiles.bands");
+  made.tile = 0, made.code = store::BandCode::u8, made.planar = true;
+  put("strips.bands");
+  made.code = store::BandCode::f32, made.pages = true;
+  put("pages.bands");
+}
+
 void write_large_pictures(const Corpus& corpus) {
   const auto put = [&](const char* name, const std::vector<TiffSpec>& pages, bool sub = false,
                        const char* mode = "w") {
@@ -278,6 +295,7 @@ int main(int argc, char** argv) {
   write_weights(corpus);
   write_sums(corpus);
   write_large_pictures(corpus);
+  write_many_bands(corpus);
   write_volumes(corpus);
   return 0;
 }

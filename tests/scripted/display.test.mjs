@@ -4,7 +4,8 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { decode_disparity } from '../../web/display/disparity.js';
+import { decode_disparity, inflate } from '../../web/display/disparity.js';
+import { eval_waves, make_wind_clock } from '../../web/display/sway.js';
 import { make_mapping } from '../../web/display/view.js';
 import { make_walker } from '../../web/display/walker.js';
 import { read_picture } from '../../web/packet.js';
@@ -14,8 +15,8 @@ let server;
 before(async () => { server = await start_server(['--exhibit', 'first-room']); });
 after(async () => { if (server) assert.equal(await server.stop(), 0); });
 
-const golden = () => {
-  const lines = readFileSync(join(source, 'tests/protocol/keyframe.hex'), 'utf8').split('\n');
+const golden = (name = 'keyframe') => {
+  const lines = readFileSync(join(source, `tests/protocol/${name}.hex`), 'utf8').split('\n');
   const words = lines.filter((line) => !line.startsWith('#')).join(' ').trim().split(/\s+/);
   return Uint8Array.from(words, (word) => parseInt(word, 16));
 };
@@ -30,6 +31,58 @@ test('the page reads a keyframe as it is documented', async () => {
   assert.deepEqual([...await depth_of(picture)],
       [10, 15, 20, 25, 30, 35, 300, 7, 20, 25, 30, 35, 40, 45, 300, 7, 30, 35, 40, 45, 50, 55, 60,
         9, 40, 45, 50, 55, 60, 65, 70, 65535]);
+});
+
+test('the page reads how grass sways', async () => {
+  const packed = golden('keyframe_sway'), { sway, ...picture } = read_picture(packed.buffer);
+  const { codes, ...rest } = sway, none = { push: [0, 0], wave: [0, 0], rate: 0, phase: 0 };
+  assert.deepEqual(rest, { columns: 2, rows: 1, unit: 1, time: 12.5, waves: [
+    { push: [0.5, -0.25], wave: [1, 2], rate: 1.5, phase: 0.75 },
+    { push: [0, 1], wave: [0, 0], rate: 2, phase: -1 }, none, none] });
+  assert.deepEqual([...await inflate(codes, 2)], [0, 7]);
+  assert.deepEqual([...await depth_of(picture)],
+      [...await depth_of(read_picture(golden().buffer))], 'the depth is what it was');
+  assert.equal(read_picture(golden().buffer).sway, null);
+  for (const [at, value] of [[26, 231], [117, 1], [120, 0], [122, 0], [127, 0x7f], [135, 0x7f]]) {
+    const bad = packed.slice();
+    bad[at] = value;
+    if (at === 127 || at === 135) bad[at - 1] = 0xff;
+    assert.equal(read_picture(bad.buffer), null, `byte ${at}`);
+  }
+});
+
+test('what wind has moved is the difference of two pushes', () => {
+  const waves = [{ push: [0.5, -0.25], wave: [1, 2], rate: 1.5, phase: 0.75 },
+    { push: [0.1, 1], wave: [0.3, -7], rate: 7.9, phase: -1 }];
+  const place = [0.7, -1.9];
+  const push = (seconds) => [0, 1].map((k) => waves.reduce((sum, one) => sum + one.push[k]
+      * Math.sin(one.wave[0] * place[0] + one.wave[1] * place[1] + one.phase
+        - one.rate * seconds), 0));
+  for (const seconds of [0.02, 0.5, 3, -1]) {
+    const { sums, phases } = eval_waves(waves, seconds);
+    const moved = [0, 1].map((k) => phases.reduce((sum, phase, i) => sum + sums[4 * i + k]
+        * Math.cos(sums[4 * i + 2] * place[0] + sums[4 * i + 3] * place[1] + phase), 0));
+    for (const k of [0, 1])
+      assert.ok(Math.abs(moved[k] - (push(seconds)[k] - push(0)[k])) < 1e-9, `${seconds}`);
+  }
+});
+
+test('the wind goes on evenly, whenever pictures come', () => {
+  const clock = make_wind_clock();
+  assert.ok(Number.isNaN(clock.at(5)));
+  clock.note(100, 1000);
+  assert.equal(clock.at(1000), 100);
+  let last = 100;
+  for (let now = 1100, i = 0; now < 20000; now += 500, i++) {
+    clock.note(100 + (now - 1000) / 1000 - 0.1 * (i % 3), now);  // as much later
+    for (let t = now; t < now + 500; t += 100) {
+      const at = clock.at(t);
+      assert.ok(at > last && at < last + 0.16, `${at} after ${last}`);
+      last = at;
+    }
+  }
+  clock.note(7, 20000);  // another server
+  assert.equal(clock.at(20000), 7);
 });
 
 test('what is no keyframe is refused before it takes memory', async () => {

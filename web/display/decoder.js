@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// This worker decodes keyframes: {id, color, depth, width, height, layer} becomes {id, bitmap,
-// units, blocks} or {id, problem}. `blocks` has the farthest and the nearest units of each block of
-// pixels and those around them, row after row; of a layer only where there is anything, and the
-// farthest is nearer than the nearest where there is not.
-import { decode_disparity } from './disparity.js';
+// This worker decodes keyframes: {id, color, depth, width, height, layer, sway} becomes {id,
+// bitmap, units, blocks, codes} or {id, problem}. `blocks` has the farthest and the nearest units
+// of each block of pixels and those around them, row after row; of a layer only where there is
+// anything, and the farthest is nearer than the nearest where there is not.
+import { decode_disparity, inflate } from './disparity.js';
 import { decode_jpeg } from './jpeg.js';
 import { block } from './view.js';
 
@@ -27,14 +27,15 @@ function bound_blocks(units, width, height, layer) {
   return out;
 }
 
-self.onmessage = async ({ data: { id, color, depth, width, height, layer } }) => {
+self.onmessage = async ({ data: { id, color, depth, width, height, layer, sway } }) => {
   try {
-    const [bitmap, units] = await Promise.all([
+    const [bitmap, units, codes] = await Promise.all([
       decode_jpeg(color),
       decode_disparity(depth, width, height),
+      sway ? inflate(sway.codes, sway.columns * sway.rows) : null,
     ]);
     const blocks = bound_blocks(units, width, height, layer);
-    /** @type {any} */ (self).postMessage({ id, bitmap, units, blocks },
+    /** @type {any} */ (self).postMessage({ id, bitmap, units, blocks, codes },
         [bitmap, units.buffer, blocks.buffer]);
   } catch (problem) {
     self.postMessage({ id, problem: String(problem) });

@@ -3,8 +3,8 @@
 const header_bytes = 16, slope_units = 256, most_units = 65535, long_length = 255;
 const above = 0, after = 1, earlier = 2, begins = 3, values = 4;
 
-// Unpacks the zlib stream, which must hold that many bytes.
-async function inflate(bytes, count) {
+// Unpacks a zlib stream, which must hold that many bytes.
+export async function inflate(bytes, count) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
   const out = new Uint8Array(count), reader = stream.getReader();
   let at = 0;
@@ -13,12 +13,12 @@ async function inflate(bytes, count) {
     if (done) break;
     if (at + value.length > count) {
       await reader.cancel();
-      throw new Error('depth: too many bytes');
+      throw new Error('packed: too many bytes');
     }
     out.set(value, at);
     at += value.length;
   }
-  if (at < count) throw new Error('depth: too few bytes');
+  if (at < count) throw new Error('packed: too few bytes');
   return out;
 }
 

@@ -2,7 +2,9 @@
 // The picture as this page draws it: keyframes with depth from the server, seen by a camera that
 // moves here.
 import { read_picture } from '../packet.js';
+import { inflate } from './disparity.js';
 import { decode_jpeg } from './jpeg.js';
+import { make_wind_clock } from './sway.js';
 import { view_of } from './view.js';
 import { make_ground, make_walker } from './walker.js';
 import { make_warp } from './warp.js';
@@ -26,8 +28,9 @@ function make_judge(on_rate) {
 
 // `canvas`: that of finished pictures, over which one of its own is laid. on_shown: as of
 // make_picture(). on_weak(reason): the device cannot do it, as it is too `slow` or its context is
-// `lost`. round_trip(): milliseconds. null: the browser cannot do it.
-export function make_display(canvas, { on_shown, on_weak, round_trip }) {
+// `lost`. round_trip(): milliseconds. calm(): grass does not sway between keyframes. null: the
+// browser cannot do it.
+export function make_display(canvas, { on_shown, on_weak, round_trip, calm = () => false }) {
   if (!('createImageBitmap' in window && 'Worker' in window)) return null;
   let fresh = false;  // there is something new to be drawn
   const own = document.createElement('canvas');
@@ -47,6 +50,8 @@ export function make_display(canvas, { on_shown, on_weak, round_trip }) {
   const decoding = new Map();  // frame -> what takes the worker's answer
   let size = [canvas.width, canvas.height], deep = false;
   let last = performance.now(), drawn = 0, work = Promise.resolve();
+  const wind = make_wind_clock();
+  let sways = true, slow_sways = 0;  // false: the device is too slow for that
   const times = [];  // times of the last second's pictures
 
   worker.onmessage = ({ data }) => {
@@ -59,20 +64,25 @@ export function make_display(canvas, { on_shown, on_weak, round_trip }) {
     slow = rate < least_rate ? slow + 1 : 0;
     if (slow > 1) on_weak('slow');
   });
-  const decode_keyframe = ({ frame, keyframe: { color_bytes, view }, payload, layer }) =>
+  const judge_sway = make_judge((rate) => {
+    slow_sways = rate < least_rate ? slow_sways + 1 : 0;
+    if (slow_sways > 1) sways = false;
+  });
+  const decode_keyframe = ({ frame, keyframe: { color_bytes, view }, payload, layer, sway }) =>
     new Promise((resolve) => {
       decoding.set(frame, resolve);
       const { width, height } = view;
       const color = payload.slice(0, color_bytes), depth = payload.slice(color_bytes);
-      worker.postMessage({ id: frame, color, depth, width, height, layer },
+      worker.postMessage({ id: frame, color, depth, width, height, layer, sway },
           [color.buffer, depth.buffer]);
     });
 
   async function show_keyframe(picture) {
     const { view, unit, cuts } = picture.keyframe;
-    const { bitmap, units, blocks, problem } = await decode_keyframe(picture);
+    const { bitmap, units, blocks, codes, problem } = await decode_keyframe(picture);
     if (problem) throw new Error(problem);
-    const keyframe = { view, unit, cuts, bitmap, units, blocks };
+    const sway = codes && { ...picture.sway, codes };
+    const keyframe = { view, unit, cuts, bitmap, units, blocks, sway };
     if (picture.layer) warp.set_layer(keyframe);
     else if (picture.around) warp.set_around(keyframe);
     else warp.add(keyframe, performance.now(), picture.still);
@@ -80,7 +90,9 @@ export function make_display(canvas, { on_shown, on_weak, round_trip }) {
   async function change(picture) {
     const pieces = await Promise.all(picture.parts.map(async (part) =>
       ({ bitmap: await decode_jpeg(part.payload), x: part.x, y: part.y })));
-    await warp.change(pieces, picture.width, picture.height);
+    const { sway } = picture;
+    const codes = sway && await inflate(sway.codes, sway.columns * sway.rows);
+    await warp.change(pieces, picture.width, picture.height, sway && { ...sway, codes });
     for (const { bitmap } of pieces) bitmap.close();
   }
   async function take(picture) {
@@ -89,6 +101,7 @@ export function make_display(canvas, { on_shown, on_weak, round_trip }) {
     let good = true;
     try {
       await (picture.parts ? change(picture) : show_keyframe(picture));
+      if (picture.sway) wind.note(picture.sway.time, began);
       fresh = true;
       broken = 0;
     } catch (problem) {
@@ -107,12 +120,14 @@ export function make_display(canvas, { on_shown, on_weak, round_trip }) {
     last = now;
     const moved = walker.advance(dt, now), pose = walker.pose();
     drew = false;
-    if (!pose || !deep || !(moved || fresh || warp.fades(now))) return;
+    const swaying = sways && !calm() && warp.sways(), needed = moved || fresh || warp.fades(now);
+    if (!pose || !deep || !(needed || swaying)) return;
     fresh = false;
-    if (!warp.show(view_of(pose, ...size), now)) return;
+    if (!warp.show(view_of(pose, ...size), now, swaying ? wind.at(now) : NaN)) return;
     own.hidden = false;
+    own.dataset.sways = String(swaying);
     drew = true;
-    if (drew_before && gap < 1000) judge(gap);
+    if (drew_before && gap < 1000) (swaying ? judge_sway : judge)(gap);
     drawn++;
     canvas.dataset.drawn = String(drawn);
     times.push(now);

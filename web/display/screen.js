@@ -26,8 +26,8 @@ function make_round_trip() {
   };
 }
 
-// on_shown: as of make_picture(). send(message): to the server.
-export function make_screen(canvas, { on_shown, send }) {
+// on_shown: as of make_picture(). send(message): to the server. calm(): as make_display() has it.
+export function make_screen(canvas, { on_shown, send, calm }) {
   const trip = make_round_trip();
   const shown = (picture) => {
     if (picture.shown) trip.seen(picture.seq);
@@ -51,7 +51,7 @@ export function make_screen(canvas, { on_shown, send }) {
   }
   if (!reason) {
     display = make_display(canvas,
-        { on_shown: shown, on_weak: give_up, round_trip: trip.milliseconds });
+        { on_shown: shown, on_weak: give_up, round_trip: trip.milliseconds, calm });
     if (!display) reason = 'unable';
   }
   say();

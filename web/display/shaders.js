@@ -27,6 +27,16 @@ struct Layer {    // a keyframe
   float opacity;
   bool is_coarse; // its pixels are larger than the view's
 };
+struct Sway {         // how wind has moved a keyframe's grass (sway.js)
+  bool is_there;
+  vec4 waves[4];      // push, then radians a metre
+  float phases[4];
+  vec2 rays[3], aside[3];
+  vec3 lens;          // axis and focal length, pixels
+  float unit;         // pixels a code
+};
+uniform Sway sways[${most_layers}];
+uniform sampler2D codes[${most_layers}];   // how far blocks of pixels sway
 uniform Layer layers[${most_layers}];
 uniform sampler2D color[${most_layers}];
 uniform usampler2D units[${most_layers}];  // their disparities
@@ -37,7 +47,8 @@ uniform bool masked;                       // there is nothing where the first o
 out vec4 shown;
 
 const float least_depth = 1e-6, found = 0.5, meets = 1.0, same = 0.125, half_step = 0.5;
-const int most_steps = 96;
+const int most_steps = 96, sway_steps = 3;
+const float most_code = 255.0;
 
 float own_disparity(usampler2D units, Layer layer, ivec2 at) {
   return layer.unit * float(texelFetch(units, clamp(at, ivec2(0), ivec2(layer.size) - 1), 0).r);
@@ -84,6 +95,22 @@ vec3 sample_color(sampler2D color, usampler2D units, Layer layer, vec2 at, float
   return all > 1e-5 ? sum / all : texture(color, (floor(at) + 0.5) / layer.size).rgb;
 }
 
+// Returns the place of what wind has brought to a keyframe's place since: of what is there, the
+// grass is known that was moved by as much as it is away, by fixed-point iteration.
+vec2 unsway(sampler2D codes, usampler2D units, Sway sway, Layer layer, vec2 at) {
+  float s = own_disparity(units, layer, ivec2(clamp(at, vec2(0), layer.size - 1.0)));
+  if (!sway.is_there || s == 0.0) return at;
+  vec2 place = (sway.rays[0] + at.x * sway.rays[1] + at.y * sway.rays[2]) / s, push = vec2(0);
+  for (int i = 0; i < 4; i++)
+    push += sway.waves[i].xy * cos(dot(sway.waves[i].zw, place) + sway.phases[i]);
+  float away = dot(push, sway.aside[2]) / sway.lens.z;
+  vec2 way = sway.unit * most_code * (vec2(dot(push, sway.aside[0]), dot(push, sway.aside[1]))
+      - (at - sway.lens.xy) * away);
+  vec2 from = at;
+  for (int i = 0; i < sway_steps; i++) from = at - way * texture(codes, from / layer.size).r;
+  return from;
+}
+
 vec3 base_of(Layer layer, vec2 pixel) {
   return layer.to[0] + pixel.x * layer.to[1] + pixel.y * layer.to[2];
 }
@@ -100,8 +127,8 @@ float most_speed(sampler2D bounds, Layer layer, vec2 pixel) {
 // Returns the keyframe's colour of the pixel, or how it goes on there: with the farthest surface on
 // the line, which does not stand before what would be seen, or with its border. Its alpha is how
 // much of the pixel the keyframe shows.
-vec4 look(sampler2D color, usampler2D units, sampler2D bounds, Layer layer, vec2 pixel,
-    out float disparity) {
+vec4 look(sampler2D color, usampler2D units, sampler2D bounds, sampler2D codes, Layer layer,
+    Sway sway, vec2 pixel, out float disparity) {
   vec3 base = base_of(layer, pixel);
   vec2 range = texelFetch(bounds, ivec2(pixel) / ${block}, 0).rg;
   vec3 first = carry(layer, base, range.g), last = carry(layer, base, range.r);
@@ -139,7 +166,8 @@ vec4 look(sampler2D color, usampler2D units, sampler2D bounds, Layer layer, vec2
   }
   vec2 border = min(at, layer.size - at);
   float share = layer.seam > 0.0 ? clamp(min(border.x, border.y) / layer.seam, 0.0, 1.0) : 1.0;
-  return vec4(sample_color(color, units, layer, at, layer.is_coarse ? 0.0 : pixels),
+  vec2 from = is_found ? unsway(codes, units, sway, layer, at) : at;
+  return vec4(sample_color(color, units, layer, from, layer.is_coarse ? 0.0 : pixels),
       is_found && is_inside(layer, at) && base.z > least_depth ? share : 0.0);
 }
 
@@ -154,11 +182,12 @@ bool sees_past(vec2 pixel, float disparity, float pixels) {
 void main() {
   vec2 pixel = vec2(gl_FragCoord.x, height - gl_FragCoord.y);
   if (as_it_is) {
-    shown = vec4(texture(color[0], pixel / layers[0].size).rgb, 1);
+    vec2 from = unsway(codes[0], units[0], sways[0], layers[0], pixel);
+    shown = vec4(texture(color[0], from / layers[0].size).rgb, 1);
     return;
   }
   float disparity;
-  vec4 first = look(color[0], units[0], bounds[0], layers[0], pixel, disparity);
+  vec4 first = look(color[0], units[0], bounds[0], codes[0], layers[0], sways[0], pixel, disparity);
   if (masked) {
     vec2 at = carry(layers[0], base_of(layers[0], pixel), disparity).xy;
     if (first.a == 0.0 || own_disparity(units[0], layers[0], ivec2(at)) == 0.0) discard;
@@ -168,7 +197,8 @@ void main() {
   float pixels = first.a > 0.0 ? 0.0 : most_speed(bounds[0], layers[0], pixel);
 ${Array.from({ length: most_layers - 1 }, (_, i) => i + 1).map((i) => `
   if (left > 0.0 && layers[${i}].is_there) {
-    vec4 next = look(color[${i}], units[${i}], bounds[${i}], layers[${i}], pixel, disparity);
+    vec4 next = look(color[${i}], units[${i}], bounds[${i}], codes[${i}], layers[${i}], sways[${i}],
+        pixel, disparity);
     if (first.a == 0.0 && sees_past(pixel, disparity, pixels)) next.a = 0.0;
     sum += left * next.a * next.rgb;
     left *= 1.0 - next.a;

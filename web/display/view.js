@@ -32,14 +32,15 @@ export function is_same(a, b) {
     && near([a.tan_half_fov, ...a.middle], [b.tan_half_fov, ...b.middle]);
 }
 
+export const focal_of = (view) => 0.5 * view.height / view.tan_half_fov;  // pixels
+// Returns where the viewing axis meets the picture, pixels.
+export const axis_of = (view) => [0.5 * view.width - view.middle[0] * focal_of(view),
+  0.5 * view.height + view.middle[1] * focal_of(view)];
+
 // A mapping leads from a pixel (x, y) and its disparity w in one view to another: one + x * across
 // + y * down + w * baseline is the place there times its depth over the depth here, and that ratio.
 export function make_mapping(from, to) {
-  const scale = 2 * from.tan_half_fov / from.height, focal = 0.5 * to.height / to.tan_half_fov;
-  const axis_of = (view) => {
-    const own = 0.5 * view.height / view.tan_half_fov;
-    return [0.5 * view.width - view.middle[0] * own, 0.5 * view.height + view.middle[1] * own];
-  };
+  const scale = 2 * from.tan_half_fov / from.height, focal = focal_of(to);
   const axis = axis_of(to), own_axis = axis_of(from);
   const seen = (d) => {
     const x = dot(d, to.right), y = dot(d, to.up), z = dot(d, to.forward);

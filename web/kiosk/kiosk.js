@@ -27,8 +27,9 @@ const double_touch = { seconds: 0.6, pixels: 160 };
 const touch_interval = 500;   // milliseconds between two touches that the server hears of
 const alone_after = 60;       // seconds without a touch; then the book sinks without a server
 const idle_fps = 1;           // pictures a second while something else covers them
-// The address has: kiosk: its name; teller: the storyteller who shall be there; lang: the house's
-// language; pixels: how many the well's pictures have, for measuring.
+// The address has: kiosk: its name; wall: the name of a wall that shows what it shows; teller: the
+// storyteller who shall be there; lang: the house's language; pixels: how many the well's pictures
+// have, for measuring.
 const asked = new URLSearchParams(location.search);
 const house_lang = first_language();
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -52,7 +53,8 @@ function note_shown(shown) {
   sound.shown(shown);
   by_id('picture').dataset.frame = shown.frame;
 }
-const screen = make_screen(by_id('picture'), { on_shown: note_shown, send });
+const screen = make_screen(by_id('picture'), { on_shown: note_shown, send,
+  calm: () => calm });
 const well = make_well(by_id('well'), {
   wave: (depth) => ambience.splash(depth * 14),
   fell_up: () => ambience.splash(0.15),
@@ -281,7 +283,8 @@ async function read_exhibit(message) {
 
 connection = make_connection({
   hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', parts: true,
-    kiosk: asked.get('kiosk') ?? '', token: kiosk_token(), ...wanted_size(), ...screen.hello() }),
+    kiosk: asked.get('kiosk') ?? '', token: kiosk_token(), ...wanted_size(), ...screen.hello(),
+    ...(asked.has('wall') && { wall: { name: asked.get('wall') } }) }),
   open() {
     lost = untrusted = false;
     fps = null;

@@ -94,7 +94,7 @@ export default {
     'Ziehen oder Pfeiltasten bewegen es; Rad oder + und - vergrößern; zwei Finger oder [ und '
     + '] ändern seine Größe.',
   read_seen: 'Hier zu sehen',
-  ruler: 'Messen', ruler_hint: 'Ziehen Sie eine Linie über das Bild.',
+  ruler: 'Messen', ruler_hint: 'Linie ziehen, oder Pfeiltasten und Enter drücken.',
   preset: 'Zeigen', turntable: 'Drehen', unwrap: 'Auswickeln bis', cut_away: 'Wegschneiden',
   from_left: 'von links', from_above: 'von oben', from_front: 'von vorn',
   glass_cuts: 'schneidet hinein', glass_depth: 'Wie tief', as_at_first: 'Wie zu Anfang',

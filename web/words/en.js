@@ -93,7 +93,7 @@ export default {
     'Drag it or press arrow keys; wheel or + and - enlarge; two fingers or [ and ] change '
     + 'its size.',
   read_seen: 'To be seen here',
-  ruler: 'Measure', ruler_hint: 'Draw a line over the picture.',
+  ruler: 'Measure', ruler_hint: 'Draw a line over the picture, or use arrow keys and Enter.',
   preset: 'Show', turntable: 'Turn', unwrap: 'Unwrap to', cut_away: 'Cut away',
   from_left: 'from the left', from_above: 'from above', from_front: 'from the front',
   glass_cuts: 'cuts into it', glass_depth: 'How deep', as_at_first: 'As at first',

@@ -95,7 +95,7 @@ export default {
     'Se mueve arrastrando o con las flechas; la rueda o + y - amplían; dos dedos o [ y ] '
     + 'cambian su tamaño.',
   read_seen: 'Para ver aquí',
-  ruler: 'Medir', ruler_hint: 'Trace una línea sobre la imagen.',
+  ruler: 'Medir', ruler_hint: 'Trace una línea, o use las flechas e Intro.',
   preset: 'Mostrar', turntable: 'Girar', unwrap: 'Desenvolver hasta', cut_away: 'Cortar',
   from_left: 'desde la izquierda', from_above: 'desde arriba', from_front: 'desde delante',
   glass_cuts: 'corta hacia dentro', glass_depth: 'Profundidad', as_at_first: 'Como al principio',

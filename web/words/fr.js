@@ -95,7 +95,7 @@ export default {
     'Glisser ou flèches : elle bouge ; molette ou + et - : agrandir ; deux doigts ou [ et ] '
     + ': sa taille.',
   read_seen: 'À voir ici',
-  ruler: 'Mesurer', ruler_hint: 'Tracez une ligne sur l’image.',
+  ruler: 'Mesurer', ruler_hint: 'Tracez une ligne, ou utilisez les flèches et Entrée.',
   preset: 'Montrer', turntable: 'Tourner', unwrap: 'Déballer jusqu’à', cut_away: 'Couper',
   from_left: 'par la gauche', from_above: 'par le haut', from_front: 'par l’avant',
   glass_cuts: 'coupe dedans', glass_depth: 'Profondeur', as_at_first: 'Comme au début',

@@ -90,7 +90,7 @@ export default {
     'Posúva sa ťahaním alebo šípkami; koliesko alebo + a - zväčšujú; dva prsty alebo [ a ] '
     + 'menia veľkosť.',
   read_seen: 'Čo tu vidno',
-  ruler: 'Merať', ruler_hint: 'Ťahaním nakreslite čiaru cez obraz.',
+  ruler: 'Merať', ruler_hint: 'Nakreslite čiaru ťahaním alebo šípkami a Enterom.',
   preset: 'Ukázať', turntable: 'Otáčať', unwrap: 'Rozbaliť po', cut_away: 'Odrezať',
   from_left: 'zľava', from_above: 'zhora', from_front: 'spredu', glass_cuts: 'reže dovnútra',
   glass_depth: 'Ako hlboko', as_at_first: 'Ako na začiatku',

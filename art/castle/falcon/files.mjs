@@ -38,9 +38,10 @@ export function png(width, height, pixels, channels = 3) {
     chunk('IDAT', deflateSync(rows, { level: 9 })), chunk('IEND', Buffer.alloc(0))]);
 }
 
-// `parts` are {name, material, points, normals, uv, triangles, node}; `pictures` are PNG files, of
-// which materials speak by their place.
-export function glb({ generator, parts, materials, pictures = [], nodes = [], extras = {} }) {
+// `parts` are {name, material, points, normals, colors, uv, triangles}, colours linear; `pictures`
+// are PNG files, of which materials speak by their place. `wrap` says whether they repeat upwards.
+export function glb({ generator, parts, materials, pictures = [], nodes = [], extras = {},
+  wrap = 33071 }) {
   const views = [], accessors = [], chunks = [];
   let size = 0;
   const view = (content, target) => {
@@ -71,7 +72,13 @@ export function glb({ generator, parts, materials, pictures = [], nodes = [], ex
   const meshes = parts.map((part) => {
     const attributes = { POSITION: floats(part.points, 'VEC3', true) };
     if (part.normals) attributes.NORMAL = floats(part.normals, 'VEC3');
-    if (part.uv) attributes.TEXCOORD_0 = floats(part.uv, 'VEC2');
+    if (part.uv?.length) attributes.TEXCOORD_0 = floats(part.uv, 'VEC2');
+    if (part.colors) {
+      const codes = part.colors.map((c) => [...c, 1]).flat()
+          .map((c) => Math.round(255 * Math.min(Math.max(c, 0), 1)));
+      attributes.COLOR_0 = accessors.push({ bufferView: view(Buffer.from(codes), 34962),
+        componentType: 5121, normalized: true, count: part.colors.length, type: 'VEC4' }) - 1;
+    }
     const small = part.points.length < 65536;
     const flat = (small ? Uint16Array : Uint32Array).from(part.triangles.flat());
     const indices = accessors.push({ bufferView: view(bytes(flat), 34963),
@@ -88,7 +95,7 @@ export function glb({ generator, parts, materials, pictures = [], nodes = [], ex
     ...(used.size ? { extensionsUsed: [...used].sort() } : {}), ...extras,
     scene: 0, scenes: [{ nodes: all.map((_, i) => i) }], nodes: all, meshes, materials,
     ...(images.length ? { textures: images.map((_, source) => ({ source, sampler: 0 })), images,
-      samplers: [{ magFilter: 9729, minFilter: 9987, wrapS: 10497, wrapT: 33071 }] } : {}),
+      samplers: [{ magFilter: 9729, minFilter: 9987, wrapS: 10497, wrapT: wrap }] } : {}),
     accessors, bufferViews: views, buffers: [{ byteLength: size }] };
   let text = Buffer.from(JSON.stringify(document));
   text = Buffer.concat([text, Buffer.alloc((4 - text.length % 4) % 4, ' ')]);

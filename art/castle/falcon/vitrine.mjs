@@ -2,9 +2,9 @@
 // A vitrine as the castle's others: a dark plinth with brass edges, velvet, panes, a lamp in the
 // lid. Metres, y up; the velvet that the mummy stands on lies at FLOOR.
 export const FLOOR = 1.04;
-const WIDTH = 0.5, BASE = 1.02, TOP = 1.66;
+const VELVET = 0.02;
 
-class Part {
+export class Part {
   constructor(name, material) {
     Object.assign(this, { name, material, points: [], normals: [], uv: undefined, triangles: [] });
   }
@@ -66,38 +66,46 @@ class Part {
   }
 }
 
-export function make_vitrine() {
-  const w = WIDTH / 2, plinth = new Part('Vitrine Falcon', 'plinth');
-  const brass = new Part('Brass Falcon', 'brass'), velvet = new Part('Velvet Falcon', 'red velvet');
-  const glass = new Part('Glass Falcon', 'glass');
-  plinth.box([-w, 0.07, -w], [w, BASE - 0.02, w]);
+// Returns the parts of a vitrine whose panes reach from `base` to `top`.
+export function make_case(name, width, base, top, cloth) {
+  const w = width / 2, plinth = new Part(`Vitrine ${name}`, 'plinth');
+  const brass = new Part(`Brass ${name}`, 'brass'), velvet = new Part(`Velvet ${name}`, cloth);
+  const glass = new Part(`Glass ${name}`, 'glass');
+  plinth.box([-w, 0.07, -w], [w, base - 0.02, w]);
   plinth.box([-w + 0.03, 0, -w + 0.03], [w - 0.03, 0.07, w - 0.03]);
-  plinth.box([-w, TOP + 0.012, -w], [w, TOP + 0.09, w]);
-  velvet.box([-w + 0.018, BASE - 0.01, -w + 0.018], [w - 0.018, FLOOR, w - 0.018]);
+  plinth.box([-w, top + 0.012, -w], [w, top + 0.09, w]);
+  velvet.box([-w + 0.018, base - 0.01, -w + 0.018], [w - 0.018, base + VELVET, w - 0.018]);
   const rim = w + 0.012;
-  brass.box([-rim, TOP - 0.008, -rim], [rim, TOP + 0.016, rim]);
-  brass.box([-rim, BASE - 0.03, -rim], [rim, BASE, rim]);
+  brass.box([-rim, top - 0.008, -rim], [rim, top + 0.016, rim]);
+  brass.box([-rim, base - 0.03, -rim], [rim, base, rim]);
   for (const sx of [-1, 1])
     for (const sz of [-1, 1])
-      brass.box([sx * w - 0.01, BASE, sz * w - 0.01], [sx * w + 0.01, TOP, sz * w + 0.01]);
+      brass.box([sx * w - 0.01, base, sz * w - 0.01], [sx * w + 0.01, top, sz * w + 0.01]);
   const g = w - 0.003;
   const round = [[-g, g], [g, g], [g, -g], [-g, -g]];
   round.forEach(([x, z], i) => {
     const [x1, z1] = round[(i + 1) % 4];
-    glass.quad([[x, BASE, z], [x1, BASE, z1], [x1, TOP, z1], [x, TOP, z]]);
+    glass.quad([[x, base, z], [x1, base, z1], [x1, top, z1], [x, top, z]]);
   });
-  const pbr = (color, roughness, metallic = 0) => ({ baseColorFactor: [...color, 1],
-    metallicFactor: metallic, roughnessFactor: roughness });
-  const from = [0, TOP - 0.03, 0.11], half = Math.PI / 4 - Math.atan2(0.11, TOP - 0.03 - 1.2) / 2;
+  return [plinth, brass, velvet, glass];
+}
+
+export const pbr = (color, roughness, metallic = 0) => ({ baseColorFactor: [...color, 1],
+  metallicFactor: metallic, roughnessFactor: roughness });
+export const plinth = { name: 'plinth', pbrMetallicRoughness: pbr([0.0242, 0.0232, 0.0252], 0.38) };
+export const brass = { name: 'brass', pbrMetallicRoughness: pbr([0.72, 0.50, 0.22], 0.3, 1) };
+export const pane = { name: 'glass', pbrMetallicRoughness: pbr([1, 1, 1], 0), doubleSided: true,
+  extensions: { KHR_materials_transmission: { transmissionFactor: 1 },
+    KHR_materials_ior: { ior: 1.5 } } };
+
+export function make_vitrine() {
+  const top = 1.66, base = FLOOR - VELVET;
+  const from = [0, top - 0.03, 0.11], half = Math.PI / 4 - Math.atan2(0.11, top - 0.03 - 1.2) / 2;
   return {
-    generator: 'art/castle/falcon/make_falcon.mjs', parts: [plinth, brass, velvet, glass],
-    materials: [
-      { name: 'plinth', pbrMetallicRoughness: pbr([0.0242, 0.0232, 0.0252], 0.38) },
-      { name: 'brass', pbrMetallicRoughness: pbr([0.72, 0.50, 0.22], 0.3, 1) },
-      { name: 'red velvet', pbrMetallicRoughness: pbr([0.205, 0.0060, 0.0144], 0.9) },
-      { name: 'glass', pbrMetallicRoughness: pbr([1, 1, 1], 0), doubleSided: true, extensions: {
-        KHR_materials_transmission: { transmissionFactor: 1 }, KHR_materials_ior: { ior: 1.5 } } },
-    ],
+    generator: 'art/castle/falcon/make_falcon.mjs',
+    parts: make_case('Falcon', 0.5, base, top, 'red velvet'),
+    materials: [plinth, brass,
+      { name: 'red velvet', pbrMetallicRoughness: pbr([0.205, 0.0060, 0.0144], 0.9) }, pane],
     // A light shines along -z; this one is tipped down and a little back.
     nodes: [{ name: 'Lamp Falcon 1', translation: from,
       rotation: [-Math.sin(half), 0, 0, Math.cos(half)],

@@ -35,6 +35,9 @@ LampCells make_lamp_cells(const World& world, const IlluminationMap& map);
 // Returns the number of the cell of a surface there, or no_lamp_cell.
 uint32_t find_lamp_cell(const LampCells& cells, vec3 place, vec3 normal);
 
+// Returns the map of `world` as its lamps are now; `tables`: of its lights.
+std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all, const World& world,
+                                             const LightTables& tables);
 // Returns the lights of `world` as its lamps are now. `all`: lights of the same world, made and
 // prepared for all techniques in use while all lamps were full. A technique of passes has to begin
 // one before the next sample.

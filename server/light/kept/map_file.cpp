@@ -16,7 +16,7 @@
 namespace wellspring::light {
 namespace {
 
-constexpr uint64_t format = 0x33504d4c57535701;  // changes with what is written, and with charts
+constexpr uint64_t format = 0x33504d4c57535702;  // changes with what is written, and with charts
 constexpr int zstd_level = 19;
 constexpr float light_steps = 24;     // steps to a unit of the light's logarithm to base 2
 constexpr float least_share = 1e-3f;  // share of the mean light, below which steps are even
@@ -241,6 +241,43 @@ void take_standing(std::span<const StandingThing> theirs, std::span<const Standi
   map.places = places;
 }
 
+// Names what the layers of a scene's map hold, a line each; the first belongs to no lamp.
+std::string layer_names(const Scene& scene) {
+  std::string names;
+  for (const Lamp& lamp : scene.lamps) {
+    names += '\n';
+    for (char c : lamp.name) names += c == '\n' ? ' ' : c;
+  }
+  return names;
+}
+
+// Returns the layers of this scene out of those of a map whose layers have other names: lamps are
+// found again by their names, and a lamp that is new has no light yet.
+std::vector<IlluminationNodes> take_layers(const std::string& theirs, const std::string& ours,
+                                           std::vector<IlluminationNodes>& layers) {
+  auto split = [](const std::string& names) {
+    std::vector<std::string> lines(1);
+    for (char c : names)
+      if (c == '\n') lines.emplace_back();
+      else lines.back() += c;
+    return lines;
+  };
+  const std::vector<std::string> known = split(theirs);
+  std::vector<IlluminationNodes> taken;
+  for (const std::string& name : split(ours)) {
+    const auto found = std::ranges::find(known, name);
+    const size_t at = size_t(found - known.begin());
+    IlluminationNodes& layer = taken.emplace_back();
+    if (at < layers.size()) {
+      layer = layers[at];
+    } else {
+      layer.light.assign(layers[0].light.size(), pack_rgb9e5(vec3(0)));
+      layer.slope.assign(layers[0].slope.size(), pack_slope(vec3(0)));
+    }
+  }
+  return taken;
+}
+
 }  // namespace
 
 bool save_map(const World& world, const IlluminationMap& map, const std::string& file,
@@ -270,6 +307,8 @@ bool save_map(const World& world, const IlluminationMap& map, const std::string&
   auto put_packed = [&](const std::string& packed) {
     put.array(std::vector<char>(packed.begin(), packed.end()));
   };
+  const std::string names = layer_names(world.scene());
+  put.array(std::vector<char>(names.begin(), names.end()));
   put_packed(compress(cells));
   for (const std::string& layer : layers) put_packed(layer);
   return write_keyed(file, format, key, put.bytes);
@@ -291,9 +330,10 @@ LoadedMap load_map(const World& world, const std::string& file, uint64_t key) {
   TakeBytes take{bytes};
   MapHead head;
   std::vector<StandingThing> things;
-  std::vector<char> packed;
+  std::vector<char> packed, names;
   take.value(head);
   take.array(things);
+  take.array(names);
   take.array(packed);
   uint64_t their_tiles = 0;
   for (const StandingThing& thing : things)
@@ -307,7 +347,9 @@ LoadedMap load_map(const World& world, const std::string& file, uint64_t key) {
   auto map = std::make_shared<IlluminationMap>();
   map->tiles = read_tiles(cells);
   if (map->tiles.size() != head.tiles) return refuse();
-  if (head.layers != layer_count(world.scene())) return stale ? loaded : refuse();
+  const std::string theirs(names.begin(), names.end()), own = layer_names(world.scene());
+  if (head.layers != 1 + size_t(std::ranges::count(names, '\n')) || (!stale && theirs != own))
+    return refuse();
   map->error = head.error;
   check_cancelled();
   const Quantiser quantiser{head.least, head.sloped != 0};
@@ -325,6 +367,7 @@ LoadedMap load_map(const World& world, const std::string& file, uint64_t key) {
   if (stale) take_standing(things, ours, charts, *map);
   else if (things != ours) return refuse();
   else map->places = charts.places;
+  if (theirs != own) *layers = take_layers(theirs, own, *layers);
   map->layers = layers;
   if (head.sloped)
     map->normals = pack_normals(

@@ -25,6 +25,7 @@ class StandInLight {
   // Returns the light on a place (scene coordinates) that faces along `normal`, unit. Not known: no
   // square is near that faces so.
   StandInLit find(vec3 place, vec3 normal) const;
+  float reach() const { return reach_; }  // metres to the farthest square that counts
   size_t memory_bytes() const;
 
  private:
@@ -38,7 +39,7 @@ class StandInLight {
   void sort_into_cells(std::vector<Square> squares);
   void add(const Square& square, vec3 place, vec3 normal, float& weights, StandInLit& sum) const;
 
-  float reach_ = 0;  // metres to the farthest square that counts
+  float reach_ = 0;
   // Squares cell by cell, where each cell begins, and cells by find_place_slot().
   std::vector<Square> squares_;
   std::vector<uint64_t> keys_;

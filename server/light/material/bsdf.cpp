@@ -120,9 +120,9 @@ BsdfValue eval_lobes(const Bsdf& b, vec3 direction) {
 
 BsdfValue eval_bsdf(const Bsdf& b, vec3 direction) {
   BsdfValue value = eval_lobes(b, direction);
-  if (b.spread) {
+  if (b.spread && b.spread->made > 0) {
     BsdfValue others[wavelength_count - 1];
-    for (int i = 1; i < b.spread->before.carried; i++)
+    for (int i = 1; i <= b.spread->made; i++)
       others[i - 1] = eval_lobes(b.spread->others[i - 1], direction);
     blend_wavelengths(*b.spread, others, value);
   }

@@ -78,6 +78,7 @@ MaterialUse merge(const MaterialUse& a, const MaterialUse& b) {
           a.solid || b.solid,
           a.absorbs || b.absorbs,
           a.disperses || b.disperses,
+          a.spectral || b.spectral,
           a.coated || b.coated,
           a.sharp || b.sharp,
           std::max(a.metal, b.metal)};
@@ -92,6 +93,7 @@ MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges
     if (m.alpha_mode == AlphaMode::mask ? highest < m.alpha_cutoff : !(highest > 0)) return use;
   }
   use.visible = true;
+  use.spectral = knows_wavelengths(m);
   auto base_high = [&] {
     if (m.repaints) return 1.0f;
     return max_component(vec3(m.base_color) * vec3(colors.high) *

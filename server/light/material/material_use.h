@@ -24,6 +24,11 @@ enum class MetalDemodulation : uint8_t {
 inline constexpr float all_metal = 0.8f;  // metallic
 inline constexpr float least_demodulated_roughness = 0.2f, least_filtered_roughness = 0.25f;
 
+// Returns whether what a material does to light is known by wavelength.
+inline bool knows_wavelengths(const Material& m) {
+  return m.spectra.reflectance >= 0 || m.spectra.index >= 0 || m.spectra.absorption >= 0;
+}
+
 // Describes a material in use: each is whether it may be so at some place of the surface.
 struct MaterialUse {
   bool visible = false;   // by its alpha; if false, nothing else is set
@@ -35,8 +40,9 @@ struct MaterialUse {
   bool solid = false;            // refracts, has an inside
   bool absorbs = false;          // tints light that runs in it
   bool disperses = false;
-  bool coated = false;  // clearcoat or sheen
-  bool sharp = false;   // casts caustics: some lobe is smoother than caustic_roughness
+  bool spectral = false;  // knows_wavelengths()
+  bool coated = false;    // clearcoat or sheen
+  bool sharp = false;     // casts caustics: some lobe is smoother than caustic_roughness
   MetalDemodulation metal = MetalDemodulation::none;
 };
 // Returns what holds for either.

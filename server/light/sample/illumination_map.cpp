@@ -36,33 +36,44 @@ static float usual_light(const IlluminationMap& map) {
   return float(std::exp(logs / count));
 }
 
-// Sums the layers. `levels`: empty if all lamps are full.
-static void sum_layers(std::span<const LampLevel> levels, IlluminationMap& map) {
+// Sums the layers at some nodes.
+static void sum_layers(std::span<const vec3> factors, size_t begin, size_t end,
+                       IlluminationMap& map) {
   const std::vector<IlluminationNodes>& layers = *map.layers;
   const bool sloped = !layers.front().slope.empty();
-  map.nodes.light.resize(layers.front().light.size());
-  map.nodes.slope.resize(layers.front().slope.size());
+  for (size_t i = begin; i < end; i++) {
+    vec3 sum(0), slope(0);
+    auto add = [&](const IlluminationNodes& layer, vec3 factor) {
+      const vec3 light = factor * unpack_rgb9e5(layer.light[i]);
+      sum += light;
+      if (sloped) slope += luminance(light) * unpack_slope(layer.slope[i]);
+    };
+    add(layers[0], vec3(1));
+    for (size_t lamp = 0; lamp + 1 < layers.size(); lamp++)
+      if (factors[lamp] != vec3(0)) add(layers[lamp + 1], factors[lamp]);
+    map.nodes.light[i] = pack_rgb9e5(sum);
+    if (sloped) map.nodes.slope[i] = pack_slope(slope / std::max(luminance(sum), 1e-20f));
+  }
+}
+
+static void sum_layers(std::span<const vec3> factors, std::span<const NodeTints> tints,
+                       IlluminationMap& map) {
+  map.nodes.light.resize(map.layers->front().light.size());
+  map.nodes.slope.resize(map.layers->front().slope.size());
   parallel_ranges(int(map.nodes.light.size()), 4096, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++) {
-      vec3 sum(0), slope(0);
-      auto add = [&](const IlluminationNodes& layer, float brightness) {
-        const vec3 light = brightness * unpack_rgb9e5(layer.light[i]);
-        sum += light;
-        if (sloped) slope += luminance(light) * unpack_slope(layer.slope[i]);
-      };
-      add(layers[0], 1);
-      for (size_t lamp = 0; lamp + 1 < layers.size(); lamp++)
-        if (levels.empty()) add(layers[lamp + 1], 1);
-        else if (levels[lamp]) add(layers[lamp + 1], brightness_of(levels[lamp]));
-      map.nodes.light[i] = pack_rgb9e5(sum);
-      if (sloped) map.nodes.slope[i] = pack_slope(slope / std::max(luminance(sum), 1e-20f));
-    }
+    sum_layers(factors, size_t(begin), size_t(end), map);
   });
+  for (const NodeTints& tinted : tints) {
+    std::vector<vec3> both(factors.begin(), factors.end());
+    for (size_t lamp = 0; lamp < both.size(); lamp++) both[lamp] *= tinted.factors[lamp];
+    sum_layers(both, tinted.first, size_t(tinted.first) + tinted.count, map);
+  }
   map.usual = usual_light(map);
 }
 
 IlluminationMap sum_of_layers(IlluminationMap map) {
-  sum_layers({}, map);
+  const std::vector<vec3> full(map.layers->size() - 1, vec3(1));
+  sum_layers(full, {}, map);
   double mean = 0;
   for (uint32_t light : map.nodes.light) mean += double(luminance(unpack_rgb9e5(light)));
   const size_t nodes = map.nodes.light.size();
@@ -71,9 +82,10 @@ IlluminationMap sum_of_layers(IlluminationMap map) {
 }
 
 std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
-                                             std::span<const LampLevel> levels) {
+                                             std::span<const vec3> factors,
+                                             std::span<const NodeTints> tints) {
   auto map = std::make_shared<IlluminationMap>(all);
-  sum_layers(levels, *map);
+  sum_layers(factors, tints, *map);
   return map;
 }
 

@@ -84,9 +84,16 @@ inline size_t layer_count(const Scene& scene) { return scene.lamps.size() + 1; }
 // Gives a map that has only layers its nodes, with all lamps full, and their mean.
 IlluminationMap sum_of_layers(IlluminationMap map);
 
-// Returns the map with lamp i as bright as levels[i]. Takes milliseconds.
+// Holds nodes on surfaces whose reflectance is known by wavelength, and what that makes of the
+// light of lamps that are known so, too: one more factor for each lamp.
+struct NodeTints {
+  uint32_t first = 0, count = 0;
+  std::vector<vec3> factors;
+};
+// Returns the map with the light of lamp i times factors[i] (lamp_factors()). Takes milliseconds.
 std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
-                                             std::span<const LampLevel> levels);
+                                             std::span<const vec3> factors,
+                                             std::span<const NodeTints> tints = {});
 
 // Returns for each of the scene's objects whether the map has the light of any part of it.
 std::vector<char> mapped_objects(const Scene& scene, const IlluminationMap& map);

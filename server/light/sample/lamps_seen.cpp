@@ -154,6 +154,7 @@ const LampsSeen::Shares* find_lamps_seen(const LampsSeen& seen, vec3 position, v
 LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
                           const SurfacePlace& from) {
   LightSample light;
+  light.spectrum = punctual.spectrum;
   if (punctual.type == PunctualType::directional) {
     light.direction = -punctual.direction;
     light.radiance = punctual.intensity;

@@ -8,6 +8,7 @@
 
 #include "base/simd.h"
 #include "base/vec.h"
+#include "light/material/spectral_tables.h"
 #include "light/random/warp.h"
 #include "light/sample/environment_light.h"
 #include "light/sample/light_tree.h"
@@ -129,6 +130,8 @@ struct LightTables {
   bool any_solid = false;       // false: walks do not ask what medium they run in
   bool any_tint = false;        // false: no medium absorbs light
   SolidBounds solids;
+  // Null: no walk asks for wavelengths
+  std::shared_ptr<const SpectralTables> spectral;
 };
 
 // Returns the radiance a hit surface shows towards the ray: its emission, or its base colour if it

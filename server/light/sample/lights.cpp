@@ -131,6 +131,9 @@ TransportPlan make_plan(const World& world) {
 
 namespace {
 
+// Returns how much brighter a factor makes a light; exactly itself if it is grey.
+float brightness_of(vec3 factor) { return factor == vec3(factor.x) ? factor.x : luminance(factor); }
+
 // Makes the choices among all sources that emit light, each with its probability.
 void choose_sources(const Scene& scene, const EmittingSources& emitting,
                     std::span<const PunctualLight> more, LightTables& tables) {
@@ -154,24 +157,27 @@ void choose_sources(const Scene& scene, const EmittingSources& emitting,
   std::vector<float> punctual_powers;
   tables.punctual.clear(), tables.cones.clear(), tables.punctual_index.clear();
   uint32_t index = 0;
-  auto add = [&](const PunctualLight& light, float brightness) {
+  auto add = [&](const PunctualLight& light, vec3 factor, int spectrum) {
     float p = power_of(light, radius);
     bool finite =
         is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
     if (!(p > 0) || !std::isfinite(p) || !finite) return;
     index++;
+    const float brightness = brightness_of(factor);
     if (!(brightness > 0)) return;
     p *= brightness;
     tables.punctual.push_back(light);
-    tables.punctual.back().intensity *= brightness;
+    tables.punctual.back().intensity *= factor;
+    tables.punctual.back().spectrum = spectrum;
     tables.punctual_index.push_back(index - 1);
     tables.cones.push_back(make_spot_cone(light));
     punctual_powers.push_back(p);
     punctual_power += double(p);
   };
   if (plan.uses(punctual_lights)) {
-    for (size_t i = 0; i < scene.lights.size(); i++) add(scene.lights[i], emitting.lights[i]);
-    for (const PunctualLight& light : more) add(light, 1);
+    for (size_t i = 0; i < scene.lights.size(); i++)
+      add(scene.lights[i], emitting.lights[i], emitting.light_spectra[i]);
+    for (const PunctualLight& light : more) add(light, vec3(1), light.spectrum);
   }
   float sky_power =
       luminance(sky.radiance) > 0 ? sky.mean_luminance * 4 * pi * pi * radius * radius : 0.0f;
@@ -216,6 +222,9 @@ Lights make_lights(const World& world, const TransportPlan& plan,
         {albedo, plan.materials[i].pane, is_lambertian(m), plan.materials[i].metal});
     tables->any_lambertian |= plan.materials[i].visible && is_lambertian(m);
   }
+  if (plan.uses(TransportPart::spectra) || plan.uses(dispersion))
+    tables->spectral =
+        scene.spectra.empty() ? plain_spectral_tables() : make_spectral_tables(scene);
   tables->casters = find_casters(world, plan, false);
   tables->any_pane = plan.uses(panes);
   if (tables->any_pane) tables->pane_boxes = make_pane_boxes(world, tables->materials);
@@ -231,9 +240,9 @@ std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& sc
   for (size_t i = 0; i < tables->emitters.size(); i++) {
     EmitterTriangle& e = tables->emitters[i];
     const Mesh& mesh = scene.meshes[size_t(scene.instances[e.instance].mesh)];
-    const float brightness = emitting.materials[size_t(mesh.material)];
-    e.emission *= brightness;
-    tables->emitter_power[i] *= brightness;
+    const vec3 factor = emitting.materials[size_t(mesh.material)];
+    e.emission *= factor;
+    tables->emitter_power[i] *= brightness_of(factor);
   }
   if (!emitting.sky) tables->environment = {};
   choose_sources(scene, emitting, {}, *tables);
@@ -334,14 +343,23 @@ void add_emission_picture(const World& world, float texels, EmitterTriangle& emi
 
 namespace {
 
+// `level`: how a lamp shines.
 EmittingSources emitting(const Scene& scene, float others,
-                         const std::function<float(size_t lamp)>& brightness) {
-  EmittingSources emitting{std::vector<float>(scene.materials.size(), others),
-                           std::vector<float>(scene.lights.size(), others), others > 0};
-  for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++) {
-    for (int material : scene.lamps[lamp].materials)
-      emitting.materials[size_t(material)] = brightness(lamp);
-    for (int light : scene.lamps[lamp].lights) emitting.lights[size_t(light)] = brightness(lamp);
+                         const std::function<LampLevel(size_t lamp)>& level) {
+  EmittingSources emitting{std::vector<vec3>(scene.materials.size(), vec3(others)),
+                           std::vector<vec3>(scene.lights.size(), vec3(others)),
+                           {},
+                           others > 0};
+  for (const PunctualLight& light : scene.lights) emitting.light_spectra.push_back(light.spectrum);
+  for (size_t i = 0; i < scene.lamps.size(); i++) {
+    const Lamp& lamp = scene.lamps[i];
+    const LampLevel set = level(i);
+    const LampLight* dial = dialed(lamp, set);
+    for (int material : lamp.materials) emitting.materials[size_t(material)] = factor_of(lamp, set);
+    for (int light : lamp.lights) {
+      emitting.lights[size_t(light)] = factor_of(lamp, set);
+      if (dial && dial->spectrum >= 0) emitting.light_spectra[size_t(light)] = dial->spectrum;
+    }
   }
   return emitting;
 }
@@ -350,12 +368,12 @@ EmittingSources emitting(const Scene& scene, float others,
 
 EmittingSources find_emitting(const World& world) {
   const LampLevels& levels = world.lamp_levels();
-  return emitting(world.scene(), 1, [&](size_t lamp) { return brightness_of(levels[lamp]); });
+  return emitting(world.scene(), 1, [&](size_t lamp) { return levels[lamp]; });
 }
 
 EmittingSources find_emitting_of(const Scene& scene, int lamp) {
   return emitting(scene, lamp < 0 ? 1 : 0,
-                  [&](size_t other) { return int(other) == lamp ? 1.0f : 0.0f; });
+                  [&](size_t other) { return LampLevel(int(other) == lamp ? lamp_full : 0); });
 }
 
 }  // namespace wellspring::light

@@ -73,9 +73,10 @@ void add_emission_picture(const World& world, float texels, EmitterTriangle& emi
 
 // Finds how brightly the sources of a scene emit light while its lamps are switched or dimmed.
 
-// Holds brightness as a factor of the scene's own light: 0 to 1.
+// Holds factors of the scene's own light.
 struct EmittingSources {
-  std::vector<float> materials, lights;  // one for each of the scene's materials and lights
+  std::vector<vec3> materials, lights;  // one for each of the scene's materials and lights
+  std::vector<int> light_spectra;       // PunctualLight::spectrum as it is now
   bool sky = true;
 };
 EmittingSources find_emitting(const World& world);  // with its lamps as they are

@@ -66,6 +66,7 @@ LightSample sample_emitter(const Transport& transport, const SurfacePlace& from,
     ray.direction = light.direction;
     light.radiance = emission_at(transport.world, e, ray, light.distance, at.barycentric);
   }
+  if (tables.spectral) light.spectrum = transport.world.material_of(e.instance).spectra.emission;
   light.target = offset_origin(place, -light.direction);
   light.pdf = tables.emitter_share * pick.probability * at.density * distance2 / (cosine * e.area);
   return light;
@@ -204,16 +205,17 @@ vec3 eval_blocked(const Transport& transport, const RayPacket& rays, int i) {
 
 namespace {
 
-// Returns whether light of a sample is finite and not negative. Works bit by bit: one branch for
-// all.
-bool is_light(const Sample& sample) {
+// Returns whether light of a sample is finite and not below `least`. Works bit by bit: one branch
+// for all.
+bool is_light(const Sample& sample, float least) {
   constexpr float most = std::numeric_limits<float>::max();
   static_assert(offsetof(Sample, rest) == offsetof(Sample, albedo) + 6 * sizeof(float));
   const vec3 sum = sample.radiance();
   const Lanes first = load_lanes(&sample.albedo.x);  // all but the last number of `rest`
-  const Lanes others = {sample.rest.z, sum.x, sum.y, sum.z, 0, 0, 0, 0}, zero{};
+  const Lanes others = {sample.rest.z, sum.x, sum.y, sum.z, 0, 0, 0, 0};
+  const Lanes low = all_lanes(least);
   // NaN is neither above nor below.
-  LaneMask fine = (first >= zero) & (first <= most) & (others >= zero) & (others <= most);
+  LaneMask fine = (first >= low) & (first <= most) & (others >= low) & (others <= most);
   return negative_lanes(fine) == 0xff;
 }
 
@@ -221,8 +223,12 @@ bool is_light(const Sample& sample) {
 
 void finish_samples(const Lights& lights, const TransportSettings& settings,
                     std::span<Sample> samples) {
+  // Hues beyond the colours of a display are below zero in a channel; in the mean they mix.
+  const SpectralTables* spectral = lights.tables->spectral.get();
+  const float least =
+      spectral && !spectral->rows.empty() ? -std::numeric_limits<float>::max() : 0.0f;
   for (Sample& sample : samples) {
-    if (!is_light(sample)) {
+    if (!is_light(sample, least)) {
       lights.bad_samples->fetch_add(1, std::memory_order_relaxed);
       sample.albedo = sample.smooth = sample.rest = sample.glow = vec3(0);
       sample.flags &= uint8_t(~sample_sure);

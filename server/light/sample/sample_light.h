@@ -19,8 +19,9 @@ struct LightSample {
   vec3 radiance{0};  // punctual: intensity over squared distance, as if pdf were 1
   vec3 target{0};    // end of the shadow ray, already clear of the emitter
   float distance = std::numeric_limits<float>::infinity();
-  float pdf = 0;    // over solid angle; 0: nothing
-  float share = 1;  // punctual: the chance with which it was drawn, of all that may matter
+  float pdf = 0;      // over solid angle; 0: nothing
+  float share = 1;    // punctual: the chance with which it was drawn, of all that may matter
+  int spectrum = -1;  // index into Scene::spectra of its relative power; -1: a colour is all
 };
 
 // Returns the side from which light reaches a surface of that material: its geometric normal, or 0

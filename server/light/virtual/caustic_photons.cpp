@@ -199,8 +199,8 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
   return photons;
 }
 
-void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& place,
-                      PhotonCells& cells, PlaceLight& light) {
+void shade_by_photons(const Transport& transport, const PhotonGrid& grid, int max_depth,
+                      const LitPlace& place, PhotonCells& cells, PlaceLight& light) {
   const Bsdf& bsdf = *place.bsdf;
   vec3 normal = bsdf.geometric_normal;
   bool sharp = has_sharp(bsdf, place.sharp);
@@ -229,7 +229,7 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
     if (!(cosine > grazing)) return;
     BsdfValue value = eval_bsdf(bsdf, photon.direction);
     if (hued) {
-      vec3 alike = meet_hues(hue, photon.hue);
+      vec3 alike = meet_hues(*transport.tables.spectral, hue, photon.hue);
       value.diffuse *= alike, value.specular *= alike;
     }
     diffuse += value.diffuse * photon.flux / cosine;

@@ -19,8 +19,8 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
 
 // Adds the light of the photons around a place, scattered to the viewer. `cells`: of this grid, to
 // be kept from one place to the next.
-void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& place,
-                      PhotonCells& cells, PlaceLight& light);
+void shade_by_photons(const Transport& transport, const PhotonGrid& grid, int max_depth,
+                      const LitPlace& place, PhotonCells& cells, PlaceLight& light);
 
 // Returns the radius of pass `index`, which shrinks so that the mean of all passes converges to the
 // truth (Knaus and Zwicker 2011, equation 15 with alpha 2/3).

@@ -90,6 +90,7 @@ Rows read_rows(const SurfaceBuffer& s, const PixelGrid& grid, int x, int y) {
   r.pz = eye.z + depth * (from.z + lane * grid.right.z);
   r.nx = load_lanes(&s.nx[at]), r.ny = load_lanes(&s.ny[at]), r.nz = load_lanes(&s.nz[at]);
   r.lift = clear_of_surface + clear_share * depth;
+  if (!s.lift.empty()) r.lift = lanes_max(r.lift, load_lanes(&s.lift[at]));
   return r;
 }
 

@@ -83,6 +83,17 @@ void add_bounce(const World& world, const Lights& lights, const SurfaceBuffer& s
   add_irradiance(bounce.picture.irradiance, light);
 }
 
+void light_others(const World& world, const Lights& lights, const DynamicImage& image,
+                  std::span<const DynamicLight> from, const SurfaceBuffer& surfaces,
+                  SplatPicture& bounce, LightPlanes& light) {
+  clear_planes(surfaces, light);
+  add_direct_light(world, lights, from, surfaces, light);
+  if (image.bounce.sources.empty()) return;
+  splat_picture({world, *lights.tables}, image.bounce.lights, pixels_of(surfaces), image.settings,
+                {}, bounce);
+  add_irradiance(bounce.irradiance, light);
+}
+
 void light_surfaces(const World& world, const Lights& lights, std::span<const DynamicLight> from,
                     const SurfaceBuffer& surfaces, const SplatSettings& settings,
                     DynamicBounce& bounce, LightPlanes& light) {
@@ -95,6 +106,8 @@ void compute_dynamic_light(const World& world, const Lights& lights,
                            const VisibilityPass& visibility, const View& view,
                            std::span<const DynamicLight> from, const SplatSettings& settings,
                            DynamicImage& image) {
+  image.from.assign(from.begin(), from.end());
+  image.settings = settings;
   see_surfaces(visibility, dynamic_light_view(view, passing_dynamic_pixels), image.surfaces);
   begin_bounce(world, lights, from, image.surfaces, settings, {}, image.bounce);
   light_surfaces(world, lights, from, image.surfaces, settings, image.bounce, image.light);
@@ -250,6 +263,16 @@ size_t memory_bytes(const BackdropSurfaces& backdrop) {
   return memory_bytes(backdrop.surfaces) + bytes_of(backdrop.reflectance, backdrop.shares);
 }
 
+void show_pixel(BackdropSurfaces& backdrop, const PixelGrid& grid, int x, int y,
+                const SeenPoint& seen, vec3 reflectance) {
+  const size_t at = size_t(y) * size_t(backdrop.view.width) + size_t(x);
+  for (int c = 0; c < 3; c++) backdrop.reflectance[3 * at + size_t(c)] = code_of(reflectance[c]);
+  if (backdrop.shares.empty()) return;
+  const View& lit = backdrop.surfaces.view;
+  backdrop.shares[at] = shares_of(
+      weigh_taps(backdrop.surfaces, grid, tap_pair(x, lit.width), tap_pair(y, lit.height), seen));
+}
+
 void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
                             BackdropSurfaces& backdrop) {
   backdrop.view = view;
@@ -257,24 +280,18 @@ void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
   const View lit = dynamic_light_view(view);
   see_surfaces(visibility, lit, backdrop.surfaces, RasterShows::still);
   backdrop.reflectance.resize(3 * pixels);
-  const bool fine = lit == view;
-  backdrop.shares.resize(fine ? 0 : pixels);
+  backdrop.shares.resize(lit == view ? 0 : pixels);
   const PixelGrid grid(lit), own(view);
   auto take = [&](const VisibleRun& run) {
     RunPixels p;
     const RunGlow emitting = describe_run(run, p);
-    const TapPair row = tap_pair(run.y, lit.height);
     for (int i = 0; i < run.count; i++) {
-      const size_t at = size_t(run.y) * size_t(view.width) + size_t(run.x + i);
       const bool reflects = run.object[i] != 0 && !(emitting.only >> i & 1);
       const RunSurface& s = p.surface;
-      const float reflectance[] = {s.red[i], s.green[i], s.blue[i]};
-      for (size_t c = 0; c < 3; c++)
-        backdrop.reflectance[3 * at + c] = reflects ? code_of(reflectance[c]) : 0;
-      if (!fine)
-        backdrop.shares[at] = shares_of(weigh_taps(
-            backdrop.surfaces, grid, tap_pair(run.x + i, lit.width), row,
-            seen_point(run.depth[i], run.object[i], s, i, own.at(float(run.x + i), float(run.y)))));
+      show_pixel(
+          backdrop, grid, run.x + i, run.y,
+          seen_point(run.depth[i], run.object[i], s, i, own.at(float(run.x + i), float(run.y))),
+          reflects ? vec3(s.red[i], s.green[i], s.blue[i]) : vec3(0));
     }
   };
   visibility.see(view, vec2(0.5f), take, RasterShows::still);

@@ -24,6 +24,8 @@ struct DynamicImage {
   SurfaceBuffer surfaces;  // surfaces for which it was computed
   LightPlanes light;       // light of each of their pixels
   DynamicBounce bounce;
+  DynamicLights from;  // the lights, as they were sent into the world, and how
+  SplatSettings settings;
 };
 size_t memory_bytes(const DynamicImage& image);
 
@@ -51,6 +53,12 @@ void compute_dynamic_light(const World& world, const Lights& lights,
                            const VisibilityPass& visibility, const View& view,
                            std::span<const DynamicLight> from, const SplatSettings& settings,
                            DynamicImage& image);
+
+// Overwrites `light` by the same light on other surfaces, which lie in that view; straight from
+// `from`, some of the image's lights or all of them.
+void light_others(const World& world, const Lights& lights, const DynamicImage& image,
+                  std::span<const DynamicLight> from, const SurfaceBuffer& surfaces,
+                  SplatPicture& bounce, LightPlanes& light);
 
 // Holds light at the pixels of a run of a picture of `view`, which compute_dynamic_light() was
 // called for.
@@ -113,6 +121,11 @@ size_t memory_bytes(const BackdropSurfaces& backdrop);
 // Fills `backdrop`. The view must be one that visibility.rasterises().
 void find_backdrop_surfaces(const VisibilityPass& visibility, const View& view,
                             BackdropSurfaces& backdrop);
+
+// Replaces what a pixel of its view shows, once its surfaces are what light falls on. `grid`: of
+// their view.
+void show_pixel(BackdropSurfaces& backdrop, const PixelGrid& grid, int x, int y,
+                const SeenPoint& seen, vec3 reflectance);
 
 // Computes the radiance that the pixels [x, x + count) of row y reflect of that light.
 void reflect_light(const BackdropSurfaces& backdrop, const LightPlanes& light, int x, int y,

@@ -23,8 +23,7 @@ namespace wellspring::light {
 void part_seen_colors(const Transport& transport, const Walk& walk, const Surface& surface,
                       Sampler& sampler, Bsdf& bsdf, std::optional<WavelengthSpread>& spread) {
   if (!parts_colors(transport, walk.media, surface)) return;
-  float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
-  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf,
+  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, sampler, bsdf,
               spread);
 }
 
@@ -38,6 +37,14 @@ int mirror_lights(const Walk& walk) {
   return bright > 0.5f ? 8 : bright > 0.25f ? 5 : 3;
 }
 constexpr int mirror_depth = 6;  // edges of a chain before it may be cut short at random
+
+// Tells the walk's wavelengths of a sample of the specular lobes; its throughput takes their tint,
+// as light of virtual lights has a colour.
+void carry_colors(const WavelengthSpread& spread, const Bsdf& bsdf, BsdfSample& scattered,
+                  Walk& walk) {
+  carry_wavelengths(spread, bsdf, Lobes::specular, scattered, walk.wavelengths);
+  tint_weight(spread, walk.wavelengths, scattered);
+}
 
 // Returns the radiance scattered towards the origin of `walk` by the rough lobes of the surface
 // that it met.
@@ -60,8 +67,8 @@ vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, c
   if (!eye.pass.photons.empty())
     for (int i = 0; i < asked; i++) {
       PhotonCells cells;
-      shade_by_photons(eye.pass.photons[size_t((eye.set + i) % all)], eye.max_depth, place, cells,
-                       light);
+      shade_by_photons(eye.transport, eye.pass.photons[size_t((eye.set + i) % all)], eye.max_depth,
+                       place, cells, light);
     }
   vec3 radiance = light.sum() / float(asked);
   PlaceLight rest;
@@ -143,8 +150,7 @@ vec3 gather_along(const EyeLight& eye, Walk walk, Sampler& sampler) {
         walk.depth >= eye.max_depth)
       return radiance;
     BsdfSample scattered = sample_bsdf(met.bsdf, Lobes::specular, sampler);
-    if (met.spread)
-      carry_wavelengths(*met.spread, met.bsdf, Lobes::specular, scattered, walk.wavelengths);
+    if (met.spread) carry_colors(*met.spread, met.bsdf, scattered, walk);
     if (!go_on(walk, met, scattered)) return radiance;
     chained |= scattered.bounce != Bounce::pass;
     if (!survives(walk, walk.density, sampler)) return radiance;
@@ -202,8 +208,7 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
             walk.throughput *
             sample_direct_light(transport, walk, met.surface, met.bsdf, true, sampler).specular;
       scattered = sample_bsdf(met.bsdf, Lobes::specular, sampler);
-      if (met.spread)
-        carry_wavelengths(*met.spread, met.bsdf, Lobes::specular, scattered, walk.wavelengths);
+      if (met.spread) carry_colors(*met.spread, met.bsdf, scattered, walk);
     }
     if (!go_on(walk, met, scattered) || walk.depth > eye.max_depth) return radiance;
     if (scattered.bounce != Bounce::pass)
@@ -379,8 +384,7 @@ void follow_first(const EyeLight& light, Eye& eye) {
   if (chance == 1 || eye.sampler.next() < chance) {
     Walk next = first.walk;
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::specular, eye.sampler);
-    if (eye.spread)
-      carry_wavelengths(**eye.spread, bsdf, Lobes::specular, scattered, next.wavelengths);
+    if (eye.spread) carry_colors(**eye.spread, bsdf, scattered, next);
     scattered.weight /= chance;
     next.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
     if (scattered.bounce == Bounce::refract) next.density *= bsdf.eta * bsdf.eta;
@@ -450,7 +454,8 @@ void trace_others(const Transport& transport, const InstantPass& pass, int max_d
     if (!pass.photons.empty()) {
       PhotonCells cells;
       for (int i = 0; i < count; i++)
-        shade_by_photons(pass.photons[size_t(set)], max_depth, places[i], cells, light[i]);
+        shade_by_photons(transport, pass.photons[size_t(set)], max_depth, places[i], cells,
+                         light[i]);
     }
     for (int i = 0; i < count; i++) eyes[items[i]].light = light[i];
   }

@@ -165,7 +165,7 @@ LitGroup make_group(const LitPlace* places, int count) {
 void add_lane(const Transport& transport, const LitPlace& place, const PointLight& light,
               const InstantPass& pass, const SeenLight& seen, vec3 radiance, int i,
               PlaceLight& sum) {
-  if (light.hue >= 0) radiance *= meet_hues(place.hue(), light.hue);
+  if (light.hue >= 0) radiance *= meet_hues(*transport.tables.spectral, place.hue(), light.hue);
   float distance = std::sqrt(seen.distance2[i]);
   vec3 direction = seen.direction.at(i) / distance;
   BsdfValue value = eval_bsdf(*place.bsdf, direction);

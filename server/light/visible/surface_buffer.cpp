@@ -10,7 +10,7 @@ namespace wellspring::light {
 
 size_t memory_bytes(const SurfaceBuffer& surfaces) {
   return bytes_of(surfaces.depth, surfaces.nx, surfaces.ny, surfaces.nz, surfaces.object,
-                  surfaces.gloss, surfaces.metallic);
+                  surfaces.gloss, surfaces.metallic, surfaces.lift);
 }
 
 void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuffer& surfaces,
@@ -20,6 +20,7 @@ void see_surfaces(const VisibilityPass& visibility, const View& view, SurfaceBuf
   for (auto* plane : {&surfaces.depth, &surfaces.nx, &surfaces.ny, &surfaces.nz})
     plane->resize(pixels);
   surfaces.object.resize(pixels);
+  surfaces.lift.clear();
   const bool gloss = visibility.any_gloss();
   surfaces.gloss.resize(gloss ? pixels : 0), surfaces.metallic.resize(gloss ? pixels : 0);
   auto take = [&](const VisibleRun& run) {

@@ -71,6 +71,8 @@ struct SurfaceBuffer {
   // Highlights, as light/visible/facet.h packs them. Empty: nothing in the scene has any.
   RawVector<uint32_t> gloss;
   RawVector<uint8_t> metallic;
+  // Metres off the surface at which shadow rays begin at least. Empty: at none.
+  RawVector<float> lift;
   size_t pixels() const { return size_t(view.width) * size_t(view.height); }
 };
 size_t memory_bytes(const SurfaceBuffer& surfaces);

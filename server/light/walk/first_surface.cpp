@@ -173,6 +173,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
                  Sampler& sampler, Sample& sample) {
   const Walk& walk = first.walk;
   const Surface& surface = first.surface;
+  const Material& material = transport.world.scene().materials[size_t(surface.material)];
   const vec3 tint = first.tint;
   Bsdf& bsdf = first.bsdf;
   const uint32_t base = Dimensions::first_surface;
@@ -210,6 +211,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
     next.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;
     sampler.seek(base + Dimensions::scatter);
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::diffuse, sampler);
+    reflect(transport, material, bsdf, Lobes::diffuse, base, sampler, scattered, next.wavelengths);
     if (advance(next, surface, scattered)) {
       next.from_normal = lit_side(surface, bsdf);
       sampler.seek(Dimensions::walk);
@@ -224,6 +226,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
     sampler.seek(base + Dimensions::specular);
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::specular, sampler);
     if (spread) carry_wavelengths(*spread, bsdf, Lobes::specular, scattered, next.wavelengths);
+    reflect(transport, material, bsdf, Lobes::specular, base, sampler, scattered, next.wavelengths);
     scattered.weight /= chance;
     next.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
     if (scattered.bounce == Bounce::refract) next.density *= bsdf.eta * bsdf.eta;
@@ -252,6 +255,7 @@ void shade_first_lambert(const Transport& transport, const WalkRules& rules, Wal
   if (known.known && rules.reads_maps && !may_be_shaded(transport, surface.position))
     return tell_in_units(known, known.light, sample);
   const uint32_t base = Dimensions::first_surface;
+  reflect(transport, hit, base, sampler, walk.wavelengths);
   sampler.seek(base);
   DirectLight direct = sample_direct_light(transport, walk, surface, lobe, true, sampler);
   sample.smooth += direct.area_diffuse;

@@ -92,8 +92,7 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattere
 void part_arrival(const Transport& transport, const LightWalk& walk, Sampler& sampler,
                   Arrival& arrival, std::optional<WavelengthSpread>& spread) {
   if (!arrival.lit || !parts_colors(transport, walk.media, arrival.surface)) return;
-  float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
-  part_colors(transport, walk.media, walk.ray.direction, arrival.surface, walk.wavelengths, u,
+  part_colors(transport, walk.media, walk.ray.direction, arrival.surface, walk.wavelengths, sampler,
               arrival.bsdf, spread);
   arrival.bsdf.spread = nullptr;  // `spread` does not live as long
 }
@@ -102,9 +101,9 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const std::optional<Wavele
              Lobes lobes, Sampler& sampler) {
   BsdfSample scattered = sample_bsdf(arrival.bsdf, lobes, sampler);
   // Refracted light is squeezed by each wavelength's own index: the hero goes on alone.
-  if (spread && scattered.bounce == Bounce::refract)
-    carry_hero(*spread, scattered, walk.wavelengths);
+  if (spread && scattered.bounce == Bounce::refract) carry_hero(*spread, walk.wavelengths);
   else if (spread) carry_wavelengths(*spread, arrival.bsdf, lobes, scattered, walk.wavelengths);
+  if (spread) tint_weight(*spread, walk.wavelengths, scattered);
   return scatter(walk, arrival, scattered, sampler);
 }
 

@@ -95,6 +95,7 @@ struct LambertWalks {
   // The place that the ray left.
   Lanes3 from, from_normal;
   Lanes pdf{};
+  Wavelengths wavelengths[lane_count];
 };
 
 struct Batch {
@@ -144,6 +145,7 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
   walks.known = (walks.known & ~(1u << lane)) | uint32_t(known.known) << lane;
   walks.samplers.set(lane, Sampler(request.seed, request.index));
   walks.depth[lane] = 1;
+  if (transport.tables.spectral) walks.wavelengths[lane] = Wavelengths();
   walks.direction.set(lane, request.ray.direction);
   walks.throughput.set(lane, vec3(1));
   walks.smooth.set(lane, vec3(0));
@@ -243,8 +245,9 @@ DirectLanes light_by_choice(const Batch& batch, const LambertSurfaceLanes& surfa
                             const LambertLobeLanes& lobes, const LambertWalks& walks,
                             LaneBits dimensions, uint32_t lanes) {
   DirectLanes direct;
-  const Walk in_air{};
+  Walk in_air{};
   for_each_lane(lanes, [&](int i) {
+    if (batch.transport.tables.spectral) in_air.wavelengths = walks.wavelengths[i];
     Sampler sampler = walks.samplers.at(i);
     sampler.seek(dimensions[i]);
     const bool first = walks.depth[i] == 1;
@@ -256,6 +259,24 @@ DirectLanes light_by_choice(const Batch& batch, const LambertSurfaceLanes& surfa
       batch.samples[walks.sample[i]].flags &= uint8_t(~sample_sure);
   });
   return direct;
+}
+
+// Tells the lanes' wavelengths of the surfaces that they have arrived at.
+void reflect_lanes(const Transport& transport, LaneBits dimensions, uint32_t lanes,
+                   LambertWalks& walks) {
+  for_each_lane(lanes, [&](int i) {
+    Sampler sampler = walks.samplers.at(i);
+    reflect(transport, walks.hits[i], dimensions[i], sampler, walks.wavelengths[i]);
+  });
+}
+
+// Puts the lanes' tints on light of a lamp.
+void tint_lanes(const Transport& transport, const LambertWalks& walks, uint32_t lanes, int lamp,
+                Lanes3& light) {
+  for_each_lane(lanes, [&](int i) {
+    if (walks.wavelengths[i].in_color()) return;
+    light.set(i, light.at(i) * tint_of(*transport.tables.spectral, walks.wavelengths[i], lamp));
+  });
 }
 
 // Shades the surfaces that the lanes have arrived at, and sends the lanes on; returns those that
@@ -281,8 +302,11 @@ uint32_t scatter_lanes(Batch& batch, LambertWalks& walks, RayPacket& rays) {
   });
   const LaneBits dimensions = dimensions_of(walks.depth);
   const bool one_lamp = tables.punctual.size() == 1 && tables.area_share <= 0;
+  if (tables.spectral) reflect_lanes(transport, dimensions, lanes, walks);
   DirectLanes direct = one_lamp ? light_by_lamp(transport, surface, lobes, lanes, rays)
                                 : light_by_choice(batch, surface, lobes, walks, dimensions, lanes);
+  if (tables.spectral && one_lamp)
+    tint_lanes(transport, walks, lanes, tables.punctual[0].spectrum, direct.punctual);
   const LaneMask lit = lanes_of_bits(lanes);
   Lanes3 later = walks.throughput * lobes.reflectance * (direct.area + direct.punctual);
   const LaneMask known = lanes_of_bits(walks.known);
@@ -326,6 +350,7 @@ Walk lone_walk(const LightTables& tables, const LambertWalks& walks, const RayPa
   // At the first surface both kinds of light are sampled.
   walk.area_share = walk.depth > 2 || tables.area_share <= 0 ? tables.area_share : 1;
   walk.scattered = walk.depth - 1;
+  if (tables.spectral) walk.wavelengths = walks.wavelengths[i];
   return walk;
 }
 

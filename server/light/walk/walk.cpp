@@ -17,15 +17,27 @@ bool parts_colors(const Transport& transport, const Media& media, const Surface&
   return is_dispersive(surface, material) && owns_boundary(media, surface);
 }
 
+namespace {
+
+float draw_hero(Sampler& sampler) {
+  const float u = sampler.next();
+  const uint64_t sample = uint64_t(sampler.reversed_index) << 32 | sampler.drawn;
+  return hero_place(u, mix64(sampler.seed ^ mix64(sample)));
+}
+
+}  // namespace
+
 void part_colors(const Transport& transport, const Media& media, vec3 direction,
-                 const Surface& surface, const Wavelengths& carried, float u, Bsdf& bsdf,
+                 const Surface& surface, const Wavelengths& carried, Sampler& sampler, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread) {
   const Material& material = transport.world.scene().materials[size_t(surface.material)];
   float outside = index_outside(transport, media, surface);
   const DielectricAlbedo& albedo =
       outside == 1 ? *transport.tables.materials[size_t(surface.material)].albedo
                    : dielectric_albedo(std::max(material.ior / outside, outside / material.ior));
-  spread_wavelengths(surface, material, direction, albedo, carried, u, bsdf, spread, outside);
+  const float place = carried.carried == 0 ? draw_hero(sampler) : 0;
+  spread_wavelengths(*transport.tables.spectral, surface, material, direction, albedo, carried,
+                     place, bsdf, spread, outside);
 }
 
 namespace {
@@ -52,25 +64,28 @@ bool survives(Walk& walk, Sampler& sampler) {
 bool ends_in_volume(const Transport& transport, const Walk& walk, float t_end, vec3& radiance) {
   const bool sharp = walk.scattered == 0 || (walk.scattered == 1 && walk.pdf > wide);
   const std::optional<VolumeHit> met = transport.world.meet_volume(walk.ray, t_end, sharp);
-  radiance += walk.throughput * transport.world.volume_glow(walk.ray, met ? met->t : t_end);
+  const vec3 throughput = walk.throughput * walk_tint(transport, walk);
+  radiance += throughput * transport.world.volume_glow(walk.ray, met ? met->t : t_end);
   if (!met) return false;
-  radiance += walk.throughput * eval_absorption(transport, walk.media.here.innermost(), met->t) *
-              met->color;
+  radiance +=
+      throughput * eval_absorption(transport, walk.media.here.innermost(), met->t) * met->color;
   return true;
 }
 
 vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
                        const Material& material) {
-  vec3 emission = surface_emission(surface, material);
-  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(emission) > 0)) return emission;
+  vec3 emission =
+      surface_emission(surface, material) * walk_tint(transport, walk, material.spectra.emission);
+  if (walk.pdf <= 0 || walk.area_share <= 0 || emission == vec3(0)) return emission;
   float other = walk.area_share * sample_emitter_pdf(transport.tables, walk.from, walk.from_normal,
                                                      walk.ray.direction, surface);
   return emission * mis_weight(walk.pdf, other);
 }
 
 vec3 walk_met_sky(const Transport& transport, const Walk& walk) {
-  vec3 radiance = eval_environment(transport.tables.environment, walk.ray.direction);
-  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(radiance) > 0)) return radiance;
+  vec3 radiance = eval_environment(transport.tables.environment, walk.ray.direction) *
+                  walk_tint(transport, walk);
+  if (walk.pdf <= 0 || walk.area_share <= 0 || radiance == vec3(0)) return radiance;
   float other = walk.area_share * sample_sky_pdf(transport.tables, walk.ray.direction);
   return radiance * mis_weight(walk.pdf, other);
 }
@@ -89,9 +104,68 @@ void part_colors(const Transport& transport, const Walk& walk, const Surface& su
                  std::optional<WavelengthSpread>& spread) {
   if (!parts_colors(transport, walk.media, surface)) return;
   sampler.seek(dimensions + Dimensions::wavelength);
-  float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
-  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf,
+  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, sampler, bsdf,
               spread);
+}
+
+void absorb(const Transport& transport, Walk& walk, float length, uint32_t dimensions,
+            Sampler& sampler) {
+  const int medium = walk.media.here.innermost();
+  const vec3 tint = eval_absorption(transport, medium, length);
+  const bool colored = tint == vec3(1) || !transport.tables.spectral || walk.wavelengths.tinted;
+  const int row =
+      colored ? -1 : transport.world.scene().materials[size_t(medium)].spectra.absorption;
+  if (row < 0) {
+    walk.throughput *= tint;
+    return;
+  }
+  const vec3 left = max(tint, vec3(1e-6f));
+  walk.throughput *= left;
+  const SpectralTables& tables = *transport.tables.spectral;
+  sampler.seek(dimensions + Dimensions::absorbed);
+  if (walk.wavelengths.carried == 0) begin_cluster(tables, draw_hero(sampler), walk.wavelengths);
+  absorb_wavelengths(tables, row, length, left, walk.wavelengths);
+}
+
+namespace {
+
+// Returns whether a material's specular lobes have its base colour as its diffuse one has.
+bool tints_gloss(const Material& material) { return material.metallic >= 0.5f; }
+
+void reflect(const Transport& transport, int reflectance, uint32_t dimensions, Sampler& sampler,
+             Wavelengths& carried) {
+  const SpectralTables& tables = *transport.tables.spectral;
+  sampler.seek(dimensions + Dimensions::wavelength);
+  if (carried.carried == 0 && carried.reflected >= 0)
+    begin_cluster(tables, draw_hero(sampler), carried);
+  reflect_wavelengths(tables, reflectance, carried);
+}
+
+}  // namespace
+
+void reflect(const Transport& transport, const Hit& hit, uint32_t dimensions, Sampler& sampler,
+             Wavelengths& carried) {
+  if (!transport.tables.spectral || carried.tinted) return;
+  const int reflectance = transport.world.material_of(hit.instance).spectra.reflectance;
+  if (reflectance >= 0) reflect(transport, reflectance, dimensions, sampler, carried);
+}
+
+void reflect(const Transport& transport, const Material& material, const Bsdf& bsdf, Lobes lobes,
+             uint32_t dimensions, Sampler& sampler, BsdfSample& scattered, Wavelengths& carried) {
+  if (material.spectra.reflectance < 0 || carried.tinted || !transport.tables.spectral) return;
+  bool tinted =
+      tints_gloss(material) || lobes == Lobes::diffuse || scattered.bounce != Bounce::reflect;
+  if (!tinted && lobes == Lobes::all && scattered.pdf > 0) {
+    const BsdfValue value = eval_bsdf(bsdf, scattered.direction);
+    const float diffuse = luminance(value.diffuse), specular = luminance(value.specular);
+    if (!(diffuse + specular > 0)) return;
+    sampler.seek(dimensions + Dimensions::lobe);
+    const float chance = diffuse / (diffuse + specular);
+    tinted = sampler.next() < chance;
+    scattered.weight = tinted ? value.diffuse / (scattered.pdf * chance)
+                              : value.specular / (scattered.pdf * (1 - chance));
+  }
+  if (tinted) reflect(transport, material.spectra.reflectance, dimensions, sampler, carried);
 }
 
 bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered) {
@@ -150,13 +224,36 @@ struct ByLambert {
   LobeHint hint() const { return {}; }
 };
 
-// `side`: the result of lit_side.
+// Holds the wavelengths of what the lobes of a surface send on.
+class LobeTints {
+ public:
+  LobeTints(const Transport& transport, const Walk& walk, const Material* material,
+            uint32_t dimensions, Sampler& sampler) {
+    const int reflectance = material ? material->spectra.reflectance : -1;
+    if (walk.wavelengths.tinted || (walk.wavelengths.in_color() && reflectance < 0)) return;
+    tables_ = transport.tables.spectral.get();
+    diffuse_ = specular_ = walk.wavelengths;
+    if (!tables_ || reflectance < 0) return;
+    reflect(transport, reflectance, dimensions, sampler, diffuse_);
+    if (tints_gloss(*material)) specular_ = diffuse_;
+  }
+  vec3 diffuse(int lamp) const { return tables_ ? tint_of(*tables_, diffuse_, lamp) : vec3(1); }
+  vec3 specular(int lamp) const { return tables_ ? tint_of(*tables_, specular_, lamp) : vec3(1); }
+
+ private:
+  const SpectralTables* tables_ = nullptr;  // null: all is in colour
+  Wavelengths diffuse_, specular_;
+};
+
+// `side`: the result of lit_side. `material`: null: no reflectance of it is known by wavelength.
 template <class Scattering>
 DirectLight direct_light(const Transport& transport, const Walk& walk, const SurfacePlace& place,
-                         vec3 side, vec3 normal, const Scattering& scattering, bool apart,
-                         Sampler& sampler) {
+                         const Material* material, vec3 side, vec3 normal,
+                         const Scattering& scattering, bool apart, Sampler& sampler) {
   const LightTables& tables = transport.tables;
   const uint32_t base = sampler.drawn;
+  const LobeTints tints(transport, walk, material, base, sampler);
+  sampler.seek(base);
   DirectLight direct;
   bool area = tables.area_share > 0, punctual = !tables.punctual.empty();
   float area_chance = 1, punctual_chance = 1;
@@ -181,10 +278,10 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
         vec3 arrives = arriving(light, light_pdf);
         float both = scattering.pdf(value);
         direct.area_direction = light.direction;
-        direct.area_diffuse =
-            value.diffuse * arrives * mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
-        direct.specular =
-            value.specular * arrives * mis_weight(light_pdf, apart ? value.specular_pdf : both);
+        direct.area_diffuse = value.diffuse * arrives * tints.diffuse(light.spectrum) *
+                              mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
+        direct.specular = value.specular * arrives * tints.specular(light.spectrum) *
+                          mis_weight(light_pdf, apart ? value.specular_pdf : both);
       }
     }
   }
@@ -198,9 +295,9 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
       BsdfValue value = scattering.eval(light.direction);
       if (max_component(value.diffuse + value.specular) > 0) {
         vec3 arrives = arriving(light, punctual_chance);
-        direct.punctual_diffuse = value.diffuse * arrives;
+        direct.punctual_diffuse = value.diffuse * arrives * tints.diffuse(light.spectrum);
         direct.punctual_direction = light.direction;
-        direct.specular += value.specular * arrives;
+        direct.specular += value.specular * arrives * tints.specular(light.spectrum);
       }
     }
   }
@@ -212,15 +309,16 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const Surface& surface, const Bsdf& bsdf, bool apart,
                                 Sampler& sampler) {
-  return direct_light(transport, walk, surface, lit_side(surface, bsdf), bsdf.normal, ByBsdf{bsdf},
-                      apart, sampler);
+  const Material& material = transport.world.scene().materials[size_t(surface.material)];
+  return direct_light(transport, walk, surface, &material, lit_side(surface, bsdf), bsdf.normal,
+                      ByBsdf{bsdf}, apart, sampler);
 }
 
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const SurfacePlace& place, const LambertLobe& lobe, bool apart,
                                 Sampler& sampler) {
-  return direct_light(transport, walk, place, place.geometric_normal, lobe.normal, ByLambert{lobe},
-                      apart, sampler);
+  return direct_light(transport, walk, place, nullptr, place.geometric_normal, lobe.normal,
+                      ByLambert{lobe}, apart, sampler);
 }
 
 namespace {
@@ -248,10 +346,11 @@ bool scatter_lambert(const Transport& transport, const WalkRules& rules, Walk& w
   LambertLobe lobe = make_lambert(surface, walk.ray.direction);
   if (!(max_component(lobe.reflectance) > 0)) return false;
   if (vec3 light; may_end(transport, walk, hit, light)) {
-    radiance += walk.throughput * lobe.reflectance * light;
+    radiance += walk.throughput * walk_tint(transport, walk) * lobe.reflectance * light;
     return false;
   }
-  walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
+  absorb(transport, walk, hit.t, base, sampler);
+  reflect(transport, hit, base, sampler, walk.wavelengths);
   sampler.seek(base);
   radiance += walk.throughput * lobe.reflectance *
               sample_direct_light(transport, walk, surface, lobe, false, sampler).sum();
@@ -282,7 +381,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     }
     Surface surface = meet_surface(transport, walk.ray, hit, walk.media);
     const Material& material = world.material_of(hit.instance);
-    walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
+    absorb(transport, walk, hit.t, base, sampler);
     radiance += walk.throughput * walk_met_emission(transport, walk, surface, material);
     if (material.unlit) return radiance;
 
@@ -301,7 +400,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
     if (last && !is_clear_solid(bsdf)) return radiance;
     if (vec3 light; may_end(transport, walk, hit, light)) {
-      radiance += walk.throughput * kept_reflectance(bsdf) * light;
+      radiance += walk.throughput * walk_tint(transport, walk) * kept_reflectance(bsdf) * light;
       if (!has_sharp_gloss(bsdf)) return radiance;
       bsdf.diffuse = vec3(0), bsdf.diffuse_share = 0;
     }
@@ -315,6 +414,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     sampler.seek(base + Dimensions::scatter);
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
     if (spread) carry_wavelengths(*spread, bsdf, Lobes::all, scattered, walk.wavelengths);
+    reflect(transport, material, bsdf, Lobes::all, base, sampler, scattered, walk.wavelengths);
     if (!advance(walk, surface, scattered) || walk.depth > rules.max_depth) return radiance;
     if (scattered.bounce != Bounce::pass) {
       walk.area_share = scattered.pdf > 0 ? transport.tables.area_share : 0;

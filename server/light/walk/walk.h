@@ -21,9 +21,9 @@ namespace wellspring::light {
 bool parts_colors(const Transport& transport, const Media& media, const Surface& surface);
 
 // Parts the colours of a ray of that direction, if parts_colors(): calls spread_wavelengths with
-// the media on both sides.
+// the media on both sides. Draws the hero if the walk has all wavelengths.
 void part_colors(const Transport& transport, const Media& media, vec3 direction,
-                 const Surface& surface, const Wavelengths& carried, float u, Bsdf& bsdf,
+                 const Surface& surface, const Wavelengths& carried, Sampler& sampler, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread);
 
 struct WalkRules {
@@ -53,7 +53,7 @@ struct Walk {
   float density = 1;
   int scattered = 0;
   int panes = 0;            // panes passed in a row
-  Wavelengths wavelengths;  // set once the walk has met something dispersive
+  Wavelengths wavelengths;  // `throughput` is without their tint
   int edges() const { return depth + glass; }
 };
 
@@ -70,8 +70,8 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
 // meets no volume that shows the largest value along a ray, as it casts no shadow either.
 bool ends_in_volume(const Transport& transport, const Walk& walk, float t_end, vec3& radiance);
 
-// Returns emission met by the walk's ray, weighted against the chance that light sampling had found
-// it from the place that the ray left.
+// Returns emission met by the walk's ray, with the walk's tint, weighted against the chance that
+// light sampling had found it from the place that the ray left.
 vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
                        const Material& material);
 vec3 walk_met_sky(const Transport& transport, const Walk& walk);
@@ -85,7 +85,7 @@ struct Dimensions {
   static constexpr uint32_t surface = 32;        // from one surface of a walk to the next
   // Offsets within a surface's dimensions.
   static constexpr uint32_t punctual = 4, scatter = 8, specular = 16, survival = 24,
-                            wavelength = 28;
+                            wavelength = 28, absorbed = 29, lobe = 30;
 };
 
 // Parts the colours if `surface` does so: `bsdf` becomes the hero wavelength's. After sampling,
@@ -93,6 +93,23 @@ struct Dimensions {
 void part_colors(const Transport& transport, const Walk& walk, const Surface& surface,
                  uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread);
+
+// Returns tint_of() the walk's wavelengths.
+inline vec3 walk_tint(const Transport& transport, const Walk& walk, int lamp = -1) {
+  if (walk.wavelengths.in_color()) return vec3(1);
+  return tint_of(*transport.tables.spectral, walk.wavelengths, lamp);
+}
+// Lets the solid that the walk runs in absorb light over a length.
+void absorb(const Transport& transport, Walk& walk, float length, uint32_t dimensions,
+            Sampler& sampler);
+// Tells wavelengths that the Lambertian surface at a hit scattered them, likewise.
+void reflect(const Transport& transport, const Hit& hit, uint32_t dimensions, Sampler& sampler,
+             Wavelengths& carried);
+// Tells wavelengths that a surface of that material scattered them by `lobes`, if its reflectance
+// is known by wavelength. One of all lobes together is chosen, and the sample's weight becomes that
+// lobe's over its chance: so a walk that has all wavelengths keeps them.
+void reflect(const Transport& transport, const Material& material, const Bsdf& bsdf, Lobes lobes,
+             uint32_t dimensions, Sampler& sampler, BsdfSample& scattered, Wavelengths& carried);
 
 // Makes the walk's next ray after `place` scattered it; returns false if the walk ends here.
 bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered);
@@ -106,13 +123,15 @@ struct DirectLight {
   bool sure_of_punctual() const { return punctual_share > 0.99f; }
   vec3 sum() const { return area_diffuse + punctual_diffuse + specular; }
 };
-// Samples the light that arrives at a surface. `apart`: the caller samples the diffuse and specular
+// Samples the light that arrives at a surface; it has the tint of the walk and of the surface.
+// `apart`: the caller samples the diffuse and specular
 // lobes one by one (else as a mixture), and both kinds of light are sampled (else one of them, by
 // area_share).
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const Surface& surface, const Bsdf& bsdf, bool apart,
                                 Sampler& sampler);
-// Does the same for a Lambertian surface, its lobe's reflectance left out.
+// Does the same for a Lambertian surface, its lobe's reflectance left out. The walk's wavelengths
+// were told of the surface (reflect).
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const SurfacePlace& place, const LambertLobe& lobe, bool apart,
                                 Sampler& sampler);

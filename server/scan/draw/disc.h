@@ -22,6 +22,10 @@ struct alignas(32) Disc {
   uint32_t point;  // number of the piece times piece_points plus number in the piece
 };
 static_assert(sizeof(Disc) == 32);
+// Returns its middle, pixels from the sampling place of pixel 0.
+inline vec2 place_of(const Disc& disc) {
+  return vec2(float(disc.x >> 8), float(disc.y >> 8)) / 256.0f;
+}
 
 inline constexpr int tile_side = 64;
 inline constexpr int piece_bits = 12, piece_points = 1 << piece_bits;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <vector>
 
 #include "base/simd.h"
 #include "scan/draw/normal_lanes.h"
@@ -11,10 +13,15 @@
 namespace wellspring::scan {
 namespace {
 
-constexpr float least_radius = 0.75f;    // pixels of a disc's axes; above half a pixel's diagonal
-constexpr float least_narrow = 0.71f;    // the same of the shorter axis
-constexpr float single_below = 0.35f;    // discs of a smaller radius are one pixel
-constexpr float steepest = 8;            // tangent of the angle up to which discs are leant
+constexpr float least_radius = 0.75f;  // pixels of a disc's axes; above half a pixel's diagonal
+constexpr float least_narrow = 0.71f;  // the same of the shorter axis
+constexpr float single_below = 0.35f;  // discs of a smaller radius are one pixel
+constexpr float steepest = 8;          // tangent of the angle up to which discs are leant
+// A point whose own spacing is so many times its node's lies in a sparse place, which discs of the
+// node's size do not cover; points at random on a surface are below it. Its disc grows so much at
+// most, and from a still larger spacing on it lies alone, as those do that scanners put into the
+// air between two surfaces.
+constexpr float sparse_from = 1.8f, most_growth = 3, alone_from = 5;
 constexpr float nearest_depth = 1e-6f;   // metres
 constexpr float outside_places = 32000;  // pixels; Disc::x has 24 bits
 
@@ -33,6 +40,7 @@ struct ToEye {
   }
 };
 
+using Bytes = uint8_t __attribute__((vector_size(lane_count)));
 using Words = uint16_t __attribute__((vector_size(2 * lane_count)));
 inline LaneMask load_words(const uint16_t* from) {
   return __builtin_convertvector(load_lanes<Words>(from), LaneMask);
@@ -48,6 +56,19 @@ struct EightDiscs {
   Lanes depth, lean_x, lean_y, radius, slope;
   LaneMask low_x, high_x, low_y, high_y;
   LaneMask seen;
+  LaneMask large;  // among `seen`: spheres that need more pixels
+};
+
+// Returns how far a node reaches to both sides of the plane of a cut, metres: below 0, nothing of
+// it is on that side.
+struct CutReach {
+  double kept, lost;
+  CutReach(const NodePoints& node, const ScanCut& cut) {
+    const dvec3 normal(cut.normal), half(0.5 * double(node.size));
+    const double middle = glm::dot(normal, node.corner + half) - double(cut.offset);
+    const double reach = glm::dot(glm::abs(normal), half);
+    kept = middle + reach, lost = reach - middle;
+  }
 };
 
 // How a node is projected.
@@ -56,7 +77,9 @@ struct Projection {
   float focal, axis_x, axis_y, near;
   float radius;  // metres
   float most_pixels;
+  bool spheres;
   int width, height;
+  std::vector<ScanCut> cuts;  // those that cross the node, in the eye's frame
 
   Projection(const NodePoints& node, const ScanCamera& view, const DiscStyle& style)
       : to_eye(node, view),
@@ -66,15 +89,31 @@ struct Projection {
         near(std::max(view.near, nearest_depth)),
         radius(style.radius * node.spacing),
         most_pixels(std::clamp(style.most_pixels, least_radius, 31.0f)),
+        spheres(style.spheres),
         width(view.width),
-        height(view.height) {}
+        height(view.height) {
+    for (const ScanCut& cut : view.cuts)
+      if (CutReach(node, cut).lost > 0)
+        cuts.push_back({to_eye.turn * cut.normal,
+                        float(double(cut.offset) - glm::dot(dvec3(cut.normal), view.eye))});
+  }
   [[gnu::always_inline]] EightDiscs eight(const NodePoints& node, size_t first) const;
+  [[gnu::always_inline]] Lanes own_radius(const NodePoints& node, size_t first) const;
 };
 
 [[gnu::always_inline]] inline Lanes3 turned(const ToEye& m, const Lanes3& n) {
   return {m.turn[0].x * n.x + m.turn[1].x * n.y + m.turn[2].x * n.z,
           m.turn[0].y * n.x + m.turn[1].y * n.y + m.turn[2].y * n.z,
           m.turn[0].z * n.x + m.turn[1].z * n.y + m.turn[2].z * n.z};
+}
+
+// Returns the radii of discs, metres.
+inline Lanes Projection::own_radius(const NodePoints& node, size_t first) const {
+  if (spheres || !node.own_spacing) return all_lanes(radius);
+  const Lanes own = __builtin_convertvector(load_lanes<Bytes>(node.own_spacing + first), Lanes) *
+                    (1 / own_spacing_steps);
+  const LaneMask grows = (own > all_lanes(sparse_from)) & (own < all_lanes(alone_from));
+  return radius * (grows ? lanes_min(own, all_lanes(most_growth)) : all_lanes(1));
 }
 
 inline EightDiscs Projection::eight(const NodePoints& node, size_t first) const {
@@ -87,16 +126,18 @@ inline EightDiscs Projection::eight(const NodePoints& node, size_t first) const 
                   m.shift.y + px * m.x.y + py * m.y.y + pz * m.z.y,
                   m.shift.z + px * m.x.z + py * m.y.z + pz * m.z.z};
   d.seen = at.z >= all_lanes(near);
+  for (const ScanCut& cut : cuts) d.seen &= dot(at, all_lanes(cut.normal)) >= cut.offset;
   d.depth = at.z;
   const Lanes scale = focal / lanes_max(at.z, all_lanes(near));
   const Lanes place_x = clamp_lanes(axis_x + at.x * scale, -outside_places, outside_places);
   const Lanes place_y = clamp_lanes(axis_y - at.y * scale, -outside_places, outside_places);
-  const Lanes wanted = radius * scale;
+  const Lanes wanted = own_radius(node, first) * scale;
   const Lanes r = clamp_lanes(wanted, least_radius, most_pixels);
   const LaneMask single = wanted < all_lanes(single_below);
+  d.large = spheres ? wanted > all_lanes(most_pixels) : LaneMask{};
 
   // The plane's slope at the middle: how much farther it is a pixel on, in pixels' sizes.
-  const LaneMask word = load_words(node.normal + first);
+  const LaneMask word = spheres ? LaneMask{} + no_point_normal : load_words(node.normal + first);
   const Lanes3 n = turned(m, fold_normals(unpack_normals(word)));
   const Lanes along = dot(n, at);
   const Lanes least = at.z * 1e-4f;
@@ -113,7 +154,7 @@ inline EightDiscs Projection::eight(const NodePoints& node, size_t first) const 
   const Lanes thin = lanes_sqrt(shown2 / lanes_max(steep2, tiny)) / r;
   d.lean_x = steep_x * thin, d.lean_y = steep_y * thin;
   d.slope = lanes_sqrt(kept2 / lanes_max(shown2, tiny)) * r / scale;
-  d.radius = r;
+  d.radius = d.large ? wanted : r;
 
   const Lanes x2 = d.lean_x * d.lean_x * square, y2 = d.lean_y * d.lean_y * square;
   const Lanes share = square / (1 + x2 + y2);
@@ -133,7 +174,7 @@ inline EightDiscs Projection::eight(const NodePoints& node, size_t first) const 
   d.low_y = d.low_y < 0 ? LaneMask{} : d.low_y;
   d.high_x = d.high_x > width - 1 ? LaneMask{} + (width - 1) : d.high_x;
   d.high_y = d.high_y > height - 1 ? LaneMask{} + (height - 1) : d.high_y;
-  d.seen &= (d.low_x <= d.high_x) & (d.low_y <= d.high_y);
+  d.seen &= ((d.low_x <= d.high_x) & (d.low_y <= d.high_y)) | d.large;
   return d;
 }
 
@@ -174,7 +215,31 @@ struct Entries {
   }
 };
 
+// Returns whether a sphere touches the pyramid that the picture shows.
+bool is_in_picture(const Disc& sphere, const ScanCamera& view) {
+  const float pixel = 1 / view.focal(), radius = sphere.radius * sphere.depth * pixel;
+  const vec2 axis = view.axis_place();
+  const vec2 at = place_of(sphere) + view.offset - axis;
+  const auto is_beyond = [&](float place, float edge) {
+    const float tangent = edge * pixel;
+    return (place - edge) * pixel * sphere.depth > radius * std::sqrt(1 + tangent * tangent);
+  };
+  return !is_beyond(at.x, float(view.width) - axis.x) && !is_beyond(-at.x, axis.x) &&
+         !is_beyond(at.y, float(view.height) - axis.y) && !is_beyond(-at.y, axis.y);
+}
+
 }  // namespace
+
+float large_reach(const Disc& sphere, const ScanCamera& view) {
+  const float pixel = 1 / view.focal(), radius = sphere.radius * sphere.depth * pixel;
+  const float front = sphere.depth - radius;
+  if (!(front > 0.1f * radius)) return float(view.width + view.height);
+  const vec2 at = place_of(sphere);
+  const vec2 own = (at - (view.axis_place() - view.offset)) * pixel;
+  return sphere.radius * sphere.depth / front * sphere.depth / front *
+             std::sqrt(1 + dot(own, own)) +
+         1;
+}
 
 void PieceDiscs::make(const Piece& piece, uint32_t number, const NodePoints& node,
                       const ScanCamera& view, const DiscStyle& style) {
@@ -184,6 +249,7 @@ void PieceDiscs::make(const Piece& piece, uint32_t number, const NodePoints& nod
   const int tiles_x = (view.width + tile_side - 1) / tile_side;
   const int tiles_y = (view.height + tile_side - 1) / tile_side;
   entries.start(size_t(tiles_x) * size_t(tiles_y));
+  large_.clear();
   const Projection projection(node, view, style);
   constexpr LaneMask numbers{0, 1, 2, 3, 4, 5, 6, 7};
   for (uint32_t i = 0; i < piece.count; i += lane_count) {
@@ -191,6 +257,11 @@ void PieceDiscs::make(const Piece& piece, uint32_t number, const NodePoints& nod
     unsigned seen = negative_lanes(d.seen & (numbers < int(piece.count - i)));
     if (seen == 0) continue;
     store_discs(&entries.discs[i], d, number << piece_bits | i);
+    for (unsigned large = seen & negative_lanes(d.large); large != 0; large &= large - 1) {
+      const Disc& sphere = entries.discs[i + uint32_t(std::countr_zero(large))];
+      if (is_in_picture(sphere, view)) large_.push_back(sphere);
+    }
+    seen &= ~negative_lanes(d.large);
     const LaneMask x = d.low_x >> 6, y = d.low_y >> 6;
     const LaneMask more_x = (d.high_x >> 6) - x, more_y = (d.high_y >> 6) - y;
     const LaneMask tile = y * tiles_x + x;
@@ -225,6 +296,8 @@ void PieceDiscs::make(const Piece& piece, uint32_t number, const NodePoints& nod
 
 bool may_see_node(const NodePoints& node, const ScanCamera& view, const DiscStyle& style) {
   if (node.count == 0) return false;
+  for (const ScanCut& cut : view.cuts)
+    if (CutReach(node, cut).kept < 0) return false;
   const dvec3 from = node.corner + dvec3(0.5 * double(node.size)) - view.eye;
   const vec3 middle(dot(from, dvec3(view.right)), dot(from, dvec3(view.up)),
                     dot(from, dvec3(view.forward)));

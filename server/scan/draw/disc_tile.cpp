@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "image/srgb.h"
+#include "scan/draw/disc_bins.h"
 #include "scan/draw/normal_lanes.h"
 
 namespace wellspring::scan {
@@ -171,6 +172,8 @@ class SrgbCodes {
   std::array<uint8_t, 16384> codes_;
 };
 
+// Puts a sphere or a disc where it is nearest.
+template <bool spheres>
 [[gnu::always_inline]] inline void place_disc(TilePlanes& planes, const Disc& disc,
                                               const Place& place) {
   if ((disc.x & 255) == 0) {
@@ -184,11 +187,13 @@ class SrgbCodes {
     return;
   }
   const PlacedDisc d(disc, place);
-  const float behind = rim_behind * d.radius * d.depth * place.pixel;
+  const float metres = d.radius * d.depth * place.pixel;
   for_disc(d, [&](const auto& pixels, const Lanes& q, const Lanes& deeper) {
     const Lanes key = pixels.template load<Lanes>(planes.key.data());
-    const Lanes depth = lanes_max(d.depth + deeper, all_lanes(place.near));
-    const Lanes own = depth + behind * q;
+    const Lanes raised =
+        spheres ? d.depth - metres * lanes_sqrt(positive_lanes(1 - q)) : d.depth + deeper;
+    const Lanes depth = lanes_max(raised, all_lanes(place.near));
+    const Lanes own = spheres ? depth : depth + rim_behind * metres * q;
     const LaneMask wins = (q <= 1) & (own < key);
     if (!any_lane(wins)) return;
     pixels.store(planes.key.data(), wins ? own : key);
@@ -224,6 +229,106 @@ class SrgbCodes {
   });
 }
 
+// Knows how far blocks of a tile are covered: a sphere that lies wholly behind is not drawn.
+class Covered {
+ public:
+  // Pixels beyond the picture's right and lower edge hide nothing.
+  Covered(TilePlanes& planes, int width, int height) : planes_(planes) {
+    far_.fill(infinite);
+    for (int y = 0; y < tile_side; y++) {
+      const int from = y < height ? std::clamp(width, 0, tile_side) : 0;
+      std::fill_n(&planes.key[size_t(y * stride + from)], tile_side - from, -infinite);
+    }
+  }
+  // Returns whether all that is nearer than `front` metres of these pixels of the tile is covered.
+  bool hides(float front, int low_x, int high_x, int low_y, int high_y) {
+    if (++asked_ % update_every == 0) update();
+    for (int y = low_y / side; y <= high_y / side; y++)
+      for (int x = low_x / side; x <= high_x / side; x++)
+        if (front <= far_[size_t(y * across + x)]) return false;
+    return true;
+  }
+
+ private:
+  static constexpr int side = 16, across = tile_side / side;  // pixels; blocks
+  static constexpr int update_every = 256;                    // spheres
+  void update() {
+    for (int block = 0; block < across * across; block++) {
+      Lanes most = all_lanes(-infinite);
+      for (int y = block / across * side; y < (block / across + 1) * side; y++)
+        for (int x = block % across * side; x < (block % across + 1) * side; x += lane_count)
+          most = lanes_max(most, load_lanes(&planes_.key[size_t(y * stride + x)]));
+      float far = most[0];
+      for (int k = 1; k < lane_count; k++) far = std::max(far, most[k]);
+      far_[size_t(block)] = far;
+    }
+  }
+  TilePlanes& planes_;
+  std::array<float, size_t(across) * across> far_;
+  int asked_ = 0;
+};
+
+void place_sphere(TilePlanes& planes, Covered& covered, const Disc& disc, const Place& place) {
+  if ((disc.x & 255) != 0) {
+    const PlacedDisc d(disc, place);
+    const float radius = d.radius * d.depth * place.pixel;
+    if (d.high_x < d.low_x || d.high_y < d.low_y ||
+        covered.hides(d.depth - radius, d.low_x, d.high_x, d.low_y, d.high_y))
+      return;
+  }
+  place_disc<true>(planes, disc, place);
+}
+
+// Puts a sphere that is large in the picture where rays meet it. It touches the tile at most at the
+// pixels to which its front, seen at its nearest depth, may reach.
+void place_large(TilePlanes& planes, Covered& covered, const Disc& disc, const Place& place,
+                 const ScanCamera& view) {
+  const float radius = disc.radius * disc.depth * place.pixel;
+  const vec2 at = place_of(disc);
+  const vec2 middle = at - vec2(float(place.left), float(place.top));
+  // In the eye's frame rays are (x, y, 1), and the middle is its own ray times its depth.
+  const vec2 axis = view.axis_place() - view.offset;
+  const vec2 own = (at - axis) * place.pixel;
+  const float slant2 = 1 + dot(own, own), front = disc.depth - radius;
+  const float reach = large_reach(disc, view);
+  const auto least = [](float a) { return int(std::clamp(std::floor(a), -1.0f, 64.0f)); };
+  const int low_x = std::max(least(middle.x - reach), 0),
+            low_y = std::max(least(middle.y - reach), 0);
+  const int high_x = std::min(least(middle.x + reach) + 1, tile_side - 1),
+            high_y = std::min(least(middle.y + reach) + 1, tile_side - 1);
+  if (high_x < low_x || high_y < low_y || covered.hides(front, low_x, high_x, low_y, high_y))
+    return;
+  const float far2 = disc.depth * disc.depth * slant2 - radius * radius;
+  for (int y = low_y; y <= high_y; y++) {
+    const float ray_y = (float(place.top + y) - axis.y) * place.pixel;
+    for (int x = low_x; x <= high_x; x += lane_count) {
+      const size_t from = size_t(y * stride + x);
+      const Lanes ray_x = (steps + (float(place.left + x) - axis.x)) * place.pixel;
+      const Lanes square = ray_x * ray_x + (ray_y * ray_y + 1);
+      const Lanes along = disc.depth * (ray_x * own.x + (ray_y * own.y + 1));
+      const Lanes root = along * along - square * far2;
+      const Lanes depth = (along - lanes_sqrt(positive_lanes(root))) / square;
+      const Lanes key = load_lanes<Lanes>(&planes.key[from]);
+      const LaneMask wins = (root > 0) & (depth > all_lanes(place.near)) & (depth < key);
+      if (!any_lane(wins)) continue;
+      store_lanes(&planes.key[from], wins ? depth : key);
+      store_lanes(&planes.depth[from], wins ? depth : load_lanes<Lanes>(&planes.depth[from]));
+      const LaneBits point = load_lanes<LaneBits>(&planes.point[from]);
+      store_lanes(&planes.point[from], wins ? all_lane_bits(disc.point) : point);
+    }
+  }
+}
+
+// Returns the normal of a sphere around a point where a ray meets it at this depth.
+vec3 sphere_normal(const NodePoints& node, size_t number, const ScanCamera& view, vec3 ray,
+                   float depth) {
+  const dvec3 at(node.x[number], node.y[number], node.z[number]);
+  const vec3 middle(node.corner - view.eye + (at + 0.5) * (double(node.size) / 65536));
+  const vec3 normal = depth * ray - middle;
+  const float length = glm::length(normal);
+  return length > 0 ? normal / length : -normalize(ray);
+}
+
 void write_nearest(PointBuffer& buffer, const TilePlanes& planes, const DiscScene& scene,
                    const Place& place) {
   const ScanCamera& view = *scene.view;
@@ -243,6 +348,7 @@ void write_nearest(PointBuffer& buffer, const TilePlanes& planes, const DiscScen
           buffer.color[to] = 0;
           buffer.classification[to] = 0;
           buffer.node[to] = PointBuffer::no_node;
+          buffer.normal[to] = PointBuffer::no_normal;
           continue;
         }
         const Piece& piece = scene.pieces[point >> piece_bits];
@@ -252,7 +358,12 @@ void write_nearest(PointBuffer& buffer, const TilePlanes& planes, const DiscScen
         buffer.classification[to] = node.classification ? node.classification[number] : 0;
         buffer.node[to] = piece.node;
         words[i] = node.normal[number];
+        if (scene.spheres)
+          buffer.normal[to] = normal_word(sphere_normal(
+              node, number, view, rays.at(float(place.left + x + i), float(place.top + y)),
+              planes.depth[from]));
       }
+      if (scene.spheres) continue;
       const LaneBits normals =
           normals_towards_eye(words, rays.eight(float(place.left + x), float(place.top + y)));
       std::memcpy(&buffer.normal[row + size_t(x)], &normals, size_t(count) * sizeof(uint32_t));
@@ -283,19 +394,28 @@ void write_mean(PointBuffer& buffer, const TilePlanes& planes, const DiscScene& 
 }  // namespace
 
 void draw_disc_tile(PointBuffer& buffer, TilePlanes& planes, const DiscScene& scene, int tile_x,
-                    int tile_y, std::span<const std::span<const Disc>> runs, uint64_t area) {
+                    int tile_y, std::span<const std::span<const Disc>> runs, uint64_t area,
+                    std::span<const Disc> large) {
   const ScanCamera& view = *scene.view;
   const double most = most_layers * tile_side * tile_side;
-  const Place place{.left = tile_x * tile_side,
-                    .top = tile_y * tile_side,
-                    .shrink = double(area) > most ? float(std::sqrt(most / double(area))) : 1,
-                    .pixel = 1 / view.focal(),
-                    .near = view.near};
+  const Place place{
+      .left = tile_x * tile_side,
+      .top = tile_y * tile_side,
+      .shrink = double(area) > most && !scene.spheres ? float(std::sqrt(most / double(area))) : 1,
+      .pixel = 1 / view.focal(),
+      .near = view.near};
   planes.key.assign(TilePlanes::size, infinite);
   planes.depth.assign(TilePlanes::size, infinite);
   planes.point.assign(TilePlanes::size, nobody);
-  for (const std::span<const Disc>& run : runs)
-    for (const Disc& disc : run) place_disc(planes, disc, place);
+  if (scene.spheres) {
+    Covered covered(planes, view.width - place.left, view.height - place.top);
+    for (const Disc& disc : large) place_large(planes, covered, disc, place, view);
+    for (const std::span<const Disc>& run : runs)
+      for (const Disc& disc : run) place_sphere(planes, covered, disc, place);
+  } else {
+    for (const std::span<const Disc>& run : runs)
+      for (const Disc& disc : run) place_disc<false>(planes, disc, place);
+  }
   write_nearest(buffer, planes, scene, place);
   if (!scene.blended) return;
   const Rays rays(view);
@@ -310,7 +430,8 @@ void draw_disc_tile(PointBuffer& buffer, TilePlanes& planes, const DiscScene& sc
       vec3 n(0);
       if (word != no_point_normal) {
         n = unpacked_normal(word);
-        const vec3 ray = rays.at(float(disc.x >> 8) / 256, float(disc.y >> 8) / 256);
+        const vec2 at = place_of(disc);
+        const vec3 ray = rays.at(at.x, at.y);
         if (dot(n, ray) > 0) n = -n;
       }
       blend_disc(planes, disc, place,

@@ -16,6 +16,7 @@ struct DiscScene {
   std::span<const Piece> pieces;
   const ScanCamera* view = nullptr;
   bool blended = false;
+  bool spheres = false;
 };
 
 // The planes of a tile: rows of tile_side pixels, and what eight pixels at a time may read and
@@ -32,7 +33,9 @@ struct TilePlanes {
 
 // Draws runs of discs, the earlier ones before later ones at the same depth, and writes the tile's
 // pixels of `buffer`. `area` is the sum of the runs' areas.
+// `large`: spheres that the tile may show and that are in no run.
 void draw_disc_tile(PointBuffer& buffer, TilePlanes& planes, const DiscScene& scene, int tile_x,
-                    int tile_y, std::span<const std::span<const Disc>> runs, uint64_t area);
+                    int tile_y, std::span<const std::span<const Disc>> runs, uint64_t area,
+                    std::span<const Disc> large);
 
 }  // namespace wellspring::scan

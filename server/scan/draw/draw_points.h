@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws nodes of points as discs into planes of depth, colour and normal. Discs lie in the plane of
 // their point's normal and are ellipses in the picture (Zwicker et al. 2001, "Surface splatting");
-// they never become thinner than a pixel. Points are projected node by node, sorted into tiles, and
-// each tile is drawn by itself in their order, so pictures are the same for any number of threads.
+// they never become thinner than a pixel. Or points are spheres, with the depth and the normal of
+// what each pixel sees of them (paper on large particle sets, section 5). Points are projected node
+// by node, sorted into tiles, and each tile is drawn by itself in their order, so pictures are the
+// same for any number of threads.
 #pragma once
 #include <memory>
 #include <span>
@@ -21,9 +23,10 @@ class PointRaster {
   ~PointRaster();
   // Replaces `buffer` by the picture. Nodes are borrowed for the call, at most 2^20 pieces of 4096
   // points. Time is bounded by points and pixels: where discs would cover a tile many times over
-  // they are drawn smaller.
+  // they are drawn smaller, and spheres that nearer ones hide are not drawn.
   void draw(PointBuffer& buffer, std::span<const NodePoints> nodes, const ScanCamera& view,
             const DiscStyle& style);
+  size_t memory_bytes() const;
 
  private:
   struct Arrays;

@@ -71,6 +71,8 @@ void project_block(DrawnLanes& out, const Projection& p, const ShownSplats& spla
   const Lanes3 away = block.place - all_lanes(view.eye);
   const Lanes depth = dot(away, all_lanes(view.forward));
   LaneMask seen = (depth > view.near) & (block.opacity >= splat_threshold);
+  for (const ScanCut& cut : view.cuts)
+    seen &= dot(block.place, all_lanes(cut.normal)) >= cut.offset;
   out.seen = 0;
   if (!any_lane(seen)) return;
   const Lanes part = 1 / depth;

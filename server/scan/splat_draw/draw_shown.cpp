@@ -59,6 +59,8 @@ bool in_sight(const SplatNode& node, const LocalView& view) {
     return (n.x > 0 ? high.x : low.x) * n.x + (n.y > 0 ? high.y : low.y) * n.y +
            (n.z > 0 ? high.z : low.z) * n.z;
   };
+  for (const ScanCut& cut : view.cuts)
+    if (most(cut.normal) < cut.offset - dot(cut.normal, view.eye)) return false;
   // Comparisons let through what is not a number.
   return !(most(view.forward) < view.near) &&
          !(most(view.right - view.side.x * view.forward) < 0) &&
@@ -128,6 +130,11 @@ LocalView make_local_view(const PlacedSplats& set, const ScanCamera& view) {
   local.side = vec4(-around - axis.x, float(view.width) + around - axis.x, -around - axis.y,
                     float(view.height) + around - axis.y) /
                local.focal;
+  for (const ScanCut& cut : set.cuts) {
+    const vec3 normal = vec3(back * dvec3(cut.normal));
+    const double offset = (double(cut.offset) - glm::dot(dvec3(cut.normal), set.shift)) / set.scale;
+    local.cuts.push_back({normal, float(offset) - dot(normal, set.splats->middle)});
+  }
   return local;
 }
 

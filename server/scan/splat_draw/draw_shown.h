@@ -46,6 +46,7 @@ struct PlacedSplats {
   quat turn{1, 0, 0, 0};
   double scale = 1;
   dvec3 shift{0};
+  std::span<const ScanCut> cuts = {};  // in metres there; splats are cut by their middles
 };
 
 inline constexpr float nearest_splat = 0.1f;  // metres; nearer to the eye none is drawn
@@ -58,6 +59,7 @@ struct LocalView {
   float focal;     // pixels
   vec2 axis;       // pixel (i, j) lies at (i, j)
   glm::vec4 side;  // ratios of x, and of y, to depth at the left, right, top, bottom
+  std::vector<ScanCut> cuts;
 };
 
 LocalView make_local_view(const PlacedSplats& set, const ScanCamera& view);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "scan/splat_draw/draw_lanes.h"
 
@@ -162,6 +163,11 @@ void SplatDrawer::draw(SplatPlanes& picture, std::span<const PlacedSplats> sets,
       finish_tile(picture, tiles_[size_t(tile)], at.x, at.y);
     }
   });
+}
+
+size_t SplatDrawer::memory_bytes() const {
+  return bytes_of(drawn_.splats, drawn_.boxes, drawn_.keys, spare_, boxes_, lists_.first,
+                  lists_.splats, tiles_, surface_, limits_);
 }
 
 void lay_over(std::span<vec3> linear, const SplatPlanes& picture, float exposure) {

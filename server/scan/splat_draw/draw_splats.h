@@ -40,6 +40,7 @@ class SplatDrawer {
  public:
   void draw(SplatPlanes& picture, std::span<const PlacedSplats> sets, const ScanCamera& view,
             const SplatDrawing& settings);
+  size_t memory_bytes() const;
 
  private:
   void draw_in_order(const SplatGrid& grid);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
+#include <vector>
 
 #include "scan/tree/box_shadow.h"
 
@@ -24,20 +25,21 @@ double distance_to(const dvec3& eye, const DoubleBox& box) {
   return glm::length(glm::max(glm::max(box.low - eye, eye - box.high), dvec3(0)));
 }
 
-// The planes of what a view sees; they need not be of unit length.
+// The planes of what a view sees, and those that cut it; they need not be of unit length.
 class Frustum {
  public:
   explicit Frustum(const ScanCamera& view) {
     const dvec3 right(view.right), up(view.up), forward(view.forward);
     const double focal = double(view.focal());
     const dvec2 axis(view.axis_place()), size(view.width, view.height);
-    planes_[0] = {forward, -glm::dot(forward, view.eye) - double(view.near)};
-    const auto add = [&](int i, const dvec3& normal) {
-      planes_[i] = {normal, -glm::dot(normal, view.eye)};
+    planes_.push_back({forward, -glm::dot(forward, view.eye) - double(view.near)});
+    const auto add = [&](const dvec3& normal) {
+      planes_.push_back({normal, -glm::dot(normal, view.eye)});
     };
-    add(1, forward * (axis.x / focal) + right),
-        add(2, forward * ((size.x - axis.x) / focal) - right);
-    add(3, forward * ((size.y - axis.y) / focal) + up), add(4, forward * (axis.y / focal) - up);
+    add(forward * (axis.x / focal) + right), add(forward * ((size.x - axis.x) / focal) - right);
+    add(forward * ((size.y - axis.y) / focal) + up), add(forward * (axis.y / focal) - up);
+    for (const ScanCut& cut : view.cuts)
+      planes_.push_back({dvec3(cut.normal), -double(cut.offset)});
   }
   // Returns false if the box lies beyond one plane.
   bool touches(const DoubleBox& box) const {
@@ -53,7 +55,7 @@ class Frustum {
     dvec3 normal;
     double offset;
   };
-  Plane planes_[5];
+  std::vector<Plane> planes_;
 };
 
 struct Occluder {
@@ -76,7 +78,8 @@ class Chooser {
   }
 
   ChosenNodes choose() {
-    if (settings_.threshold < 1) find_occluders();
+    // Nobody knows whether a node that is cut hides anything.
+    if (settings_.threshold < 1 && view_.cuts.empty()) find_occluders();
     if (frustum_.touches(box_of(tree_.nodes[0])) && !is_hidden(0)) push(0);
     ChosenNodes chosen;
     chosen.points = points_;

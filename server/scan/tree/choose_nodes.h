@@ -29,8 +29,8 @@ struct ChosenNodes {
 };
 
 // Refines the node with the largest spacing first, as long as the budget allows it. Leaves out what
-// the frustum does not touch. Takes some microseconds a node; any thread.
-// `view`: in the tree's frame.
+// the frustum does not touch, or the view's cuts keep nothing of. Takes some microseconds a node;
+// any thread. `view`: in the tree's frame.
 ChosenNodes choose_nodes(const PointTree& tree, const ScanCamera& view,
                          const ChooseSettings& settings = {});
 

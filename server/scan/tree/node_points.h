@@ -7,6 +7,8 @@
 
 namespace wellspring::scan {
 
+inline constexpr float own_spacing_steps = 32;
+
 // A node holds all points of its cube (a leaf), or fewer that stand for them: each is the mean of
 // its neighbourhood in colour and normal. So a picture shows a node or its children, never both.
 // Columns are borrowed, `count` long, and may be read, not trusted, up to 8 items beyond.
@@ -23,6 +25,9 @@ struct NodePoints {
   // Octahedral (Meyer et al. 2010): signed bytes u, v times 127, u in the lower one; 0x8080: the
   // point has no normal.
   const uint16_t* normal = nullptr;
+  // A point's own spacing, in 1/own_spacing_steps of the node's, at most 255; null: it is as the
+  // node's.
+  const uint8_t* own_spacing = nullptr;
   const uint8_t* classification = nullptr;  // null: the scan has none
 };
 

@@ -42,7 +42,11 @@ class TreeReader {
   }
 
   void check_head() {
-    if (head_.magic != tree_magic) fail(0, "is no tree of points, or of another version");
+    if (!std::equal(tree_magic.begin(), tree_magic.begin() + tree_magic_letters,
+                    head_.magic.begin()))
+      fail(0, "is no tree of points");
+    if (head_.magic != tree_magic)
+      fail(tree_magic_letters, "is a tree of points of another version: import its files again");
     if (sum_of(reinterpret_cast<const std::byte*>(&head_), offsetof(TreeHead, head_sum)) !=
         head_.head_sum)
       fail(0, "the head is damaged");
@@ -59,6 +63,11 @@ class TreeReader {
         fail(offsetof(TreeHead, origin), "has an origin that is not finite");
       tree_.origin[i] = head_.origin[i];
     }
+    for (int i = 0; i < 9; i++) tree_.frame[i / 3][i % 3] = head_.frame[i];
+    const glm::dmat3 off = tree_.frame * glm::transpose(tree_.frame) - glm::dmat3(1);
+    bool is_rotation = glm::determinant(tree_.frame) > 0;
+    for (int i = 0; i < 9; i++) is_rotation = is_rotation && std::abs(off[i / 3][i % 3]) < 1e-9;
+    if (!is_rotation) fail(offsetof(TreeHead, frame), "has axes that are no rotation");
     int exponent = 0;
     if (!(head_.edge > 0) || !std::isfinite(head_.edge) || std::frexp(head_.edge, &exponent) != 0.5)
       fail(offsetof(TreeHead, edge), "the root's edge is no power of two");
@@ -184,6 +193,7 @@ NodePoints PointTree::points_of(uint32_t number) const {
   of.z = reinterpret_cast<const uint16_t*>(from + columns.z);
   of.color = reinterpret_cast<const uint32_t*>(from + columns.color);
   of.normal = reinterpret_cast<const uint16_t*>(from + columns.normal);
+  of.own_spacing = reinterpret_cast<const uint8_t*>(from + columns.own_spacing);
   if (has_classes)
     of.classification = reinterpret_cast<const uint8_t*>(from + columns.classification);
   return of;

@@ -29,7 +29,8 @@ struct TreeNode {
 // shorten while it is mapped ends the process with a signal: write_tree() never does.
 struct PointTree {
   std::string file;
-  dvec3 origin{0};  // metres, in the frame of the sources with +Y up
+  glm::dmat3 frame{1};  // turns the sources' axes to the tree's, of which +Y is up
+  dvec3 origin{0};      // metres, in the frame of the sources once it is turned
   uint64_t points = 0;
   double density = 0;  // points of a square metre of surface, typically
   bool has_color = false, has_intensity = false, has_classes = false;

@@ -21,7 +21,9 @@ namespace wellspring::scan {
 
 static_assert(std::endian::native == std::endian::little);
 
-inline constexpr std::array<char, 8> tree_magic{'W', 'S', 'p', 'o', 'i', 'n', 't', '1'};
+inline constexpr std::array<char, 8> tree_magic{'W', 'S', 'p', 'o', 'i', 'n', 't', '2'};
+// Files of versions before begin with these letters, and another number.
+inline constexpr size_t tree_magic_letters = 7;
 inline constexpr uint64_t tree_page = 4096;
 inline constexpr uint64_t column_align = 64;     // bytes
 inline constexpr uint64_t page_from = 64 << 10;  // bytes of a node that begins on a page
@@ -38,6 +40,7 @@ struct TreeHead {
   double corner[3];  // the root's cube's lowest, from there
   double edge;       // the root's cube's, metres
   double density;    // points of a square metre of surface, typically
+  double frame[9];   // columns of a rotation from the sources' axes to the tree's
   uint64_t points;   // leaves hold so many
   uint64_t table_at, stations_at, end_at;  // bytes; the file is as long as `end_at`
   uint32_t nodes, stations;
@@ -46,7 +49,7 @@ struct TreeHead {
   uint32_t head_sum;   // CRC-32 of all above
   uint32_t none;
 };
-static_assert(sizeof(TreeHead) == 8 + 8 * 12 + 24);
+static_assert(sizeof(TreeHead) == 8 + 8 * 21 + 24);
 
 struct NodeRecord {
   uint32_t cell[3];  // in edges of this level's cubes, from the root's corner
@@ -66,7 +69,7 @@ inline uint64_t round_up(uint64_t n, uint64_t to) { return (n + to - 1) / to * t
 
 // Says where a node's columns lie, in bytes from its offset.
 struct NodeColumns {
-  uint64_t x = 0, y = 0, z = 0, color = 0, normal = 0, classification = 0, end = 0;
+  uint64_t x = 0, y = 0, z = 0, color = 0, normal = 0, own_spacing = 0, classification = 0, end = 0;
   NodeColumns(uint64_t count, bool has_classes) {
     const auto place = [&](uint64_t bytes) {
       const uint64_t at = end;
@@ -74,6 +77,7 @@ struct NodeColumns {
       return at;
     };
     x = place(2), y = place(2), z = place(2), color = place(4), normal = place(2);
+    own_spacing = place(1);
     if (has_classes) classification = place(1);
   }
 };

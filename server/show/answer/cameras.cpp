@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "show/wall/wall.h"
 #include "wire/json.h"
 
 namespace wellspring::show {
@@ -24,10 +25,17 @@ std::optional<WireError> check_name(const std::string& own, std::string& kiosk) 
 std::optional<WireError> check_page(const std::vector<Token>& kiosk_tokens, const Link& link,
                                     const Hello& hello, std::string& kiosk) {
   kiosk = hello.kiosk;
-  if (hello.role != "kiosk") return {};
+  const bool is_kiosk = hello.role == "kiosk";
+  if (!is_kiosk && !hello.wall) return {};
+  if (hello.wall)
+    if (const char* wrong = check_part(*hello.wall)) return WireError{"bad_field", wrong};
   const Token* token = find_token(kiosk_tokens, hello.token);
-  if (token) return check_name(token->name, kiosk);
+  if (token) return is_kiosk ? check_name(token->name, kiosk) : std::nullopt;
   if (link.local) return {};
+  if (!is_kiosk)
+    return WireError{
+        "not_trusted",
+        "a wall's screen on another machine needs a kiosk token: open /wall?...#token=..."};
   return WireError{
       "not_trusted",
       "a kiosk's screen on another machine needs a kiosk token: open /kiosk#token=..."};

@@ -19,8 +19,9 @@ namespace wellspring::show {
 // Who is believed to be a kiosk of the house: whoever comes from the machine that serves, and
 // whoever shows a kiosk's token. A token that is for one kiosk by name is good for no other.
 
-// Checks a `hello` with the role kiosk; any other needs no trust. `kiosk` becomes the name of the
-// kiosk that it speaks for. Returns `not_trusted`, and what to do, otherwise.
+// Checks a `hello` with the role kiosk, or with a part in a wall, for which any kiosk's token is
+// good; others need no trust. `kiosk` becomes the name of the kiosk that it speaks for. Returns
+// `not_trusted`, and what to do, otherwise; `bad_field` for a part that cannot be.
 std::optional<WireError> check_page(const std::vector<Token>& kiosk_tokens, const Link& link,
                                     const Hello& hello, std::string& kiosk);
 // Checks an observation of a camera that was let in. If its token names a kiosk, the observation

@@ -42,8 +42,7 @@ json describe(const ExhibitStage& stage, const Visitor& visitor) {
                 {"place", place_of(place.view)},
                 {"viewpoint", place.viewpoint}};
   for (size_t i = 0; i < visitor.lamps.own.size(); i++)
-    if (visitor.lamps.own[i])
-      about["lamps"][stage.exhibit.lamps[i].id] = bool(visitor.lamps.wish[i]);
+    if (visitor.lamps.own[i]) about["lamps"][stage.exhibit.lamps[i].id] = visitor.lamps.wish[i];
   if (visitor.lamps.hour) about["hour"] = *visitor.lamps.hour;
   if (const TourRide& ride = place.tour; ride.state != TourRide::State::none && ride.tour >= 0)
     about["tour"] = {{"id", stage.exhibit.tours[size_t(ride.tour)].id},
@@ -93,7 +92,8 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   const bool known = viewpoint >= 0 && viewpoint < double(show.stage.exhibit.viewpoints.size());
   place.viewpoint = known ? int(viewpoint) : -1;
   const json lamps = about.value("lamps", json::object());
-  for (const auto& [name, on] : lamps.items()) switch_lamp(show, visitor, name, on.get<bool>());
+  for (const auto& [name, on] : lamps.items())
+    switch_lamp(show, visitor, name, LampSwitch(within(on, 0, most_dial_lights + 1)));
   if (about.contains("hour")) set_hour(show.stage, visitor, about["hour"].get<double>());
   if (about.contains("leads")) {
     const std::string code = about["leads"];

@@ -13,6 +13,7 @@
 #include "show/answer/groups.h"
 #include "show/answer/idle.h"
 #include "show/count/count.h"
+#include "show/exhibit/pieces/exhibit_scans.h"
 #include "show/state/visitor_world.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -59,7 +60,7 @@ Answer set_size(Visitor& visitor, const ShowSettings& settings, int width, int h
 
 // A page that had keyframes gets a finished picture next, and the other way round.
 void set_display(const Show& show, Visitor& visitor, const std::string& display) {
-  const bool local = display == "local";
+  const bool local = display == "local" && visitor.wall.role != WallRole::tile;
   PictureWishes& wants = visitor.wants;
   if (wants.local == local) return;
   wants.local = local;
@@ -85,10 +86,15 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.lang = hello.lang.empty() ? show.stage.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = kiosk;
+  if (!visitor.welcomed && hello.wall) {
+    visitor.wall.role = hello.wall->column ? WallRole::tile : WallRole::leader;
+    visitor.wall.part = *hello.wall;
+    visitor.shown.lost = true;  // its first picture comes although nothing changes
+  }
   set_display(show, visitor, hello.display);
   if (Answer wrong = set_size(visitor, show.settings, hello.width, hello.height))
     visitor.link->send_text(write_error(*wrong));
-  visitor.wants.parts = hello.parts.value_or(false);
+  visitor.wants.parts = hello.parts.value_or(false) && visitor.wall.role != WallRole::tile;
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);
@@ -98,7 +104,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   // Another thread may be drawing a picture of a visitor who is here already.
   const bool goes_on = is_first && !hello.resume.empty() && come_back(show, visitor, hello.resume);
   if (!goes_on) show.totals.visits++;
-  if (is_first) count_visit(show, visitor, goes_on);
+  if (is_first && !is_of_wall(visitor)) count_visit(show, visitor, goes_on);
   visitor.link->send_text(welcome_message(show, visitor, goes_on));
   visitor.link->send_text(agent_message(show, teller_of(show.cast, show.visits, visitor)));
   const Kiosk* own = kiosk_of(show, visitor);
@@ -194,8 +200,19 @@ Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
 
 Answer handle_one(Show& show, Visitor& visitor, const LampOrder& order) {
   if (Answer wrong = check_not_following(show.visits, visitor)) return wrong;
-  if (switch_lamp(show, visitor, order.name, order.on)) return {};
-  return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
+  const int lamp = find_lamp(show.stage.exhibit, order.name);
+  if (lamp < 0) return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
+  LampSwitch to = order.on ? 1 : 0;
+  if (order.on && !order.light.empty() &&
+      order.light != show.stage.exhibit.lamps[size_t(lamp)].spectrum) {
+    const auto& dial = show.stage.exhibit.lamps[size_t(lamp)].dial;
+    const auto found = std::ranges::find(dial, order.light, &DialLight::spectrum);
+    if (found == dial.end())
+      return WireError{"unknown_light", "the lamp has no light '" + order.light + "'"};
+    to = LampSwitch(2 + (found - dial.begin()));
+  }
+  switch_lamp(show, visitor, order.name, to);
+  return {};
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const HourOrder& order) {
@@ -222,13 +239,28 @@ Answer handle_one(Show& show, Visitor& visitor, const LensOrder& order) {
   return {};
 }
 
+// Returns where two places lie in a scan, if both do.
+std::optional<ScanPlaces> places_in_scan(const Exhibit& exhibit, const Pointed& from,
+                                         const Pointed& to) {
+  if (from.point < 0 || from.point != to.point) return {};
+  const auto piece =
+      std::ranges::find(exhibit.pieces, exhibit.points[size_t(from.point)].id, &ExhibitPiece::id);
+  if (piece == exhibit.pieces.end() || !piece->is_scan()) return {};
+  const glm::dmat4 back = glm::inverse(file_to_world(*piece));
+  auto place_of = [&](const Pointed& one) {
+    return dvec3(back * glm::dvec4(dvec3(one.place) + exhibit.scene.origin, 1));
+  };
+  return ScanPlaces{piece->id, place_of(from), place_of(to)};
+}
+
 Answer handle_one(Show& show, Visitor& visitor, const MeasureOrder& order) {
   const View& view = visitor.place.last_view;
   const Exhibit& exhibit = show.stage.exhibit;
   const auto from = point_at(exhibit, *show.stage.world, view, *order.from);
   const auto to = point_at(exhibit, *show.stage.world, view, *order.to);
   if (!from || !to) return WireError{"nothing_there", "nothing is seen there"};
-  visitor.link->send_text(measured_message(order.id, double(glm::length(to->place - from->place))));
+  visitor.link->send_text(measured_message(order.id, double(glm::length(to->place - from->place)),
+                                           places_in_scan(exhibit, *from, *to)));
   return {};
 }
 
@@ -298,6 +330,18 @@ Answer handle_one(Show&, Visitor& visitor, const Bye&) {
   return {};
 }
 
+// Returns whether the message is about the page that sends it, not about what is to be seen.
+bool is_of_page(const BrowserMessage& message) {
+  return std::visit(
+      [](const auto& one) {
+        using Message = std::decay_t<decltype(one)>;
+        return std::is_same_v<Message, Hello> || std::is_same_v<Message, Settings> ||
+               std::is_same_v<Message, Ack> || std::is_same_v<Message, PresenceNews> ||
+               std::is_same_v<Message, Bye>;
+      },
+      message);
+}
+
 }  // namespace
 
 std::optional<WireError> handle(Show& show, Visitor& visitor, const BrowserMessage& message) {
@@ -305,7 +349,9 @@ std::optional<WireError> handle(Show& show, Visitor& visitor, const BrowserMessa
                    std::holds_alternative<Bye>(message);
   if (!may_speak) return WireError{"hello_first", "the first message must be hello"};
   note_presence(visitor, message);
-  return std::visit([&](const auto& one) { return handle_one(show, visitor, one); }, message);
+  Visitor* camera = is_of_page(message) ? nullptr : camera_of(show.visits, visitor);
+  Visitor& who = camera ? *camera : visitor;
+  return std::visit([&](const auto& one) { return handle_one(show, who, one); }, message);
 }
 
 }  // namespace wellspring::show

@@ -9,7 +9,8 @@
 #include "frame/tonemap.h"
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
-#include "show/exhibit/exhibit_volumes.h"
+#include "show/exhibit/pieces/exhibit_scans.h"
+#include "show/exhibit/pieces/exhibit_volumes.h"
 #include "show/state/visitor_world.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
@@ -64,6 +65,11 @@ const char* tour_word(TourRide::State state) {
   }
 }
 
+// Returns the name of the light that a lamp with a dial has.
+const std::string& light_of(const ExhibitLamp& lamp, LampSwitch is) {
+  return is > 1 ? lamp.dial[is - 2u].spectrum : lamp.spectrum;
+}
+
 }  // namespace
 
 std::string welcome_message(const Show& show, const Visitor& visitor, bool resumed) {
@@ -103,15 +109,19 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
                           ? json(nullptr)
                           : json(exhibit.storytellers[size_t(story.storyteller_index)].id);
   }
-  const std::vector<char> lamps = switches_of(show.stage, show.visits, visitor);
-  for (size_t i = 0; i < exhibit.lamps.size(); i++)
-    message["lamps"].push_back({{"name", exhibit.lamps[i].id},
-                                {"title", text(exhibit.lamps[i].title)},
-                                {"on", bool(lamps[i])},
-                                {"shared", exhibit.lamps[i].shared}});
+  const std::vector<LampSwitch> lamps = switches_of(show.stage, show.visits, visitor);
+  for (size_t i = 0; i < exhibit.lamps.size(); i++) {
+    json& entry = message["lamps"].emplace_back(json{{"name", exhibit.lamps[i].id},
+                                                     {"title", text(exhibit.lamps[i].title)},
+                                                     {"on", bool(lamps[i])},
+                                                     {"shared", exhibit.lamps[i].shared}});
+    for (const DialLight& light : exhibit.lamps[i].dial)
+      entry["dial"].push_back({{"light", light.spectrum}, {"title", text(light.title)}});
+    if (entry.contains("dial")) entry["light"] = light_of(exhibit.lamps[i], lamps[i]);
+  }
   message["pieces"] = json::array();
   for (const ExhibitPiece& piece : exhibit.pieces) {
-    if (piece.layers.size() < 2 && !piece.volume) continue;
+    if (piece.layers.size() < 2 && !piece.has_inside()) continue;
     json layers = json::array();
     for (const PieceLayer& layer : piece.layers) {
       json& one = layers.emplace_back(
@@ -122,6 +132,7 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
     json& told =
         message["pieces"].emplace_back(json{{"id", piece.id}, {"layers", std::move(layers)}});
     if (piece.volume) told["volume"] = {{"size", triple(size_of(piece))}};
+    if (piece.is_scan()) told["scan"] = {{"size", triple(scan_size(piece))}};
     if (piece.nebula)
       told["volume"]["tilt"] = std::round(10 * glm::degrees(piece.nebula->tilt)) / 10;
   }
@@ -186,20 +197,23 @@ std::string state_message(const Show& show, const Visitor& visitor) {
   if (place.around.point >= 0 && !place.around.leaves)
     message["around"] = exhibit.points[size_t(place.around.point)].id;
   if (!exhibit.lamps.empty()) message["lamps"] = json::object();
-  const std::vector<char> lamps = switches_of(show.stage, show.visits, visitor);
-  for (size_t i = 0; i < exhibit.lamps.size(); i++)
+  const std::vector<LampSwitch> lamps = switches_of(show.stage, show.visits, visitor);
+  for (size_t i = 0; i < exhibit.lamps.size(); i++) {
     message["lamps"][exhibit.lamps[i].id] = bool(lamps[i]);
+    if (!exhibit.lamps[i].dial.empty())
+      message["lights"][exhibit.lamps[i].id] = light_of(exhibit.lamps[i], lamps[i]);
+  }
   const PieceChoices& choices = pieces_of(show.visits, visitor);
   for (size_t i = 0; i < choices.size(); i++) {
     const std::vector<PieceLayer>& layers = exhibit.pieces[i].layers;
-    if (layers.size() < 2 && !exhibit.pieces[i].volume) continue;
+    if (layers.size() < 2 && !exhibit.pieces[i].has_inside()) continue;
     const PieceChoice& choice = choices[i];
     json& told =
         message["pieces"][exhibit.pieces[i].id] = {{"layer", layers[size_t(choice.layer)].id},
                                                    {"over", layers[size_t(choice.over)].id},
                                                    {"by", piece_blends[size_t(choice.by)]},
                                                    {"share", choice.share}};
-    if (!exhibit.pieces[i].volume) continue;
+    if (!exhibit.pieces[i].has_inside()) continue;
     told["turn"] = std::round(10 * glm::degrees(choice.turn)) / 10;
     if (exhibit.pieces[i].nebula) told["tilt"] = choice.tilt;
     told["low"] = triple(choice.low), told["high"] = triple(choice.high);
@@ -244,8 +258,13 @@ std::string pose_message(const ExhibitStage& stage, const ShowVisits& visits,
       .dump();
 }
 
-std::string measured_message(uint32_t id, double metres) {
-  return json{{"type", "measured"}, {"id", id}, {"metres", metres}}.dump();
+std::string measured_message(uint32_t id, double metres, const std::optional<ScanPlaces>& places) {
+  json message{{"type", "measured"}, {"id", id}, {"metres", metres}};
+  auto list = [](const dvec3& place) { return json{place.x, place.y, place.z}; };
+  if (places)
+    message["scan"] = {
+        {"name", places->piece}, {"from", list(places->from)}, {"to", list(places->to)}};
+  return message.dump();
 }
 
 std::string went_message(uint32_t seq, const std::string& object, dvec3 place, double seconds) {

@@ -2,6 +2,7 @@
 // The server's words to a browser: JSON text of welcome, state, subtitle, agent, kiosk, house
 // and announce. Pure functions.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "show/exhibit/exhibit.h"
@@ -16,9 +17,14 @@ std::string state_message(const Show& show, const Visitor& visitor);
 // Tells a page that moves its own camera where the visitor is now.
 std::string pose_message(const ExhibitStage& stage, const ShowVisits& visits,
                          const Visitor& visitor);
+// Holds two places of a scan in the coordinates of its file (file_to_world()).
+struct ScanPlaces {
+  std::string piece;
+  dvec3 from{0}, to{0};
+};
+std::string measured_message(uint32_t id, double metres, const std::optional<ScanPlaces>& places);
 // The visitor is on its way to an eye's `place`, or has leapt there (0 seconds); to look closer at
 // `object`, if that is not empty.
-std::string measured_message(uint32_t id, double metres);
 std::string went_message(uint32_t seq, const std::string& object, dvec3 place, double seconds);
 // Empty text: the subtitle disappears.
 std::string subtitle_message(const std::string& text, const std::string& lang,

@@ -122,13 +122,13 @@ void go_away(Visitor& visitor) {
 
 void follow_leader(ShowVisits& visits, double time, Visitor& visitor, float dt) {
   VisitorGroup& group = visitor.group;
-  if (group.follows.empty()) return;
   const bool comes_back = std::ranges::any_of(visits.kept, [&](const KeptVisit& kept) {
     return kept.visitor.front().group.leads == group.follows;
   });
-  if (!find_leader(visits, group.follows) && !comes_back) return leave(visits, visitor);
+  if (!group.follows.empty() && !find_leader(visits, group.follows) && !comes_back)
+    return leave(visits, visitor);
   const Visitor* leader = leader_of(visits, visitor);
-  if (!leader) return;  // away
+  if (!leader) return;  // the visitor follows nobody, or is away
   if (time - group.looked_at > look_round_seconds) group.look *= std::exp(-dt / back_seconds);
   VisitorPlace& place = visitor.place;
   const Viewpoint& ahead = leader->place.view;

@@ -66,7 +66,7 @@ void watch_presence(Show& show, double dt) {
   for (auto next = show.visits.visitors.begin(); next != show.visits.visitors.end();) {
     auto visitor = next++;
     VisitorPresence& presence = visitor->presence;
-    if (!visitor->welcomed || visitor->kiosk) continue;
+    if (!visitor->welcomed || visitor->kiosk || is_of_wall(*visitor)) continue;
     const bool busy = is_told_something(show, *visitor) || leads_somebody(show.visits, *visitor);
     if (busy || visitor->place.moved_at == show.time) presence.quiet = 0;
     else presence.quiet += dt;

@@ -9,7 +9,9 @@
 #include "base/unicode.h"
 #include "light/kept/bake_file.h"
 #include "light/kept/map_file.h"
+#include "show/check/footing.h"
 #include "show/exhibit/exhibit_lights.h"
+#include "show/exhibit/pieces/exhibit_lawns.h"
 #include "world/view.h"
 
 namespace wellspring::show {
@@ -22,6 +24,8 @@ constexpr float much_in_view = 0.01f, much_of_it = 0.25f;
 constexpr float too_bright = 200;  // light on a surface, of which 3.14 makes white paper white
 constexpr float white_light = pi;
 constexpr float off_exposure = 30;  // so many times more or less is a mistake
+// Feet stand on the ground around them, and eyes see from so many metres on that they do not.
+constexpr float footprint = 0.2f, off_ground = 0.02f;
 
 // Evenly over the sphere (Fibonacci).
 vec3 direction_of(int i, int count) {
@@ -122,6 +126,17 @@ void check_storyteller(const Exhibit& exhibit, const World& world, size_t index,
     if (!is_in_solid(world, body, inside)) continue;
     return noter.note("/storyteller", "'" + place.id + "' stands inside '" + inside + "'");
   }
+  const vec3 feet(place.position - exhibit.scene.origin);
+  const std::optional<float> ground = find_footing(world, feet, footprint);
+  if (!ground)
+    return noter.note("/storyteller", fmt::format("there is no ground within {:g} m of the feet of "
+                                                  "'{}'",
+                                                  foot_reach, place.id));
+  const float gap = feet.y - *ground;
+  if (std::abs(gap) < off_ground) return;
+  noter.note("/storyteller", fmt::format("'{}' {} {:.3f} m: the ground is at a height of {:.3f} m",
+                                         place.id, gap > 0 ? "floats by" : "sinks in by",
+                                         std::abs(gap), place.position.y - double(gap)));
 }
 
 // Light that falls on what the lamp reaches: its median over the directions it shines in.
@@ -178,6 +193,21 @@ void check_places(const Exhibit& exhibit, const World& world, std::vector<Proble
     check_view(exhibit, world, viewpoint, noter);
   for (size_t i = 0; i < exhibit.storytellers.size(); i++)
     check_storyteller(exhibit, world, i, noter);
+}
+
+void check_lawns(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems) {
+  for (const ExhibitLawn& lawn : exhibit.lawns) {
+    if (grow_lawn(lawn, world)->blades > 0) continue;
+    const std::string on =
+        lawn.ground.empty() ? "no ground" : "no ground of " + list_names(lawn.ground, 8);
+    problems.push_back(
+        {exhibit.folder + "/exhibit.json", lawn.where,
+         fmt::format(
+             "nothing grows of the lawn '{}': within {:g} m above and below its place there "
+             "is {} that faces up, or its mask is black there",
+             lawn.id, lawn.reach, on),
+         false});
+  }
 }
 
 void check_sides(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems) {

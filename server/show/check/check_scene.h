@@ -35,6 +35,9 @@ bool sees_something(const World& world, const Viewpoint& viewpoint);
 // Notes about places, views and size. Milliseconds.
 void check_places(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems);
 
+// Notes lawns that have no ground. Takes tenths of a second for 100,000 blades.
+void check_lawns(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems);
+
 // Notes what visitors see from behind though its material has one side: bakes keep light of fronts
 // (light/kept/charts.h). Takes milliseconds.
 void check_sides(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems);

@@ -60,6 +60,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
   job.expected = job.view = job.ahead = now;
   job.seq = place.seq;
   job.sees_moving = sees_moving(show.cast, show.visits, visitor, now);
+  job.sways = visitor.lawns.sways;
   job.camera_cuts = place.camera_cuts;
   job.rest = picture.rest;
   // The first picture of a place, while others walk, is to be there soon.

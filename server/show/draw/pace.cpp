@@ -12,6 +12,7 @@
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
+#include "show/draw/tiles.h"
 
 namespace wellspring::show {
 namespace {
@@ -37,6 +38,8 @@ SkinPace plan_skin(float pixels, double samples_per_second, float known) {
 namespace {
 
 constexpr double still_rate = 25;    // pictures a second while only the storyteller moves
+constexpr double swaying_rate = 12;  // likewise while only grass moves
+constexpr double moved_rate = 2;     // likewise, and the page moves it in between
 constexpr double settling_rate = 7;  // likewise while nothing moves: more time for samples
 constexpr double resting_rate = 4;   // likewise when nothing in the picture changes any more
 constexpr double rested_rate = 0.2;  // likewise, when nothing has changed for long
@@ -80,7 +83,8 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.other_light =
       show.drawing->renderer.drawn != visitor.link->id &&
       (picture.lamps != visitor.lamps.lit || picture.hour != visitor.lamps.lit_hour ||
-       picture.shown_pieces != visitor.pieces.shown || has_new_pieces(picture.pieces));
+       picture.shown_pieces != visitor.pieces.shown || has_new_pieces(picture.pieces) ||
+       picture.job.sways != visitor.lawns.sways);
   state.at_once = is_wanted_at_once(picture, place.last_view);
   state.lens_moves = moves_lens(show.time, visitor);
   state.lens_due = lens_is_due(show, visitor);
@@ -136,8 +140,12 @@ void watch(const Show& show, Visitor& visitor) {
   const bool leapt = note_view(place.heading, show.time, view);
   if (view != place.last_view) place.leapt = leapt;
   if (leapt) place.camera_cuts++;
+  const LitLawns& lawns = show.stage.lawns;
+  if (view != place.last_view)
+    visitor.lawns.seen = sees_lawns(*show.stage.world, lawns.shown(), view);
   place.last_view = view;
   visitor.dynamic = dynamic_lights_in(view, dynamic_lights_of(show, visitor, show.time));
+  visitor.lawns.sways = visitor.lawns.seen && (lawns.moves() || !visitor.dynamic.empty());
 }
 
 bool stands(double time, const Visitor& visitor) {
@@ -172,16 +180,17 @@ double charge_weight(const ShowVisits& visits, double time, const Visitor& visit
 }
 
 bool may_take(double time, const Visitor& visitor) {
-  return is_shown(visitor) && !visitor.link->picture_pending() &&
-         may_send(visitor.shown.flow, time);
+  if (visitor.wall.role == WallRole::camera) return tiles_may_take(visitor, time);
+  return is_shown(visitor) && takes_pictures(visitor, time);
 }
 
 double picture_rate(const Show& show, const Visitor& visitor) {
   double rate = picture_plan(show.settings, visitor).rate;
   if (stands(show.time, visitor)) {
-    rate = std::min(rate, sees_motion(show, visitor, visitor.place.last_view) ? still_rate
-                          : rests(show, visitor)                              ? resting_rate
-                                                                              : settling_rate);
+    rate = std::min(rate, sees_others_move(show, visitor, visitor.place.last_view) ? still_rate
+                          : visitor.lawns.sways  ? visitor.wants.local ? moved_rate : swaying_rate
+                          : rests(show, visitor) ? resting_rate
+                                                 : settling_rate);
   } else {
     // All get the same rate, whosever warps cost most.
     if (double seconds = showing_seconds(show.visits, show.time); seconds > 0)

@@ -41,7 +41,7 @@ bool draws_backdrop(const ExhibitStage& stage, const ShowSettings& settings,
                     const PictureJob& job) {
   if (!is_still(job) || !job.sees_moving || shows_points(settings)) return false;
   if (!stage.visibility->rasterises(job.view)) return false;
-  if (!job.dynamic.empty()) return true;
+  if (!job.dynamic.empty() || job.sways) return true;
   PictureWindow window = moving_window(*stage.world, job.view);
   return !window.empty() && may_be_laid_over(window, job.view);
 }
@@ -125,10 +125,12 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& te
     return DrawingStep::guide;
   }
   double painted = seconds_now();
-  if (!passing && !points) compositor.lay_over_still(job.view, work.frame);
+  if (!passing && !points)
+    compositor.lay_over_still(job.view, work.frame, costs.backdrop && job.sways);
   if (!passing) tonemap(work.frame, curve, work.picture);
   work.seen = job.note_seen ? note_seen(job, work.picture, cache) : nullptr;
   make_keyframe(job.view, work.picture, passing ? work.depth : work.frame.depth, work.keyframe);
+  if (passing && visitor.wants.local) work.keyframe.sway = compositor.find_sway(work.keyframe);
   double finished = seconds_now();
 
   costs.core_seconds += process_seconds_now() - cores_began;

@@ -13,6 +13,8 @@
 #include "show/draw/pace.h"
 #include "show/draw/parts.h"
 #include "show/draw/still_pass.h"
+#include "show/draw/sway_packet.h"
+#include "show/draw/tiles.h"
 #include "show/state/delivery.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
@@ -71,13 +73,13 @@ void add_depth(const PacketHeader& header, KeyframeHeader keyframe,
 // its image is not kept, but for a browser that takes parts while these are made of it. eighths: of
 // the image's size, which is that of the header's. keyframe: its header if it is one; the encoder
 // has its disparities.
-void encode_complete(double time, Visitor& visitor, const PacketHeader& header, bool full_chroma,
-                     int eighths, const std::optional<KeyframeHeader>& keyframe) {
+void encode_complete(double time, Visitor& visitor, const View& view, const PacketHeader& header,
+                     bool full_chroma, int eighths, const std::optional<KeyframeHeader>& keyframe) {
   Encoder& encoder = *visitor.shown.encoder;
   encoder.full_chroma = full_chroma;
   const bool keeps = visitor.wants.parts && stands(time, visitor);
   const double pixels = counted_pixels(double(encoder.image.width) * encoder.image.height, eighths);
-  auto make = [header, full_chroma, eighths, keeps, keyframe, now = time](Encoder& encoder) {
+  auto make = [header, view, full_chroma, eighths, keeps, keyframe, now = time](Encoder& encoder) {
     const size_t header_bytes = keyframe ? keyframe_header_bytes : packet_header_bytes;
     auto packet = std::make_shared<Packet>(header_bytes);
     write_packet_header(header, *packet);
@@ -85,6 +87,7 @@ void encode_complete(double time, Visitor& visitor, const PacketHeader& header, 
     encode_jpeg(eighths < 8 ? shrink(image, header.width, header.height) : image, header.quality,
                 full_chroma, *packet, header_bytes);
     if (keyframe) add_depth(header, *keyframe, std::exchange(encoder.disparity, {}), *packet);
+    add_sway(std::exchange(encoder.sway, {}), view, *packet);
     if (keeps) note_complete(image, header.quality, eighths == 8, now, encoder.has);
     else encoder.has = {};
     if ((header.flags & packet_still) && !keeps) encoder.image = Image8{};
@@ -116,10 +119,12 @@ void encode_lens(Visitor& visitor, const PacketHeader& header, const LensPicture
   encode(visitor, header.quality, 0, std::move(make));
 }
 
-void encode_parts(Visitor& visitor, const PacketHeader& header, const PartsOrder& order) {
-  encode(visitor, header.quality, 0, [header, order](Encoder& encoder) {
+void encode_parts(Visitor& visitor, const View& view, const PacketHeader& header,
+                  const PartsOrder& order) {
+  encode(visitor, header.quality, 0, [header, view, order](Encoder& encoder) {
     auto packet = std::make_shared<Packet>();
     make_parts(encoder.image, order, header, encoder.has, *packet);
+    add_sway(std::exchange(encoder.sway, {}), view, *packet);
     if (!encoder.has.pending) encoder.image = Image8{};
     return packet;
   });
@@ -181,7 +186,42 @@ KeyframeHeader keyframe_header(const ExhibitStage& stage, const View& view, uint
           .unit = disparity_unit(view)};
 }
 
+// Notes the cost of a warped picture or a keyframe that has been encoded: the search for a seat
+// needs it.
+void note_cost(Capacity& capacity, Visitor& visitor) {
+  Encoder& encoder = *visitor.shown.encoder;
+  const double warping = std::exchange(visitor.shown.warp_core_seconds, 0.0);
+  if (visitor.wants.local && encoder.pixels > 0)
+    capacity.note_sent(encoder.pixels, encoder.processor_seconds);
+  if (warping <= 0) return;
+  capacity.note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
+                      warping + encoder.processor_seconds);
+}
+
+// Notes the last picture, once its encoder has finished.
+void note_encoded(ShowTotals& totals, Capacity& capacity, Visitor& visitor) {
+  Encoder& encoder = *visitor.shown.encoder;
+  if (std::exchange(encoder.unsent, false)) note_unsent(visitor.shown.flow, encoder.frame);
+  if (encoder.bytes == 0) return;
+  note_cost(capacity, visitor);
+  const size_t bytes = std::exchange(encoder.bytes, 0);
+  totals.picture_bytes += bytes;
+  if (encoder.pixels > 0) {
+    smooth(visitor.times.encode, encoder.milliseconds);
+    note_encoded(visitor.shown.flow, bytes, encoder.pixels, encoder.quality, encoder.full_chroma);
+  } else {
+    totals.pictures++;
+  }
+}
+
 void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader header) {
+  if (visitor.wall.role == WallRole::camera) {
+    for (Visitor* tile : cut_into_tiles(visitor, view, header.frame, show.time)) {
+      note_encoded(show.totals, *show.visits.capacity, *tile);
+      send_complete(show, *tile, tile->shown.view, header);
+    }
+    return;
+  }
   PicturePlan plan = picture_plan(show.settings, visitor);
   const bool still = header.flags & packet_still;
   const bool fine = still && !sees_motion(show, visitor, view);
@@ -196,7 +236,7 @@ void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader 
     header.flags |= packet_depth;
     visitor.shown.encoder->disparity = visitor.picture->keyframe.disparity;
   }
-  encode_complete(show.time, visitor, header, fine, plan.eighths, keyframe);
+  encode_complete(show.time, visitor, view, header, fine, plan.eighths, keyframe);
   visitor.shown.lost = false;
   show.totals.pictures++;
 }
@@ -220,7 +260,7 @@ void send_parts(Show& show, Visitor& visitor, const View& view, PacketHeader hea
   order.must = must;
   header.width = uint16_t(view.width);
   header.height = uint16_t(view.height);
-  encode_parts(visitor, header, order);
+  encode_parts(visitor, view, header, order);
   const double seconds = order.bytes / usable_rate(shown.flow, wishes);
   shown.refine_at = show.time + std::max(seconds, refine_interval);
 }
@@ -257,18 +297,6 @@ void refine(Show& show, Visitor& visitor) {
   shown.seq = visitor.place.seq;
 }
 
-// Notes the cost of a warped picture or a keyframe that has been encoded: the search for a seat
-// needs it.
-void note_cost(Capacity& capacity, Visitor& visitor) {
-  Encoder& encoder = *visitor.shown.encoder;
-  const double warping = std::exchange(visitor.shown.warp_core_seconds, 0.0);
-  if (visitor.wants.local && encoder.pixels > 0)
-    capacity.note_sent(encoder.pixels, encoder.processor_seconds);
-  if (warping <= 0) return;
-  capacity.note_shown(double(visitor.shown.view.width) * visitor.shown.view.height,
-                      warping + encoder.processor_seconds);
-}
-
 bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 
 // Warps the newest keyframe to `view`, into the encoder's image.
@@ -285,22 +313,6 @@ bool warp(ShowDrawing& drawing, ShowTotals& totals, Visitor& visitor, const View
   }
   totals.warped++;
   return true;
-}
-
-// Notes the last picture, once its encoder has finished.
-void note_encoded(ShowTotals& totals, Capacity& capacity, Visitor& visitor) {
-  Encoder& encoder = *visitor.shown.encoder;
-  if (std::exchange(encoder.unsent, false)) note_unsent(visitor.shown.flow, encoder.frame);
-  if (encoder.bytes == 0) return;
-  note_cost(capacity, visitor);
-  const size_t bytes = std::exchange(encoder.bytes, 0);
-  totals.picture_bytes += bytes;
-  if (encoder.pixels > 0) {
-    smooth(visitor.times.encode, encoder.milliseconds);
-    note_encoded(visitor.shown.flow, bytes, encoder.pixels, encoder.quality, encoder.full_chroma);
-  } else {
-    totals.pictures++;
-  }
 }
 
 }  // namespace
@@ -392,6 +404,8 @@ static void present_keyframe(Show& show, Visitor& visitor) {
   const View& view = job.view;
   copy_colors(picture.keyframe, {0, 0, view.width, view.height}, visitor.shown.encoder->image);
   if (!picture.moving.empty()) lay_over(picture.moving, visitor.shown.encoder->image);
+  visitor.shown.encoder->sway =
+      picture.moving.empty() ? picture.keyframe.sway : picture.moving.sway;
   const bool stood = is_still(job) && view == visitor.place.last_view;
   visitor.shown.has_layer &= is_still(job);
   send(show, visitor, view, stood ? visitor.place.seq : job.seq, is_still(job));

@@ -20,6 +20,7 @@ namespace wellspring::show {
 namespace {
 
 constexpr double slice = 0.02, least_step = 0.004;  // seconds
+constexpr double sway_interval = 0.45;  // seconds between pictures of grass that a page moves
 
 }  // namespace
 
@@ -51,7 +52,7 @@ void go_on_with_pass(ShowDrawing& drawing, const ExhibitStage& stage, Visitor& v
       pass.given_up = true;  // its samples were forgotten meanwhile, as the visitor sees others
     } else {
       finish_reconstruction(compositor.samples(), *pass.denoiser, pass.work, pass.frame);
-      compositor.lay_over_still(pass.job.view, pass.frame);
+      compositor.lay_over_still(pass.job.view, pass.frame, pass.backdrop && pass.job.sways);
       tonemap(pass.frame, Tonemap{stage.exhibit.exposure}, pass.picture);
       make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
       pass.step = StillPass::Step::done;
@@ -164,11 +165,13 @@ void light_picture(ShowDrawing& drawing, ExhibitStage& stage, VisitorPicture& pi
   DynamicImage& image = renderer.work.dynamic;
   const DynamicLights& from = renderer.posed_lights;
   const SplatSettings settings = dynamic_splat_settings();
+  image.from = from, image.settings = settings;  // for grass (picture/grass_light.h)
   const View& view = picture.keyframe.view;
   BackdropSurfaces& surfaces = picture.surfaces;
   SettledBounce& settled = picture.settled;
   if (surfaces.view != view) {
     find_backdrop_surfaces(*stage.visibility, view, surfaces);
+    picture.compositor.lay_over_backdrop(picture.keyframe, surfaces);
     settled = {};
   }
   see_surfaces(*stage.visibility, dynamic_light_view(view), image.surfaces, RasterShows::moving);
@@ -210,7 +213,8 @@ void finish_moving(ShowDrawing& drawing, ShowTotals& totals, Visitor& visitor) {
   picture.posed_at = renderer.posed_at;
   MovingPicture& moving = renderer.work.moving;
   // Otherwise the whole picture is drawn anew.
-  const bool layer = renderer.posed_layer, relit = !renderer.posed_lights.empty();
+  const bool layer = renderer.posed_layer;
+  const bool relit = !renderer.posed_lights.empty() || picture.job.sways;
   const PictureWindow& moves = layer ? moving.layer.window : moving.window;
   picture.backdrop &= relit || may_be_laid_over(moves, moving.view);
   if (!picture.backdrop) return;
@@ -221,8 +225,10 @@ void finish_moving(ShowDrawing& drawing, ShowTotals& totals, Visitor& visitor) {
   smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
   std::swap(moving, picture.moving);
   picture.job.time_us = renderer.posed_us;
-  // A page that has the still part of the picture need not get it again.
-  if (!layer || relit || is_first) picture.unshown = true;
+  // A page that has the still part of the picture need not get it again, and moves grass itself.
+  const bool grass_is_due = picture.posed_at >= picture.swayed_at + sway_interval;
+  if (!layer || !renderer.posed_lights.empty() || is_first || (relit && grass_is_due))
+    picture.unshown = true, picture.swayed_at = picture.posed_at;
   totals.posed++;
 }
 

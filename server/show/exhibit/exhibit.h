@@ -12,6 +12,8 @@
 #include "avatar/face/expression.h"
 #include "avatar/figure/character.h"
 #include "avatar/story/story_script.h"
+#include "lawn/lawn.h"
+#include "lawn/wind.h"
 #include "show/lighting/day.h"
 #include "store/picture/sample_picture.h"
 #include "volume/compare/report.h"
@@ -113,7 +115,7 @@ struct WalkSettings {
 // A storyteller: figure, place, and its own greetings and manner.
 struct StorytellerPlace {
   std::string id;
-  std::string figure;  // file beside exhibit.json
+  std::string figure;  // file of its package, or of the one that lends it
   LocalText name;
   dvec3 position{0};                 // place of the feet
   float yaw = 0;                     // as Viewpoint: 0 faces -Z
@@ -145,10 +147,11 @@ struct PointOfInterest {
 struct PieceLayer {
   std::string id, source;  // source: of the package, as exhibit.json names it
   LocalText label, text;
-  std::optional<int> year;               // year of a map
+  std::optional<int> year;               // year of a map or scan
   PictureLayer shown;                    // nothing for a volume
   std::optional<volume::Preset> preset;  // a volume's
   ScanColors colors = {};                // a scan's
+  int set = 0;                           // likewise: of ExhibitPiece::sets
   // Hold a volume in colours that compare it with a model, and their meaning. Null: the piece's
   // volume is shown as it is.
   std::shared_ptr<const volume::ShownVolume> volume;
@@ -183,16 +186,30 @@ struct ExhibitPiece {
   int image = -1;                                     // index into Scene::images
   std::shared_ptr<const volume::ShownVolume> volume;  // null: it is no volume
   std::shared_ptr<const PieceNebula> nebula;          // null: it is a scan
-  std::shared_ptr<const PointTree> points;            // null: it is no scan of points
+  std::vector<ScanSet> sets;                          // empty: it is no scan of points
   std::shared_ptr<const ShownSplats> splats;          // null: it is none of splats
   PointBounds scan_box;                               // either one's bounds
   quat scan_turn{1, 0, 0, 0};                         // from its file's axes to +Y up
-  bool is_scan() const { return points || splats; }
-  float brightness = 1;  // a scan's, as it was captured
-  float scale = 1;       // metres here to one of volume or scan
-  uint32_t object = 0;   // the volume's or scan's
+  // From its file's coordinates, those of a survey perhaps, to the frame of scan_box.
+  glm::dmat4 from_file{1};
+  bool is_scan() const { return !sets.empty() || splats; }
+  bool has_inside() const { return volume || is_scan(); }  // it may be cut
+  float sphere = 0;                                        // as PlacedScan's
+  float brightness = 1;                                    // a scan's, as it was captured
+  float scale = 1;                                         // metres here to one of volume or scan
+  uint32_t object = 0;                                     // the volume's or scan's
 };
 inline constexpr size_t most_exhibit_pieces = 500;
+
+// A lawn, before its ground is known.
+struct ExhibitLawn {
+  std::string id, where;            // in exhibit.json
+  LawnDescription description;      // relative to the scene's origin; its `ground` is not used
+  std::vector<std::string> ground;  // materials on which it grows; empty: on all
+  float height = 0, reach = 1;      // its ground lies so high, give or take `reach`, metres
+  Wind wind;
+  uint32_t object = 0;
+};
 
 // A thing that a storyteller can hold.
 struct ExhibitProp {
@@ -233,11 +250,17 @@ struct ExhibitMover {
 };
 
 // Holds a lamp that visitors may switch: scene.lamps[i] lists its parts, and the sun of the day.
+struct DialLight {
+  std::string spectrum;
+  LocalText title;
+};
 struct ExhibitLamp {
   std::string id;
   LocalText title;
-  bool on = true;       // at first
-  bool shared = false;  // who switches it does so for everybody
+  bool on = true;                 // at first
+  bool shared = false;            // who switches it does so for everybody
+  std::string spectrum{};         // its own light; empty: a colour
+  std::vector<DialLight> dial{};  // other lights, one for each of the scene's lamp
 };
 inline constexpr size_t most_lamps = 32;
 
@@ -300,6 +323,7 @@ struct Exhibit {
   std::vector<PointOfInterest> points;
   std::vector<std::string> allowed_hosts;  // servers whose pictures may hang here: HOST, HOST:PORT
   std::vector<ExhibitPiece> pieces;
+  std::vector<ExhibitLawn> lawns;
   std::vector<std::string> piece_languages;  // pieces have words in these, besides the first
   std::vector<ExhibitLamp> lamps;            // one for each of the scene's, but for the day's sun
   std::vector<ChangingLight> lights;

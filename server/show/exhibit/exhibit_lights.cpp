@@ -10,6 +10,7 @@
 #include "light/kept/lamps.h"
 #include "light/technique/technique.h"
 #include "light/visible/guides.h"
+#include "show/exhibit/exhibit_spectra.h"
 #include "world/load/lamp.h"
 
 namespace wellspring::show {
@@ -34,12 +35,13 @@ void read_lamps(Exhibit& exhibit, FieldReader& root) {
       if (loaded)
         fields.fail((fault.is_material ? "materials/" : "nodes/") + std::to_string(fault.index),
                     fault.what);
+    read_lamp_light(exhibit, fields, lamp, int(exhibit.scene.lamps.size()) - 1);
     exhibit.lamps.push_back(std::move(lamp));
   });
 }
 
-std::vector<char> first_lamps(const Exhibit& exhibit) {
-  std::vector<char> on;
+std::vector<LampSwitch> first_lamps(const Exhibit& exhibit) {
+  std::vector<LampSwitch> on;
   for (const ExhibitLamp& lamp : exhibit.lamps) on.push_back(lamp.on);
   return on;
 }

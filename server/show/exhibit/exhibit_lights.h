@@ -16,7 +16,7 @@ namespace wellspring::show {
 void read_lamps(Exhibit& exhibit, FieldReader& root);
 
 // As the exhibit is at first: which of its lamps are on, and the scene's.
-std::vector<char> first_lamps(const Exhibit& exhibit);
+std::vector<LampSwitch> first_lamps(const Exhibit& exhibit);
 LampLevels first_levels(const Exhibit& exhibit);
 
 // Reads the object "flicker"; without one the light is steady.

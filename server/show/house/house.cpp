@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "base/log.h"
-#include "show/exhibit/exhibit_story.h"
+#include "show/exhibit/load/exhibit_story.h"
 
 namespace wellspring::show {
 

@@ -19,14 +19,14 @@
 #include "light/visible/guides.h"
 #include "picture/laid_view.h"
 #include "show/exhibit/exhibit_lights.h"
-#include "show/exhibit/exhibit_scans.h"
-#include "show/exhibit/exhibit_volumes.h"
+#include "show/exhibit/pieces/exhibit_scans.h"
+#include "show/exhibit/pieces/exhibit_volumes.h"
+#include "show/lawns/lit_lawns.h"
 #include "show/lens/lens.h"
 #include "show/state/show.h"
 #include "wire/limits.h"
 
 namespace wellspring::show {
-
 namespace {
 constexpr size_t most_kept_bytes = size_t(16) << 20;
 constexpr int still_jpeg_quality = 90;
@@ -68,6 +68,7 @@ struct StillRoom::Scenery {
   Lights lights;
   std::function<double()> clock;
   mutable LitVolumes volumes;
+  LitLawns lawns;
   // Pictures that show other pieces than at first have the world alone.
   mutable std::shared_mutex looks;
 };
@@ -86,32 +87,33 @@ StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_cloc
       weights(show.settings.weights),
       clock(std::move(given_clock)) {
   // The moving meshes as they are now: at the show's start.
+  const World& before = *show.stage.world;
   std::vector<Mesh> moving;
   std::vector<uint32_t> moving_object;
-  const int first = int(exhibit.scene.instances.size()), count = show.stage.world->instance_count();
+  const int first = int(exhibit.scene.instances.size()), count = before.instance_count();
   for (int i = first; i < count; i++) {
-    moving.push_back(show.stage.world->mesh_of(uint32_t(i)));
-    moving_object.push_back(show.stage.world->object_of(uint32_t(i)));
+    moving.push_back(before.mesh_of(uint32_t(i)));
+    moving_object.push_back(before.object_of(uint32_t(i)));
   }
   world = std::make_unique<World>(exhibit.scene, std::move(moving), std::move(moving_object));
-  for (int i = first; i < count; i++)  // one storyteller at a time
-    world->show(i - first, show.stage.world->is_visible(uint32_t(i)));
+  for (int i = first; i < count; i++) world->show(i - first, before.is_visible(uint32_t(i)));
   world->commit();
   const LampLevels levels = first_levels(exhibit);
+  const std::vector<vec3> factors = lamp_factors(exhibit.scene, levels);
   for (size_t i = 0; i < levels.size(); i++) world->set_lamp(int(i), levels[i]);
   std::vector<PunctualLight> moving_lights;  // as they are at the show's start, too
   for (const ChangingLight& light : exhibit.lights) {
     moving_lights.push_back(eval_light(light, 0));
-    if (light.lamp >= 0)
-      moving_lights.back().intensity *= brightness_of(levels[size_t(light.lamp)]);
+    if (light.lamp >= 0) moving_lights.back().intensity *= factors[size_t(light.lamp)];
   }
   lights = make_lights(*world, moving_lights);
   lights.lamps_seen = show.stage.lights.lamps_seen;
   const bool switched = !levels.empty() && show.stage.switches.all.known;
-  lights.known = switched ? relit(*show.stage.switches.all.known, levels) : show.stage.lights.known;
+  lights.known = switched ? relit(*show.stage.switches.all.known, *world, *lights.tables)
+                          : show.stage.lights.known;
   if (!lights.known) transport.clamp = 0;  // it is the reference
-  volumes.begin(exhibit, lights, *technique, *world);
-  place_scans(exhibit, *world);
+  volumes.begin(exhibit, lights, *technique, *world), place_scans(exhibit, *world);
+  lawns.begin(show.stage.lawns), lawns.light(*world, lights, *technique);
 }
 
 void StillRoom::Scenery::show_chosen(const PieceChoices& choices) const {
@@ -175,8 +177,7 @@ std::optional<Frame> StillRoom::Scenery::render(const StillJob& order, const Vie
   return frame;
 }
 
-// Lays volumes and scans over. Waits for the bricks that volumes larger than memory lack, as long
-// as any come.
+// Lays over what is no mesh; waits for bricks that volumes lack, as long as any come.
 void StillRoom::Scenery::lay_over(const View& view, const std::function<bool()>& given_up,
                                   Frame& frame) const {
   const bool bricks = std::ranges::any_of(
@@ -185,8 +186,9 @@ void StillRoom::Scenery::lay_over(const View& view, const std::function<bool()>&
   for (int round = bricks ? 0 : 1;; round++) {
     Frame laid = frame;
     const uint64_t before = volumes.arrivals();
-    LaidLayer().lay_over(laid_things(*world, lights.known, exhibit.exposure), view,
-                         round == 0 ? 1 : laid_places, work, laid);
+    LaidLayer().lay_over(
+        laid_things(*world, &lights, lights.known, exhibit.exposure, lawns.shown()), view,
+        round == 0 ? 1 : laid_places, work, laid);
     if (round == 0) std::this_thread::sleep_for(time_of_bricks);
     const bool more = volumes.arrivals() != before || round == 0;
     if (more && round < most_brick_rounds && !(given_up && given_up())) continue;
@@ -243,7 +245,8 @@ bool StillRoom::Scenery::add_glass(StillJob order, const std::function<bool()>& 
                                    Image8& image) const {
   const View whole = view_of(order);
   if (!look_through(exhibit, order.lens, order.pieces).empty()) return true;
-  if (order.lens.depth > 0) cut_ahead(exhibit, order.lens, whole.position, order.pieces);
+  if (order.lens.depth > 0)
+    cut_ahead(exhibit, order.lens, lens_ray(whole, order.lens), order.pieces);
   show_chosen(order.pieces);
   const View view = lens_view(whole, order.lens, zoom_of(*world, whole, order.lens), 2);
   const double share = double(view.width) * view.height / order.pixels();

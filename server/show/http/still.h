@@ -14,7 +14,7 @@
 
 #include "base/clock.h"
 #include "show/exhibit/exhibit.h"
-#include "show/exhibit/piece_choices.h"
+#include "show/exhibit/pieces/piece_choices.h"
 #include "wire/messages.h"
 
 namespace wellspring::show {

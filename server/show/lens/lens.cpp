@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/clock.h"
-#include "show/exhibit/exhibit_volumes.h"
+#include "show/exhibit/pieces/exhibit_volumes.h"
 #include "show/lens/pieces.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -28,11 +28,16 @@ ShownPieces choices_of(const Show& show, const Visitor& visitor) {
   const LensOrder& order = visitor.lens;
   look_through(show.stage.exhibit, order, shown.choices);
   if (order.depth > 0)
-    cut_ahead(show.stage.exhibit, order, visitor.place.last_view.position, shown.choices);
+    cut_ahead(show.stage.exhibit, order, lens_ray(visitor.place.last_view, order), shown.choices);
   return shown;
 }
 
 }  // namespace
+
+Ray lens_ray(const View& view, const LensOrder& order) {
+  const vec2 at = order.at.value_or(vec2(0.5f)) * vec2(float(view.width), float(view.height));
+  return view_ray(view, at.x, at.y);
+}
 
 View lens_view(const View& view, const LensOrder& order, float zoom, float sides) {
   const float pixel = 2 * view.tan_half_fov / float(view.height);
@@ -49,7 +54,7 @@ View lens_view(const View& view, const LensOrder& order, float zoom, float sides
 float zoom_of(const World& world, const View& view, const LensOrder& order) {
   if (order.zoom > 0) return std::clamp(order.zoom, 1.0f, most_zoom);
   const float x = order.at->x * float(view.width), y = order.at->y * float(view.height);
-  const Ray ray = view_ray(view, x, y);
+  const Ray ray = lens_ray(view, order);
   const Hit hit = world.intersect(ray);
   if (!hit.valid()) return zoom_of_others;
   const PlacedMesh& placed = world.placed(hit.instance);
@@ -112,7 +117,8 @@ void draw_lens(Show& show, Visitor& visitor) {
                           dynamic_splat_settings(), work.dynamic);
   lens.compositor->set_skin(&stage.skin, &stage.lights);
   lens.compositor->set_maps(stage.lights.maps);
-  lens.compositor->set_laid(laid_things(*stage.world, stage.lights.maps, stage.exhibit.exposure));
+  lens.compositor->set_laid(laid_things(*stage.world, &stage.lights, stage.lights.maps,
+                                        stage.exhibit.exposure, stage.lawns.shown()));
   lens.compositor->set_dynamic(lights.empty() ? nullptr : &work.dynamic);
   auto draw = [&](RenderCache& cache) {
     lens.compositor->draw(cache, view, *stage.visibility, Tonemap{stage.exhibit.exposure},

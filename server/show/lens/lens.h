@@ -12,6 +12,8 @@ inline constexpr float lens_sides = 3;  // radii a side: half a radius is margin
 // Returns the view that the glass's picture has: a square around its middle, of so many radii,
 // whose content is `zoom` times as large as in `view`.
 View lens_view(const View& view, const LensOrder& order, float zoom, float sides = lens_sides);
+// Returns the ray of the eye through its middle.
+Ray lens_ray(const View& view, const LensOrder& order);
 // Returns the zoom of an order: where it is 0, texels of the very large picture under the glass's
 // middle become pixels.
 float zoom_of(const World& world, const View& view, const LensOrder& order);

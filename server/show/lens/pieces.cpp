@@ -44,7 +44,7 @@ void want_pieces(const ExhibitStage& stage, const ShownPieces& shown, PieceWatch
   if (wishes.empty() && !watch.client) return;
   const std::vector<ExhibitPiece>& pieces = stage.exhibit.pieces;
   for (size_t i = 0; i < pieces.size(); i++)
-    if (!pieces[i].layers.empty() && !pieces[i].volume)
+    if (pieces[i].picture)
       add_neighbours(pieces[i], choice_of(shown.choices, i), shown.language, wishes);
   if (!watch.client) watch.client = std::make_unique<PieceClient>(shared_store());
   watch.client->want(std::move(wishes));

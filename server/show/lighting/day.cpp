@@ -198,14 +198,14 @@ float eval_sky(const Day& day, double hour) {
   return std::min(luminance(eval_daylight(day, elevation_at(day, hour)).sky) / own, 1.0f);
 }
 
-LampLevels lamp_levels(const std::optional<Day>& day, std::span<const char> on,
+LampLevels lamp_levels(const std::optional<Day>& day, std::span<const LampSwitch> on,
                        std::optional<double> hour) {
   LampLevels levels;
-  for (char one : on) levels.push_back(one ? lamp_full : 0);
+  for (LampSwitch one : on) levels.push_back({one ? lamp_full : 0, uint8_t(one > 1 ? one - 1 : 0)});
   if (!day) return levels;
   LampLevel& sky = levels[size_t(day->lamp)];
-  const LampLevel sun = hour ? 0 : sky;
-  if (hour && sky > 0) sky = level_of(eval_sky(*day, *hour));
+  const LampLevel sun = hour ? LampLevel(0) : sky;
+  if (hour && sky.level > 0) sky.level = level_of(eval_sky(*day, *hour));
   levels.push_back(sun);  // day->sun_lamp
   return levels;
 }

@@ -98,7 +98,7 @@ float eval_sky(const Day& day, double hour);
 // Returns the levels of the scene's lamps, if `on` says which of the exhibit's are on, at an hour
 // of the day (nothing: the exhibit's own). At another one the scene's sun is off: it stands
 // elsewhere then.
-LampLevels lamp_levels(const std::optional<Day>& day, std::span<const char> on,
+LampLevels lamp_levels(const std::optional<Day>& day, std::span<const LampSwitch> on,
                        std::optional<double> hour);
 
 }  // namespace wellspring::show

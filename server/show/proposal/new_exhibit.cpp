@@ -11,7 +11,7 @@
 #include "base/write_file.h"
 #include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_lights.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "world/load/scene_join.h"
 #include "world/load/scene_load.h"
 #include "world/motion/scene_motion.h"

@@ -48,7 +48,9 @@ bool in_view(const View& view, vec3 centre, float radius) {
 
 View rest_view(const ExhibitStage& stage, const Visitor& visitor) {
   const Around& around = visitor.place.around;
-  const Viewpoint& at = around.point >= 0 ? around.view : visitor.place.view;
+  Viewpoint at = around.point >= 0 ? around.view : visitor.place.view;
+  if (visitor.wall.role == WallRole::camera)
+    at.fov = wall_fov(visitor.wall.part, {visitor.wants.width, visitor.wants.height}, at.fov);
   View view = make_view(stage.exhibit.scene, at, visitor.wants.width, visitor.wants.height);
   view.near = around.near;
   return view;
@@ -143,12 +145,13 @@ bool is_on(const Show& show, const Visitor& visitor, size_t animation) {
 
 bool sees_moving(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor,
                  const View& view) {
-  return !visitor.dynamic.empty() || sees_figure(cast, teller_of(cast, visits, visitor), view) ||
+  return !visitor.dynamic.empty() || visitor.lawns.sways ||
+         sees_figure(cast, teller_of(cast, visits, visitor), view) ||
          std::ranges::any_of(cast.movers.reach,
                              [&](const Reach& reach) { return in_reach(view, reach); });
 }
 
-bool sees_motion(const Show& show, const Visitor& visitor, const View& view) {
+bool sees_others_move(const Show& show, const Visitor& visitor, const View& view) {
   if (!visitor.dynamic.empty() ||
       sees_figure(show.cast, teller_of(show.cast, show.visits, visitor), view))
     return true;
@@ -157,6 +160,10 @@ bool sees_motion(const Show& show, const Visitor& visitor, const View& view) {
         is_running(show.stage.exhibit.animations[i], play_of(show, visitor, i), show.time))
       return true;
   return false;
+}
+
+bool sees_motion(const Show& show, const Visitor& visitor, const View& view) {
+  return visitor.lawns.sways || sees_others_move(show, visitor, view);
 }
 
 bool play_animation(Show& show, Visitor& visitor, std::string_view id, bool on) {

@@ -45,10 +45,11 @@ std::vector<double> animation_times(const Show& show, const Visitor& visitor);
 // its index.
 bool is_on(const Show& show, const Visitor& visitor, size_t animation);
 // Returns whether that picture may show anything that can move: a dynamic light, the visitor's
-// storyteller, or what an animation moves, at rest or not.
+// storyteller, a lawn that moves, or what an animation moves, at rest or not.
 bool sees_moving(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor,
                  const View& view);
-// Returns whether any of these moves now; the storyteller always does.
+// Return whether any of these moves now, with lawns or without; the storyteller always does.
+bool sees_others_move(const Show& show, const Visitor& visitor, const View& view);
 bool sees_motion(const Show& show, const Visitor& visitor, const View& view);
 
 // Starts the animation, or sends it back, for the visitor or for everybody. Returns false if no

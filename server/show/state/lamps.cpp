@@ -110,9 +110,9 @@ const VisitorLamps& wishes_of(const ShowVisits& visits, const Visitor& visitor) 
 }
 }  // namespace
 
-std::vector<char> switches_of(const ExhibitStage& stage, const ShowVisits& visits,
-                              const Visitor& visitor) {
-  std::vector<char> on = stage.switches.wanted;
+std::vector<LampSwitch> switches_of(const ExhibitStage& stage, const ShowVisits& visits,
+                                    const Visitor& visitor) {
+  std::vector<LampSwitch> on = stage.switches.wanted;
   const VisitorLamps& wishes = wishes_of(visits, visitor);
   for (size_t i = 0; i < wishes.own.size(); i++)
     if (wishes.own[i]) on[i] = wishes.wish[i];
@@ -135,14 +135,15 @@ bool set_hour(const ExhibitStage& stage, Visitor& visitor, std::optional<double>
   return true;
 }
 
-bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on) {
+bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, LampSwitch to) {
   const int found = find_lamp(show.stage.exhibit, name);
   if (found < 0) return false;
   const size_t lamp = size_t(found);
-  if (bool(switches_of(show.stage, show.visits, visitor)[lamp]) == on) return true;
+  if (size_t(to) > 1 + show.stage.exhibit.lamps[lamp].dial.size()) return false;
+  if (switches_of(show.stage, show.visits, visitor)[lamp] == to) return true;
   show.totals.lamps_switched++;
   if (show.stage.exhibit.lamps[lamp].shared) {
-    show.stage.switches.wanted[lamp] = on;
+    show.stage.switches.wanted[lamp] = to;
     for (Visitor& other : show.visits.visitors) other.state_sent_at = -1e9;
     return true;
   }
@@ -150,7 +151,7 @@ bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on) {
   own.own.resize(show.stage.exhibit.lamps.size());
   own.wish.resize(own.own.size());
   own.own[lamp] = true;
-  own.wish[lamp] = on;
+  own.wish[lamp] = to;
   visitor.state_sent_at = -1e9;
   return true;
 }
@@ -194,7 +195,8 @@ void light_world(ExhibitStage& stage, const LampLevels& lamps) {
 void follow_lamps(ExhibitStage& stage, Visitor& visitor) {
   VisitorPicture& picture = *visitor.picture;
   picture.compositor.set_maps(stage.lights.maps);
-  picture.compositor.set_laid(laid_things(*stage.world, stage.lights.maps, stage.exhibit.exposure));
+  picture.compositor.set_laid(laid_things(*stage.world, &stage.lights, stage.lights.maps,
+                                          stage.exhibit.exposure, stage.lawns.shown()));
   picture.hour = visitor.lamps.lit_hour;
   const LampLevels& lit = stage.switches.lit;
   if (picture.lamps == lit) return;
@@ -237,9 +239,10 @@ void add(const PunctualLight& light, uint32_t id, DynamicLights& lights) {
 void add_changing(const ExhibitStage& stage, const LampLevels& lit, double time,
                   DynamicLights& lights) {
   const std::vector<ChangingLight>& all = stage.exhibit.lights;
+  const std::vector<vec3> factors = lamp_factors(stage.exhibit.scene, lit);
   for (size_t i = 0; i < all.size(); i++) {
     PunctualLight light = eval_light(all[i], time);
-    if (all[i].lamp >= 0) light.intensity *= brightness_of(lit[size_t(all[i].lamp)]);
+    if (all[i].lamp >= 0) light.intensity *= factors[size_t(all[i].lamp)];
     add(light, first_changing_light + uint32_t(i), lights);
   }
 }

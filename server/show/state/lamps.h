@@ -29,16 +29,16 @@ void use_better_maps(ExhibitStage& stage, ShowVisits& visits,
 // Puts the lamps as they are at first. show.stage.lights were made, and are prepared, while all
 // lamps were full.
 void begin_lamps(ExhibitStage& stage);
-// Return what the visitor wants: which of the exhibit's lamps are on, by the visitor's own wish or
+// Return what the visitor wants: how the exhibit's lamps are switched, by the visitor's own wish or
 // the house's; the hour of the day (none: the exhibit's own); and the levels of the scene's lamps
 // that follow from both.
-std::vector<char> switches_of(const ExhibitStage& stage, const ShowVisits& visits,
-                              const Visitor& visitor);
+std::vector<LampSwitch> switches_of(const ExhibitStage& stage, const ShowVisits& visits,
+                                    const Visitor& visitor);
 std::optional<double> hour_of(const Show& show, const Visitor& visitor);
 LampLevels lamps_of(const Show& show, const Visitor& visitor);
 // Switches a lamp; pages whose visitors see it are informed with the next tick. Returns false if
 // there is no such lamp.
-bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on);
+bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, LampSwitch to);
 // Sets the hour; none: back to the exhibit's own. The visitor's page is informed with the next
 // tick. Returns false if the exhibit has no day.
 bool set_hour(const ExhibitStage& stage, Visitor& visitor, std::optional<double> hour);

@@ -10,11 +10,12 @@
 #include "light/kept/map_file.h"
 #include "light/sample/light_tables.h"
 #include "show/exhibit/exhibit_objects.h"
-#include "show/exhibit/exhibit_scans.h"
-#include "show/exhibit/exhibit_volumes.h"
+#include "show/exhibit/pieces/exhibit_scans.h"
+#include "show/exhibit/pieces/exhibit_volumes.h"
 #include "show/moving/exhibit_scene.h"
 #include "show/state/renderer.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
 
 namespace wellspring::show {
@@ -128,6 +129,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   show->stage.world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
   place_volumes(show->stage.exhibit, *show->stage.world);  // whose shadows light is found with
   place_scans(show->stage.exhibit, *show->stage.world);
+  show->stage.lawns.begin(show->stage.exhibit, *show->stage.world);
   show->stage.skin = make_skin_light(*show->stage.world);
   if (!show->cast.figures.empty()) enter(show->stage, show->cast.teller);
   if (!show->cast.figures.empty() || !show->cast.props.empty())
@@ -152,6 +154,16 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->stage.exhibit.id,
             triangle_count(scene), show->stage.exhibit.viewpoints.size(), scene.materials.size());
   return show;
+}
+
+Visitor& begin_visit(Show& show, std::shared_ptr<Link> link) {
+  Visitor& visitor = show.visits.visitors.emplace_back();
+  visitor.link = std::move(link);
+  visitor.came_at = show.time;
+  visitor.picture->cache = RenderCache({}, show.drawing->renderer.work.cache);
+  visitor.picture->compositor = Compositor(show.drawing->renderer.work.compositor);
+  visitor.picture->compositor.set_skin(&show.stage.skin, &show.stage.lights);
+  return visitor;
 }
 
 }  // namespace wellspring::show

@@ -11,6 +11,9 @@ namespace wellspring::show {
 // tour that cannot be walked. Takes seconds; may be cancelled (base/worker.h).
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 
+// Adds the visit of a link that has said nothing yet.
+Visitor& begin_visit(Show& show, std::shared_ptr<Link> link);
+
 // Puts another storyteller in place of the present one, which falls silent. The new one knows
 // nobody yet and greets anew; it is seen from the next picture on. Does nothing if it is there
 // already.

@@ -31,7 +31,7 @@
 #include "picture/keyframe.h"
 #include "picture/still/reconstruct_still.h"
 #include "picture/warp_picture.h"
-#include "show/exhibit/piece_choices.h"
+#include "show/exhibit/pieces/piece_choices.h"
 #include "show/state/visitor_attention.h"
 #include "world/view.h"
 
@@ -74,6 +74,7 @@ struct PictureJob {
   uint32_t camera_cuts = 0;  // the visitor's camera cuts by then
   PictureKind kind = PictureKind::moving;
   bool sees_moving = false;  // something that can move may be in it
+  bool sways = false;        // a lawn that moves may be in it
   bool learns = false;       // its samples are kept for each pixel, for reconstructions
   bool settled = false;      // the visitor has rested for long: the reference takes over
   RestState rest;            // the visitor's rest by then

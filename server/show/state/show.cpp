@@ -24,7 +24,36 @@ Visitor& visitor_of(ShowVisits& visits, uint64_t id) {
   return const_cast<Visitor&>(visitor_of(std::as_const(visits), id));
 }
 
+const Visitor* camera_of(const ShowVisits& visits, const Visitor& tile) {
+  if (tile.wall.role != WallRole::tile) return nullptr;
+  for (const Visitor& other : visits.visitors)
+    if (other.wall.role == WallRole::camera && !other.left &&
+        other.wall.part.name == tile.wall.part.name)
+      return &other;
+  return nullptr;
+}
+
+Visitor* camera_of(ShowVisits& visits, const Visitor& tile) {
+  return const_cast<Visitor*>(camera_of(std::as_const(visits), tile));
+}
+
+// Returns the page that leads a wall, of several the one that came last; null: none does.
+static const Visitor* leader_of_wall(const ShowVisits& visits, const Visitor& camera) {
+  const Visitor* last = nullptr;
+  for (const Visitor& other : visits.visitors)
+    if (other.wall.role == WallRole::leader && other.welcomed &&
+        other.wall.part.name == camera.wall.part.name)
+      last = &other;
+  return last;
+}
+
 const Visitor* leader_of(const ShowVisits& visits, const Visitor& visitor) {
+  if (const Visitor* camera = camera_of(visits, visitor)) {
+    const Visitor* leader = leader_of(visits, *camera);
+    return leader ? leader : camera;
+  }
+  if (visitor.wall.role == WallRole::camera)
+    if (const Visitor* leader = leader_of_wall(visits, visitor)) return leader;
   const VisitorGroup& group = visitor.group;
   if (group.follows.empty() || group.away) return nullptr;
   for (const Visitor& other : visits.visitors)
@@ -82,8 +111,8 @@ bool hears_storyteller(const Show& show, const Visitor& visitor) {
 }
 
 bool listens_to(const Show& show, const Visitor& visitor, const Teller& teller) {
-  return visitor.welcomed && &teller_of(show.cast, show.visits, visitor) == &teller &&
-         hears_storyteller(show, visitor);
+  return visitor.welcomed && visitor.wall.role != WallRole::tile &&
+         &teller_of(show.cast, show.visits, visitor) == &teller && hears_storyteller(show, visitor);
 }
 
 }  // namespace wellspring::show

@@ -79,6 +79,9 @@ struct Show {
 // Return the visitor of that Link::id, which is one of them.
 Visitor& visitor_of(ShowVisits& visits, uint64_t id);
 const Visitor& visitor_of(const ShowVisits& visits, uint64_t id);
+// Returns the camera of the wall that the visitor is a tile of; null: there is none.
+Visitor* camera_of(ShowVisits& visits, const Visitor& tile);
+const Visitor* camera_of(const ShowVisits& visits, const Visitor& tile);
 // Returns the visitor whose place, storyteller and lamps this one follows at the moment; null:
 // nobody's.
 const Visitor* leader_of(const ShowVisits& visits, const Visitor& visitor);

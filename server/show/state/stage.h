@@ -9,6 +9,7 @@
 #include "light/sample/lights.h"
 #include "show/exhibit/exhibit.h"
 #include "show/exhibit/json_fields.h"
+#include "show/lawns/lit_lawns.h"
 #include "show/questions/question_index.h"
 #include "show/state/baker.h"
 #include "show/state/switches.h"
@@ -40,6 +41,7 @@ struct ExhibitStage {
   BakerLooks baker_looks;
   std::unique_ptr<VisibilityPass> visibility;  // draws one picture at a time
   LitVolumes volumes;
+  LitLawns lawns;                              // who walks there bends them for all visitors
   SkinLight skin;                              // light on moving things, for all visitors
   const Technique* technique = nullptr;        // used while anything moves
   const Technique* still_technique = nullptr;  // used while the visitor stands still

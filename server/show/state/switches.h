@@ -26,7 +26,7 @@ struct KnownLight {
 struct Switches {
   // the house's wish for each of the exhibit's lamps, for visitors who have not switched it for
   // themselves
-  std::vector<char> wanted;
+  std::vector<LampSwitch> wanted;
   LampLevels lit;  // levels in the world
   Lights all;  // lights that were made while all lamps were full; empty if the exhibit has no lamps
   std::shared_ptr<const LampCells> cells;  // light of all lamps; null: none is kept
@@ -40,8 +40,8 @@ struct Switches {
 struct VisitorLamps {
   // for each of the exhibit's lamps: whether the visitor's own wish counts, not the house's
   std::vector<char> own;
-  std::vector<char> wish;      // those wishes
-  std::optional<double> hour;  // hour of the day, the visitor's own wish; none: the exhibit's
+  std::vector<LampSwitch> wish;  // those wishes
+  std::optional<double> hour;    // hour of the day, the visitor's own wish; none: the exhibit's
   // These are the lamps and the hour that the visitor's pictures are to show.
   LampLevels lit;  // empty: none yet
   std::optional<double> lit_hour;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,14 +14,16 @@
 #include "base/worker.h"
 #include "frame/tonemap.h"
 #include "image/image.h"
+#include "picture/sway_image.h"
 #include "show/kiosk/kiosk.h"
 #include "show/state/capacity.h"
 #include "show/state/cast.h"
-#include "show/exhibit/piece_choices.h"
+#include "show/exhibit/pieces/piece_choices.h"
 #include "show/state/switches.h"
 #include "show/state/visitor_attention.h"
 #include "show/visit/flow.h"
 #include "show/visit/place.h"
+#include "show/wall/wall.h"
 #include "wire/link.h"
 #include "wire/messages.h"
 #include "world/view.h"
@@ -66,6 +69,7 @@ inline void smooth(float& value, float sample, float share = 0.1f) {
 struct Encoder {
   Image8 image;
   std::vector<float> disparity;  // a keyframe's, until it is encoded
+  SwayImage sway;                // likewise, or that of new parts; empty: nothing sways
   BrowserPicture has;            // screen of a browser that takes parts
   uint32_t frame = 0;            // number of the last picture
   bool unsent = false;           // nothing had changed: no picture was sent
@@ -132,6 +136,13 @@ struct PictureWishes {
   float task_weight = 0.5f;
 };
 
+// Says how the visitor's view shows lawns, and where the visitor has walked.
+struct VisitorLawns {
+  bool seen = false;          // some may be in view
+  bool sways = false;         // likewise, and blades or their light move
+  std::optional<vec3> ankle;  // its place at the last step (show/state/visitor_world.h)
+};
+
 struct VisitorPicture;  // show/state/visitor_picture.h
 
 struct Visitor {
@@ -162,9 +173,11 @@ struct Visitor {
   DynamicLights dynamic;    // lights that move or change, as they are now
   std::vector<Play> plays;  // the visitor's own, for each animation; empty: none was touched
   VisitorGroup group;
+  VisitorWall wall;
   VisitorOrders orders;
   VisitorPlace place;  // show/visit
-  WindowEye window;    // eye before a kiosk's screen
+  VisitorLawns lawns;
+  WindowEye window;  // eye before a kiosk's screen
   PictureWishes wants;
   VisitorAttention looks;                   // show/draw/steer.h
   std::unique_ptr<VisitorPicture> picture;  // show/draw; never null
@@ -175,9 +188,14 @@ struct Visitor {
   double posed_at = -1e9;
 };
 
-// Returns whether the visitor gets pictures: it has said hello, and its page is not hidden.
+// Returns whether pictures are drawn for the visitor: it has said hello, its page is not hidden,
+// and it is no tile of a wall, which gets parts of the wall's.
 inline bool is_shown(const Visitor& visitor) {
-  return visitor.welcomed && visitor.presence.hidden < 0;
+  return visitor.welcomed && visitor.presence.hidden < 0 && visitor.wall.role != WallRole::tile;
+}
+// Returns whether it is a part of a wall, and nobody's visit.
+inline bool is_of_wall(const Visitor& visitor) {
+  return visitor.wall.role == WallRole::tile || visitor.wall.role == WallRole::camera;
 }
 
 // Returns all memory, in bytes, that pictures of one visitor take between them; its encoder's as

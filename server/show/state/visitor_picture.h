@@ -15,7 +15,7 @@
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "show/state/renderer.h"
-#include "show/exhibit/piece_choices.h"
+#include "show/exhibit/pieces/piece_choices.h"
 #include "store/seen_pieces.h"
 #include "wire/messages.h"
 
@@ -97,6 +97,7 @@ struct VisitorPicture {
   MovingPicture moving;       // moving things, to be laid over the keyframe; empty: none
   bool layer_unsent = false;  // the layer of `moving` has not been sent
   double posed_at = -1e9;     // show time of the job of `moving`
+  double swayed_at = -1e9;    // show time of the grass that a page was last sent, which it moves
   BackdropSurfaces surfaces;  // surfaces of the keyframe, while lights that move shine on it
   SettledBounce settled;      // light of those lights that stay as they are
   PieceWatch pieces;

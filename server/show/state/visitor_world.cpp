@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/visitor_world.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
@@ -20,6 +23,51 @@ PieceChoices pieces_now(const Show& show, const Visitor& visitor) {
   const double done = (show.time - pieces.told_at) / glide_seconds;
   if (!(done < 1)) return pieces.wish;
   return glide(pieces.before, pieces.wish, float(glm::smoothstep(0.0, 1.0, done)));
+}
+
+constexpr float foot_radius = 0.2f, hip_height = 0.9f;  // metres
+constexpr float longest_step = 1.5f;  // metres between two looks; who has come farther has leapt
+
+// Adds a leg that stands on the ground at `ground`.
+void add_leg(vec3 ground, Walkers& walkers) {
+  walkers.capsules.push_back(
+      {ground + vec3(0, foot_radius, 0), ground + vec3(0, hip_height, 0), foot_radius});
+}
+
+// Returns who walks: storytellers that are to be seen, and visitors, with the way that these have
+// come since the last step.
+Walkers find_walkers(Show& show) {
+  Walkers walkers;
+  for (const Teller* teller : tellers_of(show.cast, show.visits))
+    if (teller->visible && !show.cast.figures.empty())
+      add_leg(vec3(teller->storyteller.placement[3]), walkers);
+  const std::optional<WalkSettings>& walk = show.stage.exhibit.walk;
+  for (Visitor& visitor : show.visits.visitors) {
+    if (!walk || !is_shown(visitor) || visitor.kiosk) continue;
+    const vec3 ground = visitor.place.last_view.position - vec3(0, walk->eye_height, 0),
+               ankle = ground + vec3(0, foot_radius, 0);
+    add_leg(ground, walkers);
+    const std::optional<vec3> before = std::exchange(visitor.lawns.ankle, ankle);
+    if (before && glm::length(ankle - *before) < longest_step)
+      walkers.capsules.push_back({*before, ankle, foot_radius});
+  }
+  return walkers;
+}
+
+// Lets time pass for lawns, while anybody sees one.
+void step_lawns(Show& show) {
+  auto sees = [](const Visitor& visitor) { return is_shown(visitor) && visitor.lawns.seen; };
+  if (std::ranges::any_of(show.visits.visitors, sees))
+    show.stage.lawns.step(show.time, find_walkers(show));
+}
+
+void light_lawns(Show& show, const Visitor& visitor) {
+  if (!visitor.lawns.seen) return;
+  std::vector<PunctualLight> sun;
+  for (const DynamicLight& one : dynamic_lights_of(show, visitor, show.time))
+    if (one.id == sun_of_the_day) sun.push_back(one.light);
+  show.stage.lawns.light(*show.stage.world, show.stage.lights, *show.stage.technique, sun,
+                         visitor.lamps.lit_hour);
 }
 
 }  // namespace
@@ -79,6 +127,8 @@ void begin_world_of(Show& show, Visitor& visitor) {
   show_pieces_of(show.stage, visitor.pieces.shown);
   pose_world(show.stage, show.cast, show.time, teller_of(show.cast, show.visits, visitor),
              animation_times(show, visitor));
+  step_lawns(show);
+  light_lawns(show, visitor);
   show.cast.posed_for = number_who_touched(show.visits, visitor);
 }
 
@@ -87,7 +137,7 @@ void go_on_in_world_of(Show& show, Visitor& visitor) {
   show_pieces_of(show.stage, visitor.pieces.shown);
   if (show.cast.posed_as == teller_of(show.cast, show.visits, visitor).number &&
       show.cast.posed_for == number_who_touched(show.visits, visitor))
-    return;
+    return light_lawns(show, visitor);
   begin_world_of(show, visitor);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Puts the one world into the state that a visitor sees: whose storyteller is there and how it
-// stands, which lamps are on, what pieces show, where animations are. The world is changed between
-// two things that are drawn, only while the renderer is idle. For visitors who see the same it
-// stays as it is.
+// stands, which lamps are on, what pieces show, where animations are, how blades of grass stand.
+// The world is changed between two things that are drawn, only while the renderer is idle. For
+// visitors who see the same it stays as it is.
 #pragma once
 #include "show/state/show.h"
 
@@ -22,8 +22,8 @@ void see_told(const Exhibit& exhibit, double time, const std::string& piece, con
 inline constexpr double glide_seconds = 1.5;
 // Puts what is shown of pieces into the world, while nothing reads it.
 void show_pieces_of(ExhibitStage& stage, const ShownPieces& shown);
-// Prepares the world for a new picture: the visitor's lamps, and the storyteller and the visitor's
-// animations as they are now.
+// Prepares the world for a new picture: the visitor's lamps, and the storyteller, lawns and the
+// visitor's animations as they are now.
 void begin_world_of(Show& show, Visitor& visitor);
 // Prepares the world for more of what was begun: it stays as last posed, unless that was for
 // somebody who sees others.

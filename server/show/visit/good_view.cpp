@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "picture/volume_view.h"
+#include "picture/keyframe.h"
+#include "picture/laid_view.h"
 
 namespace wellspring::show {
 namespace {
@@ -182,21 +183,59 @@ vec2 seen_from(const World& world, vec3 eye, const Objects& objects,
   return vec2(seen, square) / float(std::max<size_t>(samples.size(), 1));
 }
 
-// Holds where an eye sees a volume: metres along the axis.
-struct SeenVolume {
+// Holds where an eye sees a volume or scan: metres along the axis.
+struct SeenObject {
   uint32_t object = 0;
   float depth = 0;
 };
 // Returns the volume that hides most of what is behind it at a place of the picture, in pixels.
-std::optional<SeenVolume> volume_at(const World& world, const View& view, vec2 pixel,
+std::optional<SeenObject> volume_at(const World& world, const View& view, vec2 pixel,
                                     float surface) {
   const VolumeView volumes(world.volumes(), view, false, 0);
   const ivec2 whole(pixel);
   if (!volumes.shows(whole.x, whole.y, 1)) return {};
   const Laid laid = volumes.look(whole.x, whole.y, pixel - vec2(whole), all_lanes(surface));
   if (!std::isfinite(laid.depth[0])) return {};
-  return SeenVolume{laid.object[0], laid.depth[0]};
+  return SeenObject{laid.object[0], laid.depth[0]};
 }
+
+// Draws what the picture shows of scans around one of its places, in pixels.
+class ScansAround {
+ public:
+  ScansAround(const World& world, const View& view, vec2 pixel, float reach) {
+    const ShownScans scans{&world, nullptr, nullptr};
+    if (scans.all().empty()) return;
+    const ivec2 corner(glm::floor(pixel - reach)), end(glm::floor(pixel + reach));
+    window_ = {corner.x, corner.y, end.x - corner.x + 1, end.y - corner.y + 1};
+    const View part = window_view(view, window_);
+    points_ = ScanView(scans, part, vec2(0.5f), false, work_.scans);
+    const size_t pixels = size_t(part.width) * size_t(part.height);
+    splats_.assign(has_splats(scans.all()) ? pixels : 0, INFINITY);
+    Image8 image;
+    image.width = part.width, image.height = part.height;
+    image.rgb.resize(3 * pixels);
+    if (!splats_.empty()) lay_splats_over(scans, part, work_.splats, image, splats_);
+    splat_ = splat_object(scans.all());
+  }
+  // Returns what is seen of a scan at a pixel in reach.
+  std::optional<SeenObject> at(vec2 pixel) const {
+    const ivec2 to = ivec2(glm::floor(pixel)) - ivec2(window_.left, window_.top);
+    if (to.x < 0 || to.y < 0 || to.x >= window_.width || to.y >= window_.height) return {};
+    const ScanSurface seen = points_.any() ? points_.surface(to.x, to.y) : ScanSurface{};
+    const float splat =
+        splats_.empty() ? INFINITY : splats_[size_t(to.y) * size_t(window_.width) + size_t(to.x)];
+    if (splat < seen.depth) return SeenObject{splat_, splat};
+    if (!std::isfinite(seen.depth)) return {};
+    return SeenObject{seen.object, seen.depth};
+  }
+
+ private:
+  PictureWindow window_;
+  LaidWork work_;
+  ScanView points_;
+  std::vector<float> splats_;
+  uint32_t splat_ = 0;
+};
 
 }  // namespace
 
@@ -212,35 +251,38 @@ Hit first_solid(const World& world, Ray ray) {
 
 namespace {
 
-// Does the same for a ray of the eye, which meets a scan where its stand-in is.
-Hit first_shown(const World& world, Ray ray) {
-  const Hit hit = first_solid(world, ray);
-  if (world.scans().empty()) return hit;
-  ray.from_eye = false;
-  const Hit scan = first_solid(world, ray);
-  return scan.valid() && scan.t < hit.t && world.placed(scan.instance).stands_in ? scan : hit;
+// Finds the stand-in of what is seen of a scan, `distance` metres along a ray.
+Hit stand_in_at(const World& world, Ray ray, float distance) {
+  constexpr float near = 0.5f;  // metres
+  ray.from_eye = false, ray.t_min = std::max(distance - near, 0.0f), ray.t_max = distance + near;
+  const Hit hit = world.intersect(ray);
+  return hit.valid() && world.placed(hit.instance).stands_in ? hit : Hit{};
 }
 
 }  // namespace
 
 std::optional<Pointed> point_at(const Exhibit& exhibit, const World& world, const View& view,
                                 vec2 at) {
-  const vec2 size(view.width, view.height);
-  auto look = [&](vec2 pixel) { return view_ray(view, pixel.x, pixel.y); };
-  const Ray ray = look(at * size);
-  const Hit hit = first_shown(world, ray);
-  const auto volume = volume_at(world, view, at * size, dot(ray.direction, view.forward) * hit.t);
-  if (!hit.valid() && !volume) return {};
+  const vec2 size(view.width, view.height), pixel = at * size;
+  const float reach = finger * size.y;
+  const ScansAround scans(world, view, pixel, reach + 1);
+  auto look = [&](vec2 place) { return view_ray(view, place.x, place.y); };
+  const Ray ray = look(pixel);
+  Hit hit = first_solid(world, ray);
+  const float ahead = dot(ray.direction, view.forward);
+  std::optional<SeenObject> seen = scans.at(pixel);
+  if (seen && seen->depth < ahead * hit.t) hit = stand_in_at(world, ray, seen->depth / ahead);
+  else seen.reset();
+  const auto volume = volume_at(world, view, pixel, seen ? seen->depth : ahead * hit.t);
+  if (volume) seen = volume;
+  if (!hit.valid() && !seen) return {};
   Pointed pointed;
-  const float distance = volume ? volume->depth / dot(ray.direction, view.forward) : hit.t;
+  const float distance = seen ? seen->depth / ahead : hit.t;
   pointed.place = ray.origin + ray.direction * distance;
-  pointed.point = point_of(exhibit, volume ? volume->object : world.object_of(hit.instance));
-  if (!hit.valid()) {
-    pointed.ground = pointed.place;
-    return pointed;
-  }
-  const bool is_ground = !volume && normal_of(world, hit).y > steepest_ground;
+  pointed.point = point_of(exhibit, seen ? seen->object : world.object_of(hit.instance));
   pointed.ground = pointed.place;
+  if (!hit.valid() && volume) return pointed;
+  const bool is_ground = hit.valid() && !volume && normal_of(world, hit).y > steepest_ground;
   if (!is_ground) {
     vec3 before = pointed.place - ray.direction * std::min(0.3f, 0.5f * distance);
     Hit below = first_solid(world, {before, 0, {0, -1, 0}, storey});
@@ -248,11 +290,17 @@ std::optional<Pointed> point_at(const Exhibit& exhibit, const World& world, cons
   }
   for (int i = 0; i < 8 && pointed.point < 0 && !is_ground; i++) {
     float angle = 0.25f * pi * float(i);
-    Ray beside = look(at * size + finger * size.y * vec2(std::cos(angle), std::sin(angle)));
-    Hit found = first_shown(world, beside);
-    if (!found.valid()) continue;
-    pointed.point = point_of(exhibit, world.object_of(found.instance));
-    if (pointed.point >= 0) pointed.place = beside.origin + beside.direction * found.t;
+    const vec2 there = pixel + reach * vec2(std::cos(angle), std::sin(angle));
+    const Ray beside = look(there);
+    const Hit found = first_solid(world, beside);
+    const auto scan = scans.at(there);
+    const float depth = found.t * dot(beside.direction, view.forward);
+    const bool near = scan && scan->depth < depth;
+    if (!near && !found.valid()) continue;
+    pointed.point = point_of(exhibit, near ? scan->object : world.object_of(found.instance));
+    if (pointed.point < 0) continue;
+    const float away = near ? scan->depth / dot(beside.direction, view.forward) : found.t;
+    pointed.place = beside.origin + beside.direction * away;
   }
   return pointed;
 }
@@ -266,6 +314,7 @@ std::optional<Viewpoint> good_view(const Exhibit& exhibit, const World& world, c
   std::vector<SurfaceSample> samples = samples_of(world, thing.objects, {});
   if (samples.empty()) return {};
   Bounds box = bounds_of(samples);
+  if (!near && thing.half > 0) near = vec3(thing.place - exhibit.scene.origin);
   if (0.5f * glm::length(box.high - box.low) > largest) {
     if (!near)
       near = std::ranges::min_element(samples, {}, [&](const SurfaceSample& sample) {

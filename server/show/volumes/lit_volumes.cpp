@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/worker.h"
-#include "show/exhibit/exhibit_volumes.h"
+#include "show/exhibit/pieces/exhibit_volumes.h"
 
 namespace wellspring::show {
 namespace {
@@ -213,7 +213,7 @@ void LitVolumes::show(const Exhibit& exhibit, const PieceChoices& choices, const
       // Both are seen of one volume.
       if (const auto over = lit(choice.over); over && over->volume == look.volume)
         look.over = over->drawn, look.share = choice.share;
-    look.cuts = cuts_of(piece, choice);
+    look.cuts = cuts_of(box_of(*piece.volume), piece.scale, choice);
     look.turn = choice.turn;
     if (!(look == placed.look)) world.show_volume(int(i), std::move(look));
   }

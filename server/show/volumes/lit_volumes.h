@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "show/exhibit/exhibit.h"
-#include "show/exhibit/piece_choices.h"
+#include "show/exhibit/pieces/piece_choices.h"
 #include "show/volumes/room_light.h"
 
 namespace wellspring::show {

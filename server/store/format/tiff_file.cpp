@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -13,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/load_error.h"
+#include "store/format/tiff_handle.h"
 #include "store/picture/pyramid.h"
 
 namespace wellspring::store {
@@ -102,71 +101,10 @@ bool keeps_colors(const ColorProfile& profile, ColorKind kind) {
 
 }  // namespace
 
-// libtiff's state of one reader. Its errors and warnings come here and nowhere else.
-struct TiffFile::Handle {
-  int descriptor = -1;
-  uint64_t size = 0, position = 0;  // bytes
-  uint64_t page = 0;                // offset of the page that is chosen; 0: none
-  std::string problem;              // the first since it was cleared
-  TIFF* tiff = nullptr;
-
-  ~Handle() {
-    if (tiff) TIFFClose(tiff);
-  }
-  static Handle& of(thandle_t handle) { return *static_cast<Handle*>(handle); }
-  static tmsize_t read(thandle_t handle, void* to, tmsize_t count) {
-    Handle& self = of(handle);
-    tmsize_t done = 0;
-    while (done < count) {
-      const ssize_t got = pread(self.descriptor, static_cast<char*>(to) + done,
-                                size_t(count - done), off_t(self.position));
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) break;
-      done += got, self.position += uint64_t(got);
-    }
-    return done;
-  }
-  static tmsize_t write(thandle_t, void*, tmsize_t) { return -1; }
-  static toff_t seek(thandle_t handle, toff_t offset, int from) {
-    Handle& self = of(handle);
-    self.position = offset + (from == SEEK_CUR ? self.position : from == SEEK_END ? self.size : 0);
-    return self.position;
-  }
-  static int close(thandle_t) { return 0; }
-  static toff_t size_of(thandle_t handle) { return of(handle).size; }
-  static int keep_error(TIFF*, void* handle, const char*, const char* format, va_list values) {
-    char text[256];
-    std::vsnprintf(text, sizeof text, format, values);
-    if (of(handle).problem.empty()) of(handle).problem = text;
-    return 1;
-  }
-  static int ignore(TIFF*, void*, const char*, const char*, va_list) { return 1; }
-
-  bool choose(const TiffPage& wanted) {
-    if (page != wanted.offset) {
-      page = 0;
-      if (!TIFFSetSubDirectory(tiff, wanted.offset)) return false;
-      page = wanted.offset;
-      if (wanted.converts_jpeg) TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
-    }
-    return true;
-  }
-  template <class Number>
-  Number field(uint32_t tag, Number otherwise = 0) const {
-    Number value = otherwise;
-    return TIFFGetFieldDefaulted(tiff, tag, &value) ? value : otherwise;
-  }
-  // Reads one block of a channel, or of all.
-  bool read_codes(const TiffPage& from, int column, int row, int channel,
-                  std::vector<uint8_t>& bytes);
-  // Lets libtiff convert a block.
-  bool read_any(const TiffPage& from, int column, int row, Piece& block);
-};
-
 // Lends a handle to one thread.
 struct TiffFile::Lease {
   const TiffFile& file;
-  std::unique_ptr<Handle> handle;
+  std::unique_ptr<TiffHandle> handle;
 
   Lease(const TiffFile& file, const TiffPage& page) : file(file) {
     {
@@ -185,48 +123,36 @@ struct TiffFile::Lease {
     const std::lock_guard lock(file.mutex_);
     if (file.idle_.size() < most_idle_handles) file.idle_.push_back(std::move(handle));
   }
+  static std::string name_of(const TiffPage& page, int column, int row) {
+    return page.name + (page.is_tiled
+                            ? ", tile " + std::to_string(column) + ", " + std::to_string(row)
+                            : ", strip " + std::to_string(row));
+  }
+  [[noreturn]] void fail(const TiffPage& page, int column, int row) const {
+    throw LoadError(file.file_, name_of(page, column, row),
+                    "cannot be decoded" + (handle->problem.empty() ? "" : ": " + handle->problem));
+  }
+  // Returns the bytes that a block of the first channel takes in the file; 0: it is not there.
+  uint64_t find(const TiffPage& page, int column, int row) const {
+    handle->problem.clear();
+    if (!handle->choose(page)) fail(page, column, row);
+    const uint32_t x = uint32_t(column) * uint32_t(page.block_width);
+    const uint32_t y = uint32_t(row) * uint32_t(page.block_height);
+    const uint32_t number = page.is_tiled ? TIFFComputeTile(handle->tiff, x, y, 0, 0)
+                                          : TIFFComputeStrip(handle->tiff, y, 0);
+    int wrong = 0;
+    const uint64_t stored = TIFFGetStrileByteCountWithErr(handle->tiff, number, &wrong);
+    if (wrong) fail(page, column, row);
+    return stored;
+  }
+  std::vector<uint8_t> read(const TiffPage& page, int column, int row, int plane) const {
+    std::vector<uint8_t> codes;
+    if (!handle->read_codes(page, column, row, plane, codes)) fail(page, column, row);
+    return codes;
+  }
 };
 
-bool TiffFile::Handle::read_codes(const TiffPage& from, int column, int row, int channel,
-                                  std::vector<uint8_t>& bytes) {
-  const uint32_t x = uint32_t(column) * uint32_t(from.block_width);
-  const uint32_t y = uint32_t(row) * uint32_t(from.block_height);
-  const uint16_t plane = uint16_t(from.is_planar ? channel : 0);
-  const int64_t rows =
-      from.is_tiled ? from.block_height : std::min<int64_t>(from.block_height, from.height - y);
-  const int64_t codes = int64_t(from.block_width) * (from.is_planar ? 1 : from.channels);
-  const int64_t wanted = rows * ((codes * from.bits + 7) / 8);
-  bytes.assign(size_t(wanted), 0);
-  const uint32_t block =
-      from.is_tiled ? TIFFComputeTile(tiff, x, y, 0, plane) : TIFFComputeStrip(tiff, y, plane);
-  const tmsize_t got = from.is_tiled ? TIFFReadEncodedTile(tiff, block, bytes.data(), wanted)
-                                     : TIFFReadEncodedStrip(tiff, block, bytes.data(), wanted);
-  if (got < 0) return false;
-  if (got < wanted) problem = "is cut off";
-  return got >= wanted;
-}
-
-bool TiffFile::Handle::read_any(const TiffPage& from, int column, int row, Piece& block) {
-  char why[1024] = "";
-  TIFFRGBAImage image;
-  const int64_t x = int64_t(column) * from.block_width, y = int64_t(row) * from.block_height;
-  const uint32_t wide = uint32_t(std::min<int64_t>(from.block_width, from.width - x));
-  const uint32_t high = uint32_t(std::min<int64_t>(from.block_height, from.height - y));
-  block = make_piece(int(wide), int(high));
-  bool done = TIFFRGBAImageBegin(&image, tiff, 1, why);
-  if (done) {
-    image.req_orientation = image.orientation;  // leaves rows as they are stored
-    image.col_offset = int(x), image.row_offset = int(y);
-    std::vector<uint32_t> raster(size_t(wide) * high);
-    done = TIFFRGBAImageGet(&image, raster.data(), wide, high);
-    TIFFRGBAImageEnd(&image);
-    std::memcpy(block.bytes.data(), raster.data(), block.bytes.size());
-  }
-  if (!done && problem.empty()) problem = why;
-  return done;
-}
-
-TiffFile::TiffFile(const std::string& file) : file_(file) {
+TiffFile::TiffFile(const std::string& file, BandView view) : file_(file), view_(std::move(view)) {
   descriptor_ = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat about {};
   if (descriptor_ < 0 || fstat(descriptor_, &about) != 0) {
@@ -242,25 +168,11 @@ TiffFile::~TiffFile() {
   close(descriptor_);
 }
 
-std::unique_ptr<TiffFile::Handle> TiffFile::open_handle() const {
-  auto handle = std::make_unique<Handle>();
-  handle->descriptor = descriptor_;
-  handle->size = uint64_t(size_);
-  TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
-  if (!options) throw std::bad_alloc();
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options, most_block_bytes);
-  TIFFOpenOptionsSetErrorHandlerExtR(options, Handle::keep_error, handle.get());
-  TIFFOpenOptionsSetWarningHandlerExtR(options, Handle::ignore, handle.get());
-  // Mode O reads the places of blocks when they are needed: large files have millions.
-  handle->tiff =
-      TIFFClientOpenExt(file_.c_str(), "rmO", handle.get(), Handle::read, Handle::write,
-                        Handle::seek, Handle::close, Handle::size_of, nullptr, nullptr, options);
-  TIFFOpenOptionsFree(options);
-  if (!handle->tiff) throw LoadError(file_, "", "is no TIFF: " + handle->problem);
-  return handle;
+std::unique_ptr<TiffHandle> TiffFile::open_handle() const {
+  return std::make_unique<TiffHandle>(file_, descriptor_, uint64_t(size_), most_block_bytes);
 }
 
-TiffPage TiffFile::describe(Handle& handle, const std::string& name) const {
+TiffPage TiffFile::describe(TiffHandle& handle, const std::string& name, bool has_bands) const {
   const auto fail = [&](const std::string& what) { throw LoadError(file_, name, what); };
   TiffPage page;
   page.name = name;
@@ -290,12 +202,18 @@ TiffPage TiffFile::describe(Handle& handle, const std::string& name) const {
     fail("compression " + std::to_string(compression) +
          (compression == COMPRESSION_OJPEG ? " (old-style JPEG)" : "") + " is not read");
   const int format = handle.field<uint16_t>(TIFFTAG_SAMPLEFORMAT, 1);
-  if ((format != SAMPLEFORMAT_UINT && format != SAMPLEFORMAT_VOID) || page.bits > 16)
+  const bool is_whole = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID;
+  page.is_float = format == SAMPLEFORMAT_IEEEFP && page.bits == 32;
+  if (has_bands && !page.is_float && !(is_whole && (page.bits == 8 || page.bits == 16)))
+    fail("bands are whole numbers of 8 or 16 bits, or floats of 32; these have " +
+         std::to_string(page.bits) + " bits" + (is_whole ? "" : " of another kind"));
+  if (!has_bands && (!is_whole || page.bits > 16))
     fail("only whole numbers of up to 16 bits are read");
-  if (page.channels < 1 || page.channels > 5)
-    fail("has " + std::to_string(page.channels) + " channels; at most 5 are read");
+  if (const int most = has_bands ? int(most_bands) : 5; page.channels < 1 || page.channels > most)
+    fail("has " + std::to_string(page.channels) + " channels; at most " + std::to_string(most) +
+         " are read");
   if (int64_t(page.block_width) * page.block_height >
-      most_block_bytes / (page.channels * (page.bits > 8 ? 2 : 1)))
+      most_block_bytes / (page.channels * std::max(1, page.bits / 8)))
     fail("strips are too large");
   if (const int code = handle.field<uint16_t>(TIFFTAG_ORIENTATION, 1); code >= 1 && code <= 8)
     page.orientation.code = code;
@@ -308,6 +226,13 @@ TiffPage TiffFile::describe(Handle& handle, const std::string& name) const {
   uint16_t photometric = 0;
   if (!TIFFGetField(handle.tiff, TIFFTAG_PHOTOMETRIC, &photometric))
     photometric = page.channels >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK;
+  if (has_bands) {
+    if (photometric != PHOTOMETRIC_MINISBLACK && photometric != PHOTOMETRIC_RGB)
+      fail("bands need the photometric interpretation min-is-black, 1, not " +
+           std::to_string(photometric));
+    page.way = TiffPage::Way::bands;
+    return page;
+  }
   int colors = 1;
   const bool is_grey =
       photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE;
@@ -358,11 +283,13 @@ TiffPage TiffFile::describe(Handle& handle, const std::string& name) const {
 }
 
 std::vector<TiffPage> TiffFile::read_pages() {
-  std::unique_ptr<Handle> handle = open_handle();
+  std::unique_ptr<TiffHandle> handle = open_handle();
   TIFF* tiff = handle->tiff;
   uint32_t bytes = 0;
   void* icc = nullptr;
-  if (TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &bytes, &icc)) {
+  find_band_weights();
+  const bool has_bands = bands_.has_value();
+  if (!has_bands && TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &bytes, &icc)) {
     const uint16_t photometric = handle->field<uint16_t>(TIFFTAG_PHOTOMETRIC);
     const ColorKind kind = photometric <= PHOTOMETRIC_MINISBLACK  ? ColorKind::grey
                            : photometric == PHOTOMETRIC_SEPARATED ? ColorKind::cmyk
@@ -370,13 +297,22 @@ std::vector<TiffPage> TiffFile::read_pages() {
     profile_ = make_color_profile({static_cast<const uint8_t*>(icc), bytes}, kind);
     is_srgb_ = !profile_ || (kind != ColorKind::cmyk && keeps_colors(*profile_, kind));
   }
-  std::vector<TiffPage> pages = {describe(*handle, "page 1")};
+  std::vector<TiffPage> pages = {describe(*handle, "page 1", has_bands)};
+  if (has_bands && size_t(pages[0].channels) != bands_->nm.size())
+    throw LoadError(file_, "page 1",
+                    "has " + std::to_string(pages[0].channels) + " samples a pixel for " +
+                        std::to_string(bands_->nm.size()) +
+                        " wavelengths; if its pages are bands, "
+                        "`./wellspring import bands " +
+                        file_ + "` joins them");
   const auto add_if_smaller = [&](const std::string& name) {
     TiffPage sides;
     sides.is_tiled = TIFFIsTiled(tiff);
     sides.width = handle->field<uint32_t>(TIFFTAG_IMAGEWIDTH);
     sides.height = handle->field<uint32_t>(TIFFTAG_IMAGELENGTH);
-    if (is_smaller_version(sides, pages[0])) pages.push_back(describe(*handle, name));
+    if (!is_smaller_version(sides, pages[0])) return;
+    pages.push_back(describe(*handle, name, has_bands));
+    if (has_bands && pages.back().channels != pages[0].channels) pages.pop_back();
   };
   uint16_t count = 0;
   uint64_t* list = nullptr;
@@ -402,7 +338,7 @@ std::vector<TiffPage> TiffFile::read_pages() {
 std::vector<uint8_t> TiffFile::read_jpeg(const TiffPage& page, int column, int row) const {
   if (!page.jpeg) return {};
   const Lease lease(*this, page);
-  Handle& handle = *lease.handle;
+  TiffHandle& handle = *lease.handle;
   handle.problem.clear();
   if (!handle.choose(page)) return {};
   const uint32_t x = uint32_t(column) * uint32_t(page.block_width);
@@ -427,27 +363,12 @@ std::vector<uint8_t> TiffFile::read_jpeg(const TiffPage& page, int column, int r
 
 std::optional<Piece> TiffFile::read_block(const TiffPage& page, int column, int row) const {
   const Lease lease(*this, page);
-  Handle& handle = *lease.handle;
-  const auto fail = [&] {
-    throw LoadError(
-        file_,
-        page.name + (page.is_tiled ? ", tile " + std::to_string(column) + ", " + std::to_string(row)
-                                   : ", strip " + std::to_string(row)),
-        "cannot be decoded" + (handle.problem.empty() ? "" : ": " + handle.problem));
-  };
-  handle.problem.clear();
-  if (!handle.choose(page)) fail();
-  const uint32_t number =
-      page.is_tiled ? TIFFComputeTile(handle.tiff, uint32_t(column) * uint32_t(page.block_width),
-                                      uint32_t(row) * uint32_t(page.block_height), 0, 0)
-                    : TIFFComputeStrip(handle.tiff, uint32_t(row) * uint32_t(page.block_height), 0);
-  int wrong = 0;
-  const uint64_t stored = TIFFGetStrileByteCountWithErr(handle.tiff, number, &wrong);
-  if (wrong) fail();
-  if (stored == 0) return std::nullopt;
+  TiffHandle& handle = *lease.handle;
+  if (lease.find(page, column, row) == 0) return std::nullopt;
+  if (page.way == TiffPage::Way::bands) return mix_block(lease, page, column, row);
   Piece block;
   if (page.way == TiffPage::Way::any) {
-    if (!handle.read_any(page, column, row, block)) fail();
+    if (!handle.read_any(page, column, row, block)) lease.fail(page, column, row);
     if (profile_) profile_->convert(block.bytes.data(), block.bytes.data(), block.bytes.size() / 4);
     return block;
   }
@@ -467,7 +388,7 @@ std::optional<Piece> TiffFile::read_block(const TiffPage& page, int column, int 
   std::vector<uint8_t> alpha(has_alpha ? count : 0), codes;
   // Channels go to their places one after the other, from whichever block they are in.
   for (int plane = 0; plane < planes; plane++) {
-    if (!handle.read_codes(page, column, row, plane, codes)) fail();
+    codes = lease.read(page, column, row, plane);
     const size_t step = size_t(page.channels / planes);
     unpack(codes, page, rows, int(step));
     for (size_t k = 0; k < step; k++) {
@@ -487,6 +408,37 @@ std::optional<Piece> TiffFile::read_block(const TiffPage& page, int column, int 
   for (size_t i = 0; i < count; i++) rgba[4 * i + 3] = has_alpha ? alpha[i] : uint8_t(255);
   if (page.alpha == TiffPage::Alpha::multiplied) divide_by_alpha(rgba, count);
   if (page.way == TiffPage::Way::rgb && profile_) profile_->convert(rgba, rgba, count);
+  return block;
+}
+
+std::vector<uint8_t> TiffFile::read_codes(const TiffPage& page, int column, int row,
+                                          int channel) const {
+  const Lease lease(*this, page);
+  if (lease.find(page, column, row) == 0)
+    throw LoadError(file_, Lease::name_of(page, column, row), "is left out");
+  return lease.read(page, column, row, channel);
+}
+
+Piece TiffFile::mix_block(const Lease& lease, const TiffPage& page, int column, int row) const {
+  const BandMixer mixer(*bands_, weights_, code_of(page));
+  const size_t bands = bands_->nm.size();
+  std::vector<std::vector<uint8_t>> planes(page.is_planar ? bands : 1);
+  std::vector<BandMixer::Codes> codes(bands);
+  for (size_t band = 0; band < bands; band++) {
+    if (!mixer.uses(band)) continue;
+    std::vector<uint8_t>& plane = planes[page.is_planar ? band : 0];
+    if (plane.empty()) plane = lease.read(page, column, row, int(band));
+    if (page.is_planar) codes[band] = {plane.data(), 1};
+    else codes[band] = {plane.data() + band * size_t(page.bits / 8), bands};
+  }
+  const int rows = page.is_tiled
+                       ? page.block_height
+                       : int(std::min<int64_t>(page.block_height,
+                                               page.height - int64_t(row) * page.block_height));
+  Piece block = make_piece(page.block_width, rows);
+  if (const auto wrong = mixer.mix(codes, block.bytes.size() / 4, block.bytes.data()))
+    throw LoadError(file_, Lease::name_of(page, column, row),
+                    "band " + std::to_string(*wrong + 1) + " has a value that is no number");
   return block;
 }
 

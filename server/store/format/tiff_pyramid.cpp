@@ -33,16 +33,6 @@ std::optional<FileStamp> find_stamp(const std::string& file) {
                    about.st_mtim.tv_nsec};
 }
 
-// Refuses a page of more texels than may be packed into the file.
-void check_stored(const TiffPage& page, const TiffFile& tiff, const std::string& file) {
-  const int64_t bytes = page.width * page.height / 8 * page.bits * page.channels;
-  if (bytes / page.most_packed > tiff.size())
-    throw LoadError(file, page.name,
-                    "picture of " + std::to_string(page.width) + " x " +
-                        std::to_string(page.height) + " texels is in a file of " +
-                        std::to_string(tiff.size()) + " bytes");
-}
-
 // Reads a part of a page, which lies within it. Blocks that are absent stay transparent; nothing is
 // returned if all are.
 std::optional<Piece> read_part(const TiffFile& tiff, const TiffPage& page,
@@ -67,8 +57,8 @@ std::optional<Piece> read_part(const TiffFile& tiff, const TiffPage& page,
 // Holds a file that is open, its pages, and which of its pieces somebody still has.
 class OpenTiff {
  public:
-  explicit OpenTiff(const std::string& file)
-      : stamp_(find_stamp(file)), tiff_(file), pages_(tiff_.read_pages()) {}
+  OpenTiff(const std::string& file, const BandView& view)
+      : stamp_(find_stamp(file)), tiff_(file, view), pages_(tiff_.read_pages()) {}
   const std::optional<FileStamp>& stamp() const { return stamp_; }  // before it was opened
   const TiffFile& tiff() const { return tiff_; }
   const std::vector<TiffPage>& pages() const { return pages_; }
@@ -107,9 +97,10 @@ class OpenTiff {
 
 class TiffPyramid : public KeptLevels {
  public:
-  TiffPyramid(std::shared_ptr<const OpenTiff> open, const std::string& file, int64_t most_texels,
-              std::function<double()> clock)
+  TiffPyramid(std::shared_ptr<const OpenTiff> open, const std::string& file, BandView view,
+              int64_t most_texels, std::function<double()> clock)
       : file_(file),
+        view_(std::move(view)),
         clock_(std::move(clock)),
         orientation_(open->pages()[0].orientation),
         open_(std::move(open)),
@@ -132,7 +123,7 @@ class TiffPyramid : public KeptLevels {
       return;
     }
     if (std::max(pages[0].width, pages[0].height) > coarsest_side)
-      check_stored(pages[0], open_->tiff(), file);  // it is read whole
+      check_stored(pages[0], open_->tiff().size(), file);  // it is read whole
     add_coarser_levels(file, most_texels);
   }
 
@@ -186,7 +177,7 @@ class TiffPyramid : public KeptLevels {
     if (!found || is_written || found == tried_) return;
     tried_ = found;
     try {
-      auto opened = std::make_shared<const OpenTiff>(file_);
+      auto opened = std::make_shared<const OpenTiff>(file_, view_);
       if (!opened->is_like(*open_))
         throw LoadError(file_, "", "was replaced by a picture of other sizes");
       const std::lock_guard lock(mutex_);
@@ -197,6 +188,7 @@ class TiffPyramid : public KeptLevels {
   }
 
   const std::string file_;
+  const BandView view_;
   const std::function<double()> clock_;
   const Orientation orientation_;
   mutable std::mutex mutex_;                       // guards open_
@@ -209,13 +201,15 @@ class TiffPyramid : public KeptLevels {
 }  // namespace
 
 std::shared_ptr<const PicturePyramid> load_tiff(const std::string& file, int64_t most_texels,
-                                                std::function<double()> clock) {
-  auto open = std::make_shared<const OpenTiff>(file);
+                                                std::function<double()> clock,
+                                                const BandView& view) {
+  auto open = std::make_shared<const OpenTiff>(file, view);
   const TiffPage& first = open->pages()[0];
   if (first.is_tiled)
-    return std::make_shared<TiffPyramid>(std::move(open), file, most_texels, std::move(clock));
+    return std::make_shared<TiffPyramid>(std::move(open), file, view, most_texels,
+                                         std::move(clock));
   if (first.width > most_texels / first.height) fail_as_too_large(file, first.width, first.height);
-  check_stored(first, open->tiff(), file);
+  check_stored(first, open->tiff().size(), file);
   std::optional<Piece> whole =
       read_part(open->tiff(), first, {0, 0, int(first.width), int(first.height)});
   if (!whole) throw LoadError(file, first.name, "has no texels");

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/clock.h"
+#include "store/bands/band_view.h"
 #include "store/picture/kept_levels.h"
 
 namespace wellspring::store {
@@ -17,8 +18,11 @@ namespace wellspring::store {
 // A tiled file that is replaced by one with the same levels while it is shown is read from then on,
 // within seconds of `clock` for new pieces and a minute for others; levels that no file has stay as
 // they were. One with other levels is logged, and the old one stays open.
+//
+// Texels of a picture of many bands are shown as `view` says.
 std::shared_ptr<const PicturePyramid> load_tiff(const std::string& file,
                                                 int64_t most_texels = most_whole_texels,
-                                                std::function<double()> clock = seconds_now);
+                                                std::function<double()> clock = seconds_now,
+                                                const BandView& view = {});
 
 }  // namespace wellspring::store

@@ -49,13 +49,20 @@ std::string_view foreign_format(std::string_view bytes) {
 std::shared_ptr<const PicturePyramid> open_picture(const std::string& path,
                                                    const std::string& layer,
                                                    const std::string& language,
-                                                   const std::vector<std::string>& allowed_hosts) {
+                                                   const std::vector<std::string>& allowed_hosts,
+                                                   const BandView& bands) {
   std::error_code error;
+  const auto refuse_view = [&] {
+    if (bands != BandView{})
+      throw LoadError(path, "", "has no bands: lamps and wavelengths are for TIFFs of many bands");
+  };
   if (is_http_address(path)) {
     if (!layer.empty()) throw LoadError(path, "", "has no layers: only a .painting.json has");
+    refuse_view();
     return load_iiif_service(path, allowed_hosts);
   }
   if (fs::is_directory(path, error)) {
+    refuse_view();
     for (const char* name : {"ImageProperties.xml", "info.json"})
       if (const fs::path file = fs::path(path) / name; fs::exists(file, error))
         return open_picture(file.string());
@@ -64,13 +71,16 @@ std::shared_ptr<const PicturePyramid> open_picture(const std::string& path,
   }
   if (!fs::exists(path, error)) throw LoadError(path, "", "is not there");
   if (!fs::is_regular_file(path, error)) throw LoadError(path, "", "is no regular file");
-  if (path.ends_with(".painting.json")) return open_painting(path, layer, language);
-  if (!layer.empty()) throw LoadError(path, "", "has no layers: only a .painting.json has");
-  if (path.ends_with(".geojson")) return open_geojson(path, language);
   const std::string bytes = first_bytes(path);
-  if (bytes.empty()) throw LoadError(path, "", "is empty");
+  const bool is_painting = path.ends_with(".painting.json");
+  if (!layer.empty() && !is_painting)
+    throw LoadError(path, "", "has no layers: only a .painting.json has");
   for (const std::string_view magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
-    if (bytes.starts_with(magic)) return load_tiff(path);
+    if (bytes.starts_with(magic)) return load_tiff(path, most_whole_texels, seconds_now, bands);
+  refuse_view();
+  if (is_painting) return open_painting(path, layer, language);
+  if (path.ends_with(".geojson")) return open_geojson(path, language);
+  if (bytes.empty()) throw LoadError(path, "", "is empty");
   for (const std::string_view magic : {"\x89PNG"sv, "\xff\xd8\xff"sv, "RIFF"sv})
     if (bytes.starts_with(magic)) return load_plain_picture(path);
   std::string_view text = bytes;

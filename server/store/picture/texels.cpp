@@ -35,12 +35,13 @@ struct SrgbTables {
   uint8_t encode(float x) const { return code[size_t(std::min(x, 1.0f) * steps + 0.5f)]; }
 };
 
-// Says which texels of a row, or column, the texel `at` of one half as long covers: up to three, by
-// how much of each.
-struct Covered {
-  int first = 0, count = 0;
-  float share[3] = {};
-};
+const SrgbTables& srgb_tables() {
+  static const SrgbTables tables;
+  return tables;
+}
+
+}  // namespace
+
 std::vector<Covered> cover(int from, int to) {
   std::vector<Covered> covered(static_cast<size_t>(to));
   for (int64_t at = 0; at < to; at++) {
@@ -55,7 +56,16 @@ std::vector<Covered> cover(int from, int to) {
   return covered;
 }
 
-}  // namespace
+void write_srgb(const float* red, const float* green, const float* blue, size_t count,
+                uint8_t* rgba) {
+  const SrgbTables& srgb = srgb_tables();
+  for (size_t i = 0; i < count; i++, rgba += 4) {
+    rgba[0] = srgb.encode(std::max(red[i], 0.0f));
+    rgba[1] = srgb.encode(std::max(green[i], 0.0f));
+    rgba[2] = srgb.encode(std::max(blue[i], 0.0f));
+    rgba[3] = 255;
+  }
+}
 
 Piece make_piece(int width, int height) {
   return {width, height, std::vector<uint8_t>(size_t(width) * size_t(height) * 4)};
@@ -103,7 +113,7 @@ Piece turn(Piece stored, Orientation orientation) {
 }
 
 Piece halve(const Piece& from) {
-  static const SrgbTables srgb;
+  const SrgbTables& srgb = srgb_tables();
   Piece half = make_piece((from.width + 1) / 2, (from.height + 1) / 2);
   const std::vector<Covered> columns = cover(from.width, half.width);
   const std::vector<Covered> rows = cover(from.height, half.height);

@@ -2,6 +2,7 @@
 // Moves, turns and averages the texels of pieces: RGBA in sRGB codes, rows from the top.
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "image/image.h"
 #include "store/piece.h"
@@ -34,6 +35,19 @@ struct Orientation {
 };
 // Turns a stored piece as it is shown.
 Piece turn(Piece stored, Orientation orientation);
+
+// Says which texels of a row, or column, a texel of a shorter one covers: up to three, by how much
+// of each; the sum is 1.
+struct Covered {
+  int first = 0, count = 0;
+  float share[3] = {};
+};
+// Returns it for each of `to` texels that cover `from`, at least half as many.
+std::vector<Covered> cover(int from, int to);
+
+// Writes linear colours as opaque RGBA in sRGB codes; they are cut to 0 to 1.
+void write_srgb(const float* red, const float* green, const float* blue, size_t count,
+                uint8_t* rgba);
 
 // Averages a picture to half its size, rounded up, in linear light; texels count by their alpha.
 // Each texel is the mean of exactly the area that it covers.

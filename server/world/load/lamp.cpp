@@ -196,6 +196,18 @@ int lamp_of_light(const Scene& scene, int light) {
   return -1;
 }
 
+std::optional<LampSwitch> find_switch(const Scene& scene, const Lamp& lamp, const std::string& word,
+                                      std::string& states) {
+  if (word == "on" || word == "off") return LampSwitch(word == "on");
+  states = "on, off";
+  for (size_t i = 0; i < lamp.dial.size(); i++) {
+    const std::string& light = scene.spectra[size_t(lamp.dial[i].spectrum)].name;
+    if (light == word) return LampSwitch(i + 2);
+    states += ", " + light;
+  }
+  return {};
+}
+
 void remove_lights(std::span<const int> lights, Scene& scene) {
   std::vector<int> becomes(scene.lights.size(), 0);
   for (int light : lights) becomes[size_t(light)] = -1;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "world/scene.h"
+#include "world/world.h"
 
 namespace wellspring::world {
 
@@ -32,6 +33,10 @@ std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene);
 std::vector<int> find_lights(const Scene& scene, const std::string& node, std::string& fault);
 // Returns the lamp to which a light belongs, or -1.
 int lamp_of_light(const Scene& scene, int light);
+// Finds how a lamp is switched by a word: "on", "off" or a light of its dial. None: it has no such
+// state; `states` lists those that it has.
+std::optional<LampSwitch> find_switch(const Scene& scene, const Lamp& lamp, const std::string& word,
+                                      std::string& states);
 // Takes these lights out of the scene and its lamps; the others move up.
 void remove_lights(std::span<const int> lights, Scene& scene);
 

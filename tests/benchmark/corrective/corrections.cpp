@@ -10,13 +10,13 @@
 #include "base/rng.h"
 #include "cache/packing.h"
 #include "light/visible/facet.h"
-#include "picture/surface_image.h"
+#include "picture/cells/surface_image.h"
 
 namespace wellspring::test {
 namespace {
 
-// The words of a sample are those of a point of its surface (picture/surface_image.h), the last as
-// plane_more.
+// The words of a sample are those of a point of its surface (picture/cells/surface_image.h), the
+// last as plane_more.
 constexpr SurfacePlane word_planes[] = {plane_albedo, plane_rest, plane_smooth};
 SampleWords make_words(const Sample& sample) {
   uint32_t noise = sample.flags & sample_sure ? sure_noise : 0;

@@ -10,7 +10,7 @@
 #include "cache/packing.h"
 #include "cache/project.h"
 #include "cache/remember.h"
-#include "picture/surface_image.h"
+#include "picture/cells/surface_image.h"
 #include "unit/cache/room.h"
 
 namespace wellspring::test {

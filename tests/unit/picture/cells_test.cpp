@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "picture/cells.h"
+#include "picture/cells/cells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The light of narrow things is that of the nearest points which show them, wherever in the
 // picture.
-#include "picture/pixel_light.h"
+#include "picture/cells/pixel_light.h"
 
 #include <gtest/gtest.h>
 

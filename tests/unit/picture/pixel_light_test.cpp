@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels that lie side by side are lit as each would be alone.
-#include "picture/pixel_light.h"
+#include "picture/cells/pixel_light.h"
 
 #include <gtest/gtest.h>
 

@@ -35,7 +35,7 @@ std::shared_ptr<const PointTree> red_wall() {
 PlacedScan placed_at(vec3 position) {
   static const auto wall = red_wall();
   PlacedScan placed;
-  placed.points = wall;
+  placed.sets = {{wall}};
   // The tree's own zero is where its origin says.
   placed.position = position + vec3(wall->origin);
   placed.object = 5;
@@ -54,7 +54,7 @@ struct Stage {
     view.width = view.height = side;
   }
   Laid middle(float surface = INFINITY) {
-    const LaidView laid(laid_things(world, nullptr, 1), view, vec2(0.5f), false, 0, work);
+    const LaidView laid(laid_things(world, nullptr, nullptr, 1), view, vec2(0.5f), false, 0, work);
     return laid.look(side / 2, side / 2, all_lanes(surface));
   }
 };
@@ -85,7 +85,7 @@ TEST(ScanView, TheNearerScanIsSeen) {
 TEST(ScanView, AScaledScanLooksTheSameFromAsMuchFartherAway) {
   PlacedScan placed = placed_at({0, 0, 0});
   placed.scale = 10;
-  placed.position = vec3(0, 0, -30) + 10.0f * vec3(placed.points->origin);
+  placed.position = vec3(0, 0, -30) + 10.0f * vec3(placed.sets[0].points->origin);
   Stage stage({placed});
   EXPECT_NEAR(stage.middle().depth[0], 30, 0.2f);
 }
@@ -93,11 +93,11 @@ TEST(ScanView, AScaledScanLooksTheSameFromAsMuchFartherAway) {
 TEST(ScanView, TurnsToTheLeft) {
   PlacedScan placed = placed_at({0, 0, 0});
   placed.turn = glm::angleAxis(0.5f * pi, vec3(0, 1, 0));
-  placed.position = vec3(0, 0, -3) + placed.turn * vec3(placed.points->origin);
+  placed.position = vec3(0, 0, -3) + placed.turn * vec3(placed.sets[0].points->origin);
   Stage stage({placed});
   // It is seen from its edge: away from the middle column there is nothing.
-  const LaidView laid(laid_things(stage.world, nullptr, 1), stage.view, vec2(0.5f), false, 0,
-                      stage.work);
+  const LaidView laid(laid_things(stage.world, nullptr, nullptr, 1), stage.view, vec2(0.5f), false,
+                      0, stage.work);
   EXPECT_FALSE(std::isfinite(laid.look(48, side / 2, all_lanes(INFINITY)).depth[0]));
 }
 
@@ -123,8 +123,8 @@ TEST(ScanView, NothingIsBehindTheEyeOrBeforeThePlaneOfTheCut) {
 
 TEST(ScanView, PixelsBesideThePictureAreEmpty) {
   Stage stage({placed_at({0, 0, -1})});
-  const LaidView laid(laid_things(stage.world, nullptr, 1), stage.view, vec2(0.5f), false, 0,
-                      stage.work);
+  const LaidView laid(laid_things(stage.world, nullptr, nullptr, 1), stage.view, vec2(0.5f), false,
+                      0, stage.work);
   const Laid left = laid.look(-4, 0, all_lanes(INFINITY)),
              right = laid.look(side - 4, side - 1, all_lanes(INFINITY));
   for (int k = 0; k < 4; k++) {
@@ -141,7 +141,7 @@ TEST(ScanView, RestIsTheMeanOverPlacesInThePixels) {
   for (int i = 0; i < 8; i++) {
     std::fill(frame.color.begin(), frame.color.end(), vec3(0, 0, 1));
     std::fill(frame.depth.begin(), frame.depth.end(), INFINITY);
-    layer.lay_over(laid_things(stage.world, nullptr, 1), stage.view, 1, stage.work, frame);
+    layer.lay_over(laid_things(stage.world, nullptr, nullptr, 1), stage.view, 1, stage.work, frame);
   }
   int edges = 0;
   for (size_t x = 0; x < side; x++) {
@@ -150,6 +150,55 @@ TEST(ScanView, RestIsTheMeanOverPlacesInThePixels) {
     edges += color.x > 0.1f && color.x < 0.9f;
   }
   EXPECT_GE(edges, 1) << "no pixel of the edge is antialiased";
+}
+
+// Keeps what lies to the right of a place.
+ScanCut right_of(float x) { return {{1, 0, 0}, x}; }
+
+bool is_seen(Stage& stage, int x, bool settled = false) {
+  const LaidView laid(laid_things(stage.world, nullptr, nullptr, 1), stage.view, vec2(0.5f),
+                      settled, 0, stage.work);
+  return std::isfinite(laid.look(x, side / 2, all_lanes(INFINITY)).depth[0]);
+}
+
+TEST(ScanView, ACutKeepsOneSideInTheScenesOwnCoordinates) {
+  PlacedScan placed = placed_at({0, 0, 0});
+  // Three times as large, and turned round: its left lies to the right.
+  placed.turn = glm::angleAxis(pi, vec3(0, 1, 0)), placed.scale = 3;
+  placed.position = vec3(0.3f, 0, -6) + placed.turn * (3.0f * vec3(placed.sets[0].points->origin));
+  placed.look.cuts = {right_of(0.3f)};
+  Stage stage({placed});
+  // At a depth of 6 a pixel is 6 / 64 m wide.
+  for (const bool settled : {false, true}) {
+    EXPECT_FALSE(is_seen(stage, 32, settled)) << "0.05 m, 0.25 m beyond the cut";
+    EXPECT_TRUE(is_seen(stage, 37, settled)) << "0.5 m";
+  }
+  stage.world.show_scan(0, {});
+  EXPECT_TRUE(is_seen(stage, 32)) << "without the cut it is there";
+}
+
+TEST(ScanView, WhatIsBehindACutIsSeen) {
+  PlacedScan cut = placed_at({0, 0, -3});
+  cut.look.cuts = {{{0, 0, -1}, 3.5f}};  // nothing nearer than 3.5 m
+  Stage stage({cut, placed_at({0, 0, -5})});
+  EXPECT_NEAR(stage.middle().depth[0], 5, 0.02f);
+}
+
+TEST(ScanView, AtRestAnotherCutBeginsTheMeanAnew) {
+  Stage stage({placed_at({0, 0, -3})});
+  LaidLayer layer;
+  auto draw = [&] {
+    Frame frame;
+    fit_frame(side, side, frame);
+    std::fill(frame.depth.begin(), frame.depth.end(), INFINITY);
+    layer.lay_over(laid_things(stage.world, nullptr, nullptr, 1), stage.view, 1, stage.work, frame);
+    return frame.depth[side / 2 * side + side / 2];
+  };
+  EXPECT_NEAR(draw(), 3, 0.02f);
+  ScanLook look;
+  look.cuts = {right_of(0.5f)};
+  stage.world.show_scan(0, look);
+  EXPECT_FALSE(std::isfinite(draw()));
 }
 
 }  // namespace

@@ -126,4 +126,41 @@ inline PointSet scattered(const Surfaces& surfaces, double spacing, dvec3 corner
   return set;
 }
 
+// Counts pixels of a picture against the surfaces.
+struct Verdict {
+  int covered = 0;   // pixels that see a surface
+  int holes = 0;     // which see farther
+  int fattened = 0;  // pixels more than `apart` pixels off a surface that see it
+  double error = 0;  // mean of relative errors of depth, of others
+};
+
+inline Verdict judge(const scan::PointBuffer& buffer, const Surfaces& surfaces,
+                     const scan::ScanCamera& view, double tolerance, double apart) {
+  Verdict verdict;
+  int right = 0;
+  for (int y = 0; y < view.height; y++)
+    for (int x = 0; x < view.width; x++) {
+      const double truth = surfaces.depth_at(view, x, y);
+      const double seen = double(buffer.depth[size_t(y * view.width + x)]);
+      const bool is_covered = std::isfinite(truth);
+      verdict.covered += is_covered;
+      // Pixels at an edge may show either side.
+      double least = truth, most = truth;
+      for (int i = 0; i < 16; i++) {
+        const double a = i * 2 * double(pi) / 16;
+        const double other =
+            surfaces.depth_at(view, x + apart * std::cos(a), y + apart * std::sin(a));
+        least = std::min(least, other), most = std::max(most, other);
+      }
+      if (is_covered && !(seen <= most + tolerance)) verdict.holes++;
+      if (seen < least - tolerance) verdict.fattened++;
+      if (is_covered && std::abs(seen - truth) < tolerance) {
+        verdict.error += std::abs(seen / truth - 1);
+        right++;
+      }
+    }
+  verdict.error /= std::max(right, 1);
+  return verdict;
+}
+
 }  // namespace wellspring::test

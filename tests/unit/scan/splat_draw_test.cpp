@@ -160,4 +160,30 @@ TEST(SplatDraw, laid_over_a_picture_it_is_blended_in_display_codes) {
   for (vec3 v : linear) ASSERT_NEAR(v.x, 0.603827f, 1e-3);
 }
 
+TEST(SplatDraw, splats_are_cut_by_their_middles) {
+  PlacedSplats at;
+  at.turn = glm::angleAxis(0.4f, glm::normalize(vec3(1, 2, 3)));
+  at.scale = 2;
+  at.shift = dvec3(3, -1, 2);
+  ScanCamera view = make_test_view(80, 60);
+  view.eye = at.shift;
+  view.forward = at.turn * view.forward, view.right = at.turn * view.right,
+  view.up = at.turn * view.up;
+  const SplatSet set = make_random_splats(800, 1, 5);
+  SplatSet left = set;
+  const ScanCut cut{glm::normalize(vec3(1, 0.2f, 0)), 3.1f};
+  size_t lost = 0;
+  for (size_t i = 0; i < set.size(); i++) {
+    const dvec3 place = glm::dquat(at.turn) * (at.scale * dvec3(set.place[i])) + at.shift;
+    if (glm::dot(place, dvec3(cut.normal)) < double(cut.offset)) left.opacity[i] = 0, lost++;
+  }
+  ASSERT_TRUE(lost > 100 && lost < 700) << lost;
+  const PlacedSplats whole = at;
+  const std::vector<ScanCut> cuts{cut};
+  at.cuts = cuts;
+  for (bool by_pixel : {false, true})
+    expect_like(draw_set(set, view, every_splat(by_pixel), at),
+                draw_reference(left, whole, view, by_pixel), 46);
+}
+
 }  // namespace wellspring::test

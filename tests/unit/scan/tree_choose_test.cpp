@@ -181,4 +181,23 @@ TEST(SampleOpacity, random_spheres_stop_what_the_notes_say) {
   EXPECT_EQ(sample_opacity({vec3(0), vec3(1)}, {}, 100, 1), 0);
 }
 
+TEST(ChooseNodes, nodes_of_which_a_cut_keeps_nothing_are_left_out) {
+  const PointTree tree =
+      make_tree(made_source(made_house(40000, {9, 4, 7}), house_info()), plain_settings());
+  ScanCamera view = looking({-6, 2, -4}, dvec3(0));
+  ChooseSettings settings;
+  settings.pixels = 0.01f, settings.budget = 1000000;
+  const ChosenNodes all = choose_nodes(tree, view, settings);
+  view.cuts = {{{1, 0, 0}, 1.5f}};
+  const ChosenNodes kept = choose_nodes(tree, view, settings);
+  // All leaves that reach beyond the plane are there, and no others.
+  const auto reaches = [&](const ChosenNode& one) {
+    const TreeNode& node = tree.nodes[one.node];
+    return node.corner.x + double(node.size) >= 1.5;
+  };
+  EXPECT_TRUE(std::ranges::all_of(kept.nodes, reaches));
+  EXPECT_EQ(int64_t(kept.nodes.size()), std::ranges::count_if(all.nodes, reaches));
+  EXPECT_LT(kept.nodes.size(), all.nodes.size());
+}
+
 }  // namespace wellspring::test

@@ -65,7 +65,12 @@ TEST(PointTree, damaged_files_are_refused_by_file_and_place) {
   EXPECT_EQ(changed([](TreeHead&, NodeRecord*) {}), "");
   EXPECT_NE(reason(good.substr(0, 50)).find("too short"), std::string::npos);
   EXPECT_NE(reason(good.substr(0, good.size() - 1)).find("its head says"), std::string::npos);
-  EXPECT_NE(reason("x" + good.substr(1)).find("another version"), std::string::npos);
+  EXPECT_NE(reason("x" + good.substr(1)).find("is no tree of points"), std::string::npos);
+  std::string earlier = good;
+  earlier[7] = '1';
+  EXPECT_EQ(reason(earlier), "is a tree of points of another version: import its files again");
+  EXPECT_NE(changed([](TreeHead& head, NodeRecord*) { head.frame[4] = 1.1; }).find("no rotation"),
+            std::string::npos);
   std::string flipped = good;
   flipped[20] ^= 1;
   EXPECT_NE(reason(flipped).find("head is damaged"), std::string::npos);

@@ -155,6 +155,55 @@ TEST(Packet, keyframes_are_written_and_read_as_the_golden_bytes) {
   EXPECT_EQ(view->payload[0], 0xff);
 }
 
+static constexpr SwayHeader golden_sway{
+    .columns = 2,
+    .rows = 1,
+    .unit = 1,
+    .time = 12.5,
+    .waves = {{{{0.5f, -0.25f}, {1, 2}, 1.5f, 0.75f}, {{0, 1}, {0, 0}, 2, -1}, {}, {}}}};
+
+TEST(Packet, sway_goes_behind_the_header_and_the_depth) {
+  const Packet keyframe = test::read_golden("keyframe.hex");
+  Packet packet = keyframe;
+  add_sway(golden_sway, std::vector<uint8_t>{0, 7}, packet);
+  EXPECT_EQ(packet, test::read_golden("keyframe_sway.hex"));
+  const auto view = read_packet(packet);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->keyframe, golden_keyframe);
+  ASSERT_TRUE(view->sway);
+  SwayHeader expected = golden_sway;
+  expected.bytes = view->sway->bytes;
+  EXPECT_EQ(view->sway, expected);
+  EXPECT_EQ(view->payload.size(), read_packet(keyframe)->payload.size() + view->sway->bytes);
+}
+
+TEST(Packet, parts_may_sway_too) {
+  Packet packet = test::read_golden("picture_parts.hex");
+  const auto parts = read_packet(packet)->parts;
+  add_sway(golden_sway, std::vector<uint8_t>{0, 7}, packet);
+  const auto view = read_packet(packet);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->parts, parts);
+  ASSERT_TRUE(view->sway);
+  EXPECT_EQ(view->sway->time, 12.5);
+  EXPECT_EQ(view->payload.size(), 9u + view->sway->bytes);
+}
+
+TEST(Packet, sway_that_cannot_be_is_refused) {
+  const Packet golden = test::read_golden("keyframe_sway.hex");
+  const size_t at = keyframe_header_bytes;
+  for (size_t size = 0; size < at + sway_header_bytes; size++)
+    EXPECT_FALSE(read_packet({golden.data(), size})) << size;
+  expect_refused(golden, {{26, {uint8_t(at + sway_header_bytes - 1)}},
+                          {at + 1, {1}},            // more codes than there are
+                          {at + 4, {0}},            // no columns
+                          {at + 6, {0}},            // no rows
+                          {at + 10, {0, 0}},        // no unit
+                          {at + 18, {0xff, 0x7f}},  // a time that is no finite number
+                          {at + 22, {0x80, 0x7f}},  // a push, a phase
+                          {at + 42, {0x80, 0x7f}}});
+}
+
 TEST(Packet, what_a_glass_shows_is_written_and_read_as_the_golden_bytes) {
   const PacketHeader header{.frame = 9,
                             .seq = 10,

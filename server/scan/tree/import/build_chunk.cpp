@@ -12,9 +12,6 @@
 namespace wellspring::scan {
 namespace {
 
-// If points have normals, or are means, only a part of them is asked for the spacing.
-constexpr size_t every_for_spacing = 4;
-
 void append_columns(std::vector<uint8_t>& bytes, NodeRecord& record, const NodeColumnData& data,
                     bool has_classes) {
   const NodeColumns columns(data.size(), has_classes);
@@ -26,6 +23,7 @@ void append_columns(std::vector<uint8_t>& bytes, NodeRecord& record, const NodeC
   };
   put(columns.x, data.x), put(columns.y, data.y), put(columns.z, data.z);
   put(columns.color, data.color), put(columns.normal, data.normal);
+  put(columns.own_spacing, data.own_spacing);
   if (has_classes) put(columns.classification, data.classification);
 }
 
@@ -120,6 +118,11 @@ void NodeMaker::add(BuiltPart& part, BuiltNode node, float spacing) {
   part.nodes.push_back(node);
 }
 
+void NodeMaker::set_own_spacing(size_t point, float distance, float spacing) {
+  const float share = distance > 0 && spacing > 0 ? distance / spacing : 1;
+  columns_.own_spacing[point] = uint8_t(std::min(share * own_spacing_steps + 0.5f, 255.0f));
+}
+
 // Turns a normal to the station from which the point was seen, or else up: both sides of a point
 // are drawn, so the sign matters to those who read it alone.
 vec3 NodeMaker::outward(vec3 normal, const ChunkPoint& point, vec3 place) const {
@@ -140,8 +143,7 @@ void NodeMaker::add_leaf(BuiltPart& part, const NodeCube& cube, const ChunkPoint
     have_all = have_all && points[i].normal != no_normal;
   }
   neighbours_.sort({given_.x, given_.y, given_.z});
-  const float spacing =
-      neighbours_.look(have_all ? nullptr : &normals_, have_all ? every_for_spacing : 1);
+  const float spacing = neighbours_.look(own_, have_all ? nullptr : &normals_);
   const double edge = edge_of(settings_.cube, cube.level);
   const vec3 corner = vec3(dvec3(cube.cell) * edge);
   columns_.resize(count);
@@ -151,6 +153,7 @@ void NodeMaker::add_leaf(BuiltPart& part, const NodeCube& cube, const ChunkPoint
     columns_.x[i] = given_.x[from], columns_.y[i] = given_.y[from], columns_.z[i] = given_.z[from];
     columns_.color[i] = point.color, columns_.classification[i] = point.classification;
     columns_.normal[i] = point.normal;
+    set_own_spacing(i, own_[i], spacing);
     if (point.normal != no_normal || have_all) continue;
     const vec3 place =
         corner + vec3(columns_.x[i], columns_.y[i], columns_.z[i]) * float(edge / 65536);
@@ -165,13 +168,16 @@ void NodeMaker::add_leaf(BuiltPart& part, const NodeCube& cube, const ChunkPoint
 void NodeMaker::add_inner(BuiltPart& part, BuiltNode node, std::span<const VoxelSum> sums) {
   make_means(columns_, sums);
   neighbours_.sort({columns_.x, columns_.y, columns_.z});
-  add(part, node, neighbours_.look(nullptr, every_for_spacing));
+  const float spacing = neighbours_.look(own_, nullptr);
+  for (size_t i = 0; i < own_.size(); i++)
+    set_own_spacing(neighbours_.order()[i], own_[i], spacing);
+  add(part, node, spacing);
 }
 
 BuiltPart build_chunk(const BuildSettings& settings, const Chunk& chunk,
                       std::vector<ChunkPoint>& points, std::vector<ChunkPoint>& spare) {
   BuiltPart part;
-  part.bytes.reserve(points.size() * 18);
+  part.bytes.reserve(points.size() * 19);
   ChunkBuilder(settings, part)
       .build(points.data(), spare.data(), points.size(), chunk.level, part.sums);
   return part;

@@ -53,6 +53,7 @@ class NodeMaker {
 
  private:
   void add(BuiltPart& part, BuiltNode node, float spacing_in_steps);
+  void set_own_spacing(size_t point, float distance, float spacing);
   vec3 outward(vec3 normal, const ChunkPoint& point, vec3 place) const;
 
   const BuildSettings& settings_;
@@ -60,6 +61,7 @@ class NodeMaker {
   VoxelGatherer gatherer_;
   NodeColumnData columns_, given_;
   std::vector<vec3> normals_;
+  std::vector<float> own_;
   std::vector<Sphere> spheres_;
 };
 

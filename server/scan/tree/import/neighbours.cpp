@@ -50,6 +50,28 @@ vec3 plane_normal(vec3 place, const vec3* nearest, int count) {
   return least_eigenvector(xx, xy, xz, yy, yz, zz);
 }
 
+// Returns whether neighbours lie around a place and in one plane with it, as on a surface: not to
+// one side as at an edge, along a line as on a twig, or to all sides as in the air.
+bool is_on_surface(vec3 place, const vec3* nearest) {
+  constexpr float most_aside = 0.65f, least_across = 0.3f, most_off_plane = 0.4f;
+  vec3 ways[spacing_neighbour], all(0), normal(0);
+  for (int i = 0; i < spacing_neighbour; i++) {
+    const vec3 way = nearest[i] - place;
+    const float length = glm::length(way);
+    if (!(length > 0)) return false;
+    ways[i] = way / length, all += ways[i];
+  }
+  for (int i = 1; i < spacing_neighbour; i++) {
+    const vec3 across = glm::cross(ways[0], ways[i]);
+    if (glm::dot(across, across) > glm::dot(normal, normal)) normal = across;
+  }
+  const float width = glm::length(normal);
+  if (glm::length(all) > most_aside * spacing_neighbour || width < least_across) return false;
+  for (const vec3& way : ways)
+    if (std::abs(glm::dot(way, normal)) > most_off_plane * width) return false;
+  return true;
+}
+
 }  // namespace
 
 void Neighbours::sort(const NodePlaces& places) {
@@ -111,9 +133,11 @@ void Neighbours::gather(int x, int y, int z, int ring) {
 }
 
 // Finds the nearest that are gathered, sorted by squared distance, without one at the place itself.
-int Neighbours::find_nearest(vec3 place, vec3* nearest, float* distances) const {
+// within: as many as are looked for are known to be nearer than this, or it is far away.
+template <int wanted>
+int Neighbours::find_nearest(vec3 place, float within, vec3* nearest, float* distances) const {
   int count = 0;
-  float worst = far_away;
+  float worst = std::min(within * within, far_away);
   bool is_itself_out = false;
   for (size_t i = 0; i < near_; i += lane_count) {
     const Lanes dx = load_lanes(&near_x_[i]) - place.x, dy = load_lanes(&near_y_[i]) - place.y,
@@ -127,27 +151,31 @@ int Neighbours::find_nearest(vec3 place, vec3* nearest, float* distances) const 
         continue;
       }
       if (square >= worst) continue;
-      int at = count < neighbour_count ? count++ : neighbour_count - 1;
+      int at = count < wanted ? count++ : wanted - 1;
       for (; at > 0 && distances[at - 1] > square; at--)
         distances[at] = distances[at - 1], nearest[at] = nearest[at - 1];
       distances[at] = square;
       const size_t which = i + size_t(lane);
       nearest[at] = {near_x_[which], near_y_[which], near_z_[which]};
-      if (count == neighbour_count) worst = distances[neighbour_count - 1];
+      if (count == wanted) worst = distances[wanted - 1];
     }
   }
   return count;
 }
 
-float Neighbours::look(std::vector<vec3>* normals, size_t every) {
+float Neighbours::look(std::vector<float>& own, std::vector<vec3>* normals) {
   const size_t n = order_.size();
+  own.assign(n, 0);
   if (normals) normals->assign(n, vec3(0));
   double sum = 0;
   size_t looked = 0;
   vec3 nearest[neighbour_count];
   float distances[neighbour_count];
-  for (size_t i = 0, cell = size_t(-1); i < n; i += every) {
+  vec3 last_place(0);
+  float last_reach = far_away;  // around the last place of the same cell, where enough points are
+  for (size_t i = 0, cell = size_t(-1); i < n; i++) {
     if (cells_[order_[i]] != cell) {
+      last_reach = far_away;
       cell = cells_[order_[i]];
       const auto side = size_t(side_);
       const int x = int(cell % side), y = int(cell / side % side), z = int(cell / side / side);
@@ -156,10 +184,16 @@ float Neighbours::look(std::vector<vec3>* normals, size_t every) {
         gather(x, y, z, ring);
     }
     const vec3 place(x_[i], y_[i], z_[i]);
-    const int count = find_nearest(place, nearest, distances);
+    const float within = (last_reach + glm::distance(last_place, place)) * 1.00001f;
+    const int wanted = normals ? neighbour_count : spacing_neighbour;
+    const int count = normals ? find_nearest<neighbour_count>(place, within, nearest, distances)
+                              : find_nearest<spacing_neighbour>(place, within, nearest, distances);
     if (count == 0) continue;
-    if (const float square = distances[std::min(count, spacing_neighbour) - 1]; square > 0)
-      sum += std::sqrt(square), looked++;
+    last_place = place;
+    last_reach = count == wanted ? std::sqrt(distances[count - 1]) : far_away;
+    const float distance = std::sqrt(distances[std::min(count, spacing_neighbour) - 1]);
+    if (distance > 0) sum += double(distance), looked++;
+    if (count >= spacing_neighbour && is_on_surface(place, nearest)) own[i] = distance;
     if (normals && count >= 3) (*normals)[i] = plane_normal(place, nearest, count);
   }
   return looked > 0 ? float(sum / double(looked)) : 0;

@@ -27,17 +27,18 @@ class Neighbours {
   // Sorts the points by cells; order()[i] is the number of the i-th one then.
   void sort(const NodePlaces& places);
   const std::vector<uint32_t>& order() const { return order_; }
-  // Returns the mean distance to the fourth neighbour, in steps of the node's places, over each
-  // `every`-th point; 0: there are no two places. Computes normals, unless null, from the plane
-  // through a point's ten nearest neighbours (its covariance's least eigenvector); i is the place
-  // in order(), the sign is anyone's; 0: the neighbours lie on a line. Neighbours are looked for in
-  // the 27 cells around, or in 125 if there are too few; of more than 768 points a part is looked
-  // at.
-  float look(std::vector<vec3>* normals, size_t every = 1);
+  // Returns the mean distance to the fourth neighbour, in steps of the node's places; 0: there are
+  // no two places. Each point's is `own`, 0 if its neighbours lie as on no surface; i is the place
+  // in order(). Computes normals, unless null, from the plane through a point's ten nearest
+  // neighbours (its covariance's least eigenvector); the sign is anyone's; 0: the neighbours lie on
+  // a line. Neighbours are looked for in the 27 cells around, or in 125 if there are too few; of
+  // more than 768 points a part is looked at.
+  float look(std::vector<float>& own, std::vector<vec3>* normals);
 
  private:
   void gather(int x, int y, int z, int ring);
-  int find_nearest(vec3 place, vec3* nearest, float* distances) const;
+  template <int wanted>
+  int find_nearest(vec3 place, float within, vec3* nearest, float* distances) const;
 
   int side_ = 1;
   std::vector<uint32_t> order_, starts_, cells_;

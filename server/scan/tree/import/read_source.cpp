@@ -15,15 +15,6 @@ namespace {
 
 constexpr size_t read_at_once = 1 << 16;
 
-glm::dmat3 frame_of(const TreeSettings& settings) {
-  glm::dmat3 upright(1);
-  if (settings.up == UpAxis::z) upright = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
-  if (settings.up == UpAxis::x) upright = {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-  if (settings.turn == 0) return upright;
-  const double c = std::cos(settings.turn), s = std::sin(settings.turn);
-  return glm::dmat3({c, 0, -s}, {0, 1, 0}, {s, 0, c}) * upright;
-}
-
 uint32_t fields_of(const PointFields& fields) {
   return (fields.color ? tree_color : 0u) | (fields.intensity ? tree_intensity : 0u) |
          (fields.classification ? tree_classes : 0u);
@@ -88,6 +79,15 @@ class SourceReader {
 };
 
 }  // namespace
+
+glm::dmat3 frame_of(const TreeSettings& settings) {
+  glm::dmat3 upright(1);
+  if (settings.up == UpAxis::z) upright = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+  if (settings.up == UpAxis::x) upright = {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+  if (settings.turn == 0) return upright;
+  const double c = std::cos(settings.turn), s = std::sin(settings.turn);
+  return glm::dmat3({c, 0, -s}, {0, 1, 0}, {s, 0, c}) * upright;
+}
 
 SourceFacts read_source(const TreeSource& source, const TreeSettings& settings, const DataFile& to,
                         HeldBytes& held, StageProgress& progress) {

@@ -50,6 +50,9 @@ struct SourceFacts {
 // A source counts so many items of progress.
 inline constexpr uint64_t read_share = 1000000;
 
+// Returns the rotation from the sources' axes to the tree's.
+glm::dmat3 frame_of(const TreeSettings& settings);
+
 // Throws LoadError.
 SourceFacts read_source(const TreeSource& source, const TreeSettings& settings, const DataFile& to,
                         HeldBytes& held, StageProgress& progress);

@@ -227,6 +227,8 @@ class Import {
     head.magic = tree_magic;
     for (int i = 0; i < 3; i++)
       head.origin[i] = build_.cube.origin[i], head.corner[i] = build_.cube.corner[i];
+    const glm::dmat3 frame = frame_of(settings_);
+    for (int i = 0; i < 9; i++) head.frame[i] = frame[i / 3][i % 3];
     head.edge = build_.cube.edge, head.density = 1 / (spacing * spacing);
     head.points = report_.points, head.fields = fields_;
     head.nodes = uint32_t(table.size()), head.stations = uint32_t(build_.stations.size());

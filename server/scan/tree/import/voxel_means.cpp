@@ -59,7 +59,7 @@ glm::u64vec3 cell_in_parent(const NodeCube& parent, const NodeCube& child) {
 
 void NodeColumnData::resize(size_t count) {
   x.resize(count), y.resize(count), z.resize(count), normal.resize(count);
-  color.resize(count), classification.resize(count);
+  color.resize(count), classification.resize(count), own_spacing.resize(count);
 }
 
 VoxelSum& VoxelGatherer::find(std::vector<VoxelSum>& sums, glm::uvec3 voxel) {

@@ -27,7 +27,7 @@ struct VoxelSum {
 struct NodeColumnData {
   std::vector<uint16_t> x, y, z, normal;
   std::vector<uint32_t> color;
-  std::vector<uint8_t> classification;
+  std::vector<uint8_t> classification, own_spacing;
   void resize(size_t count);
   size_t size() const { return x.size(); }
 };

@@ -25,9 +25,9 @@ TreeReport write_tree(const std::vector<TreeSource>& sources, const std::string&
   return report;
 }
 
-PointTree make_tree(const TreeSource& source, const TreeSettings& settings) {
+PointTree make_tree(const std::vector<TreeSource>& sources, const TreeSettings& settings) {
   TreeReport report;
-  return map_tree(source.file, import_points({source}, WorkPlace(""), settings, {}, report));
+  return map_tree(sources.at(0).file, import_points(sources, WorkPlace(""), settings, {}, report));
 }
 
 }  // namespace wellspring::scan

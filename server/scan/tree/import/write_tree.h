@@ -23,6 +23,9 @@ TreeReport write_tree(const std::vector<TreeSource>& sources, const std::string&
 
 // Makes a tree in memory, of a cloud that need not be imported: some millions of points, which take
 // 120 bytes each while it is made, 18 afterwards. Throws as write_tree().
-PointTree make_tree(const TreeSource& source, const TreeSettings& settings);
+PointTree make_tree(const std::vector<TreeSource>& sources, const TreeSettings& settings);
+inline PointTree make_tree(const TreeSource& source, const TreeSettings& settings) {
+  return make_tree(std::vector{source}, settings);
+}
 
 }  // namespace wellspring::scan

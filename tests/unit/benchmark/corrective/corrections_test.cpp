@@ -10,7 +10,7 @@
 
 #include "cache/packing.h"
 #include "cache/point_cache.h"
-#include "picture/surface_image.h"
+#include "picture/cells/surface_image.h"
 #include "unit/picture/drawn_visit.h"
 
 namespace wellspring::test {

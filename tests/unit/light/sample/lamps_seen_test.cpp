@@ -125,7 +125,7 @@ TEST(LampsSeen, WhatWasNeverSeenIsStillFound) {
 TEST(LampsSeen, SwitchedOffLampsLeaveTheOthersTheirShares) {
   Place p;
   EmittingSources emitting = find_emitting(p.world);
-  emitting.lights[below] = 0;
+  emitting.lights[below] = vec3(0);
   std::shared_ptr<const LightTables> fewer = relit(*p.lights.tables, p.scene, emitting);
   ASSERT_EQ(fewer->punctual.size(), 2u);
   LampsSeen alike = *p.seen, uneven = alike;

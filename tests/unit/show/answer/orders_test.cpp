@@ -76,7 +76,7 @@ TEST_F(Orders, TwoLampsAreTwoKinds) {
   say(R"({"type":"lamp","name":"ceiling","on":false})");
   say(R"({"type":"lamp","name":"none","on":false})");
   step();
-  EXPECT_FALSE(lamps_of(*show, visitor())[0]);
+  EXPECT_EQ(lamps_of(*show, visitor())[0].level, 0);
   EXPECT_EQ(told("error").size(), 1u);
 }
 
@@ -126,7 +126,7 @@ TEST_F(Orders, ThatCannotBeCarriedOutDoNotPileUp) {
   step();
   EXPECT_LE(visitor().orders.waiting.size(), most_waiting_orders);
   run(6);
-  EXPECT_FALSE(lamps_of(*show, visitor())[0]) << "the last one wins";
+  EXPECT_EQ(lamps_of(*show, visitor())[0].level, 0) << "the last one wins";
 }
 
 // An order that comes late does not take back what inputs since then have been told.

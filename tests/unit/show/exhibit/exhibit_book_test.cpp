@@ -5,7 +5,7 @@
 #include "frame/picture_file.h"
 #include "show/exhibit/exhibit_book.h"
 #include "show/exhibit/exhibit_files.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "unit/folder.h"
 
 using namespace wellspring;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/exhibit_story.h"
+#include "show/exhibit/load/exhibit_story.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/exhibit_pieces.h"
+#include "show/exhibit/pieces/exhibit_pieces.h"
 
 #include <gtest/gtest.h>
 
 #include "image/image.h"
-#include "show/exhibit/exhibit_load.h"
-#include "show/exhibit/piece_choices.h"
+#include "show/exhibit/load/exhibit_load.h"
+#include "show/exhibit/pieces/piece_choices.h"
 #include "store/picture/sample_picture.h"
 #include "unit/show/exhibit/room_package.h"
 #include "world/surface.h"

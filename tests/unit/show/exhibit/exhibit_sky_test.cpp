@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "world/sky.h"
 
 using namespace wellspring;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/exhibit_sources.h"
+#include "show/exhibit/pieces/exhibit_sources.h"
 
 #include <gtest/gtest.h>
 
-#include "show/exhibit/exhibit_pieces.h"
+#include "show/exhibit/pieces/exhibit_pieces.h"
 #include "unit/show/exhibit/room_package.h"
 
 namespace wellspring::test {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/exhibit_volumes.h"
+#include "show/exhibit/pieces/exhibit_volumes.h"
 
 #include <gtest/gtest.h>
 
 #include "image/image.h"
-#include "show/exhibit/exhibit_pieces.h"
+#include "show/exhibit/pieces/exhibit_pieces.h"
 #include "show/exhibit/json_fields.h"
 #include "unit/show/exhibit/room_package.h"
 #include "wire/messages.h"

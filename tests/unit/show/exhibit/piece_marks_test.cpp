@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "image/image.h"
-#include "show/exhibit/piece_choices.h"
+#include "show/exhibit/pieces/piece_choices.h"
 #include "unit/show/ball_piece.h"
 #include "unit/show/exhibit/room_package.h"
 

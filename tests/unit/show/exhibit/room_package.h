@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "show/check/check_scene.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "unit/folder.h"
 #include "unit/world/load/asset.h"
 
@@ -95,6 +95,7 @@ struct RoomPackage {
     World world(exhibit.scene);
     check_places(exhibit, world, problems);
     check_sides(exhibit, world, problems);
+    check_lawns(exhibit, world, problems);
     check_light(exhibit, world, problems);
     return exhibit;
   }

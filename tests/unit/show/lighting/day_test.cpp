@@ -95,7 +95,7 @@ TEST(Day, HoursAreWholeMinutesOfItsOwnSpan) {
 
 TEST(Day, LampsFollowSwitchAndHour) {
   const std::optional<Day> day = day_of({.at = 12, .latitude = 49}, 41);
-  const char on[] = {1, 1}, off[] = {0, 1};
+  const LampSwitch on[] = {1, 1}, off[] = {0, 1};
   EXPECT_EQ(lamp_levels({}, on, {}), (LampLevels{lamp_full, lamp_full}));
   EXPECT_EQ(lamp_levels(day, on, {}), (LampLevels{lamp_full, lamp_full, lamp_full}));
   EXPECT_EQ(lamp_levels(day, off, {}), (LampLevels{0, lamp_full, 0}));

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring::test {

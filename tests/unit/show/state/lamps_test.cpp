@@ -12,12 +12,14 @@
 #include <unistd.h>
 
 #include "show/exhibit/exhibit_lights.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/http/answer.h"
 #include "show/state/in_view.h"
 #include "show/state/visitor_picture.h"
+#include "spectrum/lamps.h"
 #include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
+#include "world/load/scene_spectra.h"
 
 namespace wellspring::test {
 namespace {
@@ -72,6 +74,41 @@ TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
   run(1);
   for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
   EXPECT_EQ(make_report(*show).totals.lamps_switched, 2u);
+}
+
+// A visitor turns the dial: the picture has the other light's colour, and everybody is told.
+TEST_F(Lamps, ADialSetsAnotherLight) {
+  Exhibit exhibit = make_lit_exhibit();
+  Scene& scene = exhibit.scene;
+  set_lamp_spectrum(scene, scene.lamps[0],
+                    add_spectrum(scene, "D65", spectrum::find_lamp("D65")->power));
+  const Spectrum candle = spectrum::find_lamp("candle")->power;
+  scene.lamps[0].dial.push_back({add_spectrum(scene, "candle", candle), lamp_color(candle)});
+  exhibit.lamps[0].spectrum = "D65";
+  exhibit.lamps[0].dial = {{"candle", {{"en", "Candle"}}}};
+  begin(std::move(exhibit), 2);
+  run(1.5);
+  EXPECT_EQ(last("welcome")["lamps"][0]["dial"],
+            json::parse(R"([{"light":"candle","title":"Candle"}])"));
+  EXPECT_EQ(last("welcome")["lamps"][0]["light"], "D65");
+  auto warmth = [&] {
+    const Image8 shown = last_image(0);
+    double sum[3] = {1, 1, 1};
+    for (size_t i = 0; i < shown.rgb.size(); i++) sum[i % 3] += shown.rgb[i];
+    return sum[0] / sum[2];
+  };
+  const double day = warmth();
+  say(R"({"type":"lamp","name":"ceiling","on":true,"light":"moon"})", 1);
+  step();
+  EXPECT_EQ(last("error", 1)["code"], "unknown_light");
+  say(R"({"type":"lamp","name":"ceiling","on":true,"light":"candle"})", 1);
+  run(1.5);
+  for (size_t i : {0, 1}) EXPECT_EQ(last("state", i)["lights"]["ceiling"], "candle") << i;
+  EXPECT_GT(warmth(), 1.3 * day);
+  EXPECT_EQ(show->stage.world->lamp_levels()[0], LampLevel(lamp_full, 1));
+  say(R"({"type":"lamp","name":"ceiling","on":true,"light":"D65"})", 1);
+  run(1.5);
+  EXPECT_NEAR(warmth() / day, 1, 0.05);
 }
 
 // The change of light is computed once for all caches that knew the same lamps, and kept until the
@@ -234,7 +271,7 @@ TEST(ExhibitLamps, AreReadWithTitlesAndFirstStates) {
                                                  {"id":"sun","title":{"en":"Sun","de":"Sonne"},"nodes":["Sun"]}])"));
   for (const Problem& problem : package.problems) EXPECT_FALSE(problem.fatal) << to_string(problem);
   ASSERT_EQ(exhibit.lamps.size(), 2u);
-  EXPECT_EQ(first_lamps(exhibit), (std::vector<char>{0, 1}));
+  EXPECT_EQ(first_lamps(exhibit), (std::vector<LampSwitch>{0, 1}));
   EXPECT_EQ(exhibit.lamps[1].title.at("de"), "Sonne");
   EXPECT_EQ(exhibit.scene.lamps[1].lights, (std::vector<int>{1}));
 }

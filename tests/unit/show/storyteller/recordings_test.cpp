@@ -10,7 +10,7 @@
 #include "avatar/speech/sound_file.h"
 #include "avatar/speech/speech_json.h"
 #include "base/write_file.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/storyteller/recordings.h"
 #include "show/storyteller/voice.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/rng.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/load/exhibit_load.h"
 #include "show/visit/route.h"
 #include "show/visit/tour.h"
 #include "unit/show/tiny_exhibit.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "light/sample/lights.h"
-#include "show/exhibit/exhibit_volumes.h"
+#include "show/exhibit/pieces/exhibit_volumes.h"
 #include "show/visit/place.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/volume/draw_made.h"
@@ -170,8 +170,9 @@ TEST(LitVolumes, AGlassCutsFromTheSideThatIsSeen) {
   PieceChoices choices;
   LensOrder order{.depth = 0.01f};
   const vec3 middle = room.world->volumes()[0].position;
-  cut_ahead(room.exhibit, order, middle + vec3(0, 0, 2), choices);
-  const std::vector<VolumeCut> cuts = cuts_of(room.exhibit.pieces[0], choices[0]);
+  cut_ahead(room.exhibit, order, {middle + vec3(0, 0, 2)}, choices);
+  const std::vector<VolumeCut> cuts =
+      cuts_of(box_of(*room.exhibit.pieces[0].volume), room.exhibit.pieces[0].scale, choices[0]);
   ASSERT_EQ(cuts.size(), 1u);
   EXPECT_NEAR(cuts[0].normal.z, -1, 1e-6f);
   EXPECT_NEAR(cuts[0].offset, -0.014f, 1e-5f) << "10 of the 24 mm before the middle are gone";
