@@ -170,7 +170,7 @@ void add_to_map(const Bakery& bakery, const BakeSettings& settings, double secon
   alike.tile = known.map->places->tile;
   const std::vector<vec3> places = eye_places(bakery.exhibit);
   Bake bake = begin_bake(bakery.world, places, alike);
-  bake.sampled = find_new_tiles(bakery.world, bake, *known.map, reach_of_neighbours);
+  bake.sampled = find_new_tiles(bakery.world, bake, known, reach_of_neighbours);
   std::cout << std::ranges::count(bake.sampled, char(1)) << " of " << bake.charts.tiles
             << " tiles are new or near new things\n";
   const BakeScene scene = make_bake_scene(bakery.world, places);
@@ -184,7 +184,7 @@ void add_to_map(const Bakery& bakery, const BakeSettings& settings, double secon
   const auto fresh = finish_map(bakery.world, all_eye_places(bakery.exhibit), bake);
   if (!fresh) throw Failure("interrupted too early: " + bakery.light + " is as it was");
   const auto map = complete_map(bakery.world, bake, *known.map, *fresh,
-                                find_new_tiles(bakery.world, bake, *known.map));
+                                find_new_tiles(bakery.world, bake, known));
   if (!save_map(bakery.world, *map, bakery.light, bakery.key))
     throw Failure(bakery.light + ": cannot be written");
   std::cout << bakery.light << ": " << std::filesystem::file_size(bakery.light) << " bytes\n";

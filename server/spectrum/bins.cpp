@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spectrum/color.h"
+#include "spectrum/lamps.h"
 #include "spectrum/observer.h"
 #include "spectrum/wavelength_density.h"
 
@@ -65,15 +67,21 @@ std::vector<Spectrum> solve(std::vector<std::vector<double>> a, std::vector<Spec
   return b;
 }
 
-std::vector<Spectrum> estimated_shapes(const SpectralBins& bins) {
+// Returns the covariance of the bins' means, out of covariances_with().
+std::vector<std::vector<double>> covariances_among(const SpectralBins& bins,
+                                                   const std::vector<Spectrum>& with) {
   const size_t n = bins.count();
-  const std::vector<Spectrum> with = covariances_with(bins);
   std::vector<std::vector<double>> among(n, std::vector<double>(n, 0.0));
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < n; k++)
       for (size_t w = 0; w < spectrum_size; w++) among[i][k] += with[i][w] * bins.weights[k][w];
-    among[i][i] += 1e-6;  // narrow bins at the ends are nearly one
-  }
+  return among;
+}
+
+std::vector<Spectrum> estimated_shapes(const SpectralBins& bins) {
+  const std::vector<Spectrum> with = covariances_with(bins);
+  std::vector<std::vector<double>> among = covariances_among(bins, with);
+  for (size_t i = 0; i < among.size(); i++) among[i][i] += 1e-6;  // narrow end bins are nearly one
   return solve(std::move(among), with);
 }
 
@@ -123,6 +131,29 @@ std::vector<dvec3> lamp_matrix(const SpectralBins& bins, const Spectrum& power) 
   }
   for (dvec3& one : matrix) one *= lamp.white() / white;
   return matrix;
+}
+
+std::vector<dvec3> color_means(const SpectralBins& bins) {
+  const size_t n = bins.count();
+  std::vector<dvec3> colors;  // what each bin adds to red, green and blue
+  dvec3 white(0);
+  for (const dvec3& xyz : lamp_matrix(bins, find_lamp("D65")->power))
+    white += colors.emplace_back(rgb_of(xyz));
+  for (dvec3& color : colors) color /= white;
+  const auto among = covariances_among(bins, covariances_with(bins));
+  std::vector<dvec3> with(n, dvec3(0));  // covariance of a bin's mean with each channel
+  glm::dmat3 channels(0);
+  for (size_t i = 0; i < n; i++) {
+    for (size_t k = 0; k < n; k++) with[i] += among[i][k] * colors[k];
+    channels += glm::outerProduct(colors[i], with[i]);
+  }
+  // White is taken apart first, so that it is exact; the estimate is for the rest.
+  const glm::dmat3 estimate = glm::inverse(channels),
+                   rest = glm::dmat3(1) - glm::outerProduct(dvec3(1), dvec3(1.0 / 3));
+  std::vector<dvec3> means;
+  for (size_t i = 0; i < n; i++)
+    means.push_back(dvec3(1.0 / 3) + glm::transpose(estimate * rest) * with[i]);
+  return means;
 }
 
 dvec3 xyz_of_means(const std::vector<dvec3>& matrix, const std::vector<double>& means) {

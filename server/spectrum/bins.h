@@ -39,6 +39,9 @@ std::vector<double> bin_means(const SpectralBins& bins, const Spectrum& reflecta
 // Returns what a mean of 1 in each bin adds to X, Y and Z under a lamp; Y of white is 1. Takes some
 // ten microseconds, so it may be called whenever a lamp changes.
 std::vector<dvec3> lamp_matrix(const SpectralBins& bins, const Spectrum& power);
+// Returns what red, green and blue of a surface each add to its mean in every bin, if nothing but
+// its colour under D65 is known: the estimate described above. White is 1 in each bin.
+std::vector<dvec3> color_means(const SpectralBins& bins);
 // Returns X, Y and Z of means.
 dvec3 xyz_of_means(const std::vector<dvec3>& matrix, const std::vector<double>& means);
 

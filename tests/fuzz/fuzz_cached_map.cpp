@@ -2,6 +2,7 @@
 // An illumination map kept from the last start.
 #include "fuzz/cached.h"
 #include "fuzz/lit_square.h"
+#include "light/kept/binned_light.h"
 #include "light/kept/map_file.h"
 
 namespace wellspring::fuzz {
@@ -17,7 +18,7 @@ void fuzz_cached_map(Bytes bytes) {
   const auto map = load_map(baked_square().world, file, cached_key).map;
   if (!map) return;
   mapped_objects(scene, *map);
-  relit(*map, lamp_factors(scene, LampLevels(scene.lamps.size(), 100)));
+  relit(*map, find_layer_colors(scene, LampLevels(scene.lamps.size(), 100)));
   const auto& charts = map->places->charts;
   for (size_t i = 0; i < std::min<size_t>(charts.size(), 8); i++)
     for (vec2 at : {vec2(0), vec2(0.5f), vec2(1e9f), vec2(-1)})

@@ -40,12 +40,13 @@ uint64_t node_seed(const Bake& bake, int field, uint32_t tile, uint32_t node) {
 // Holds what one sample finds for each layer.
 struct LayerLight {
   std::vector<vec3> light, slope;  // luminance times slope_of()
-  explicit LayerLight(int layers) : light(size_t(layers)), slope(size_t(layers)) {}
+  explicit LayerLight(size_t layers) : light(layers), slope(layers) {}
 };
 
-void add_light(BakeField& field, size_t node, const LayerLight& found, float scale) {
+void add_light(const BakeScene& scene, BakeField& field, size_t node, const LayerLight& found,
+               float scale) {
   vec3 sum(0);
-  for (vec3 l : found.light) sum += l;
+  add_color(scene.plain_colors(), found.light, sum);
   if (!is_finite(sum)) return;
   vec3 *to = field.light_of(node), *slope = field.slope_of(node);
   for (size_t p = 0; p < found.light.size(); p++) to[p] += scale * found.light[p];
@@ -100,6 +101,8 @@ void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, Ba
 
 void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.direct;
+  Walk arrives;
+  arrives.wavelengths.tinted = true;  // what the surface does with the light is not asked
   auto sample = [&](size_t node, const BakePlace& lit, Sampler& sampler) {
     std::fill(found.light.begin(), found.light.end(), vec3(0));
     std::fill(found.slope.begin(), found.slope.end(), vec3(0));
@@ -113,20 +116,24 @@ void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
     for (size_t p = 0; p < found.light.size() && !field.slope.empty(); p++)
       if (const float l = luminance(found.light[p]); l > 0)
         found.slope[p] = l * slope_of(walk.ray.direction, lit.surface.normal);
-    for (size_t p = 0; p < found.light.size(); p++) {
+    for (size_t p = 0; p < scene.parts.size(); p++) {
       sampler.seek(Dimensions::first_surface);
       DirectLight direct =
-          sample_direct_light(scene.parts[p], Walk{}, lit.surface, lit.bsdf, true, sampler);
-      found.light[p] += direct.area_diffuse + direct.punctual_diffuse;
+          sample_direct_light(scene.parts[p], arrives, lit.surface, lit.bsdf, true, sampler);
+      for_each_layer(scene, p, direct.area_diffuse + direct.punctual_diffuse,
+                     [&](size_t l, vec3 light) { found.light[l] += light; });
       auto add_slope = [&](vec3 light, vec3 direction) {
-        if (float l = luminance(light); l > 0)
-          found.slope[p] += l * slope_of(direction, lit.surface.normal);
+        const vec3 slope = slope_of(direction, lit.surface.normal);
+        if (light != vec3(0))
+          for_each_layer(scene, p, light, [&](size_t l, vec3 one) {
+            if (luminance(one) > 0) found.slope[l] += luminance(one) * slope;
+          });
       };
       if (field.slope.empty()) continue;
       add_slope(direct.area_diffuse, direct.area_direction);
       add_slope(direct.punctual_diffuse, direct.punctual_direction);
     }
-    add_light(field, node, found, lit.uncoated);
+    add_light(scene, field, node, found, lit.uncoated);
   };
   for_each_sample(scene, bake, tile, field, sample);
 }
@@ -149,7 +156,7 @@ void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight
       }
     }
     if (inside) field.hidden[node] += 1;
-    else add_light(field, node, found, lit.uncoated);
+    else add_light(scene, field, node, found, lit.uncoated);
   };
   for_each_sample(scene, bake, tile, field, sample);
 }
@@ -176,7 +183,7 @@ PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
       std::clamp(pilots_a_tile / grid.nodes(), least_pilot_samples, most_pilot_samples);
   std::vector<float> light(size_t(grid.nodes()) * samples, -1);  // node by node; below 0: no light
   const uint64_t seed = mix64(bake.settings.seed + mix64(~uint64_t(tile)));
-  std::vector<vec3> met(size_t(scene.layers()));
+  std::vector<vec3> met(scene.layers());
   double sum = 0, count = 0;
   for (uint32_t number = 0; number < samples; number++)
     for_each_place(
@@ -191,7 +198,7 @@ PilotTile look_ahead(const BakeScene& scene, Bake& bake, uint32_t tile) {
           const DirectLight direct =
               sample_direct_light(all, Walk{}, lit.surface, lit.bsdf, true, sampler);
           vec3 arrived = direct.area_diffuse + direct.punctual_diffuse;
-          for (vec3 layer : met) arrived += layer;
+          add_color(scene.plain_colors(), met, arrived);
           const float found = lit.uncoated * luminance(arrived);
           if (!std::isfinite(found)) return;
           light[(node - grid.first) * samples + number] = found;
@@ -318,7 +325,8 @@ Bake begin_bake(const World& world, std::span<const vec3> places, const BakeSett
   bake.places = tile_places(bake.charts);
   std::vector<TileCells> cells = choose_cells(world, bake.charts, places, settings.gather_nodes);
   check_cancelled();
-  bake.gather = make_field(world, bake.charts, cells, int(layer_count(world.scene())));
+  bake.gather = make_field(world, bake.charts, cells, int(find_layers(world.scene()).size()));
+  bake.colors = find_layer_colors(world.scene());
   bake.direct = bake.gather;
   bake.pilots.resize(bake.charts.tiles);
   bake.held_out =

@@ -89,7 +89,8 @@ KeyedFile load_bake(const World& world, const std::string& file, uint64_t key, B
   std::vector<char> source;
   list_fields(take, loaded.settings, loaded, source, direct, gather);
   loaded.source.assign(source.begin(), source.end());
-  const int layers = int(layer_count(world.scene()));
+  const int layers = int(find_layers(world.scene()).size());
+  loaded.colors = find_layer_colors(world.scene());
   if (!take.complete() || !(loaded.tile > 0)) return KeyedFile::damaged;
   loaded.charts = make_charts(world, loaded.tile);
   loaded.places = tile_places(loaded.charts);
@@ -200,6 +201,8 @@ uint64_t hash_scene(const Scene& scene) {
   for (const PunctualLight& l : scene.lights)
     hash.add(l.type, l.position, l.direction, l.intensity, l.range, l.inner_cone, l.outer_cone);
   for (const Lamp& lamp : scene.lamps) hash.list(lamp.lights), hash.list(lamp.materials);
+  for (const MapLayer& layer : find_layers(scene))
+    if (layer.bin >= 0) hash.add(layer.lamp, layer.bin);
   const Environment& e = scene.environment;
   hash.add(e.radiance, e.image, e.sun.direction, e.sun.radiance, e.sun.angular_radius);
   if (e.image >= 0) {

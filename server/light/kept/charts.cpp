@@ -243,6 +243,7 @@ BakeCharts make_charts(const World& world, float tile) {
         chart.bent = is_bent(world.placed(i), grown);
         // Points of a scan face otherwise than the square that stands in for them.
         chart.sloped = chart.bent || mapped || mesh.stands_in;
+        chart.reflectance = scene.materials[size_t(mesh.material)].spectra.reflectance;
         charts.sloped |= chart.sloped;
         charts.tiles += uint32_t(chart.columns) * uint32_t(chart.rows);
         vec3 normal = triangles[seed].face.normal;

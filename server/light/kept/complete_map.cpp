@@ -30,8 +30,9 @@ float distance_to(const Bounds& box, vec3 place) {
   return length(place - glm::clamp(place, box.low, box.high));
 }
 
-// Returns the boxes around things that have tiles, but no light in the map.
-std::vector<Bounds> new_things(const World& world, const Bake& bake, const IlluminationMap& known) {
+// Returns the boxes around things that have tiles, but no light in the map, and around lamps.
+std::vector<Bounds> new_things(const World& world, const Bake& bake, const IlluminationMap& known,
+                               std::span<const int> lamps) {
   std::vector<char> seen(size_t(world.instance_count()), 0), lit = seen;
   for (size_t t = 0; t < known.tiles.size(); t++) {
     const uint32_t instance = instance_of(bake, t);
@@ -40,6 +41,16 @@ std::vector<Bounds> new_things(const World& world, const Bake& bake, const Illum
   std::vector<Bounds> boxes;
   for (uint32_t i = 0; i < seen.size(); i++)
     if (seen[i] && !lit[i]) boxes.push_back(bounds_of(world.placed(i)));
+  const std::vector<uint8_t> parts = find_lamp_parts(world.scene());
+  for (int lamp : lamps) {
+    for (int light : world.scene().lamps[size_t(lamp)].lights) {
+      const vec3 place = world.scene().lights[size_t(light)].position;
+      boxes.push_back({place, place});
+    }
+    for (uint32_t i = 0; i < seen.size(); i++)
+      if (parts[size_t(world.mesh_of(i).material)] == lamp + 1)
+        boxes.push_back(bounds_of(world.placed(i)));
+  }
   return boxes;
 }
 
@@ -55,9 +66,10 @@ void add_nodes(const IlluminationNodes& from, const IlluminationTile& tile, bool
 
 }  // namespace
 
-std::vector<char> find_new_tiles(const World& world, const Bake& bake, const IlluminationMap& known,
+std::vector<char> find_new_tiles(const World& world, const Bake& bake, const LoadedMap& loaded,
                                  float reach) {
-  const std::vector<Bounds> boxes = new_things(world, bake, known);
+  const IlluminationMap& known = *loaded.map;
+  const std::vector<Bounds> boxes = new_things(world, bake, known, loaded.dark_lamps);
   std::vector<char> is_new(known.tiles.size(), 0);
   for (size_t t = 0; t < is_new.size(); t++) {
     if (!is_there(bake.gather.tiles[t])) continue;
@@ -92,7 +104,7 @@ std::shared_ptr<const IlluminationMap> complete_map(const World& world, const Ba
   if (sloped)
     map.normals = pack_normals(
         unpack_normals(bake.charts, map.tiles, node_normals(world, bake.charts, map.tiles, nodes)));
-  map = sum_of_layers(std::move(map));
+  map = sum_of_layers(std::move(map), bake.colors);
   map.error = known.error;
   return std::make_shared<IlluminationMap>(std::move(map));
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "light/kept/bake.h"
-#include "light/sample/illumination_map.h"
+#include "light/kept/map_file.h"
 
 namespace wellspring::light {
 
@@ -15,10 +15,10 @@ namespace wellspring::light {
 // reflect.
 inline constexpr float reach_of_new = 1.5f, reach_of_neighbours = 2.2f;
 
-// Returns for each of the bake's tiles whether `known` has no light for it, or it lies within
-// `reach` metres of such a thing. `known`: load_map() of another scene (light/kept/map_file.h),
+// Returns for each of the bake's tiles whether the map has no light for it, or it lies within
+// `reach` metres of such a thing or of a lamp without light. `known`: load_map() of another scene,
 // whose tiles have the size of the bake's (BakeSettings::tile).
-std::vector<char> find_new_tiles(const World& world, const Bake& bake, const IlluminationMap& known,
+std::vector<char> find_new_tiles(const World& world, const Bake& bake, const LoadedMap& known,
                                  float reach = reach_of_new);
 
 // Returns a map that has `fresh` light, finish_map() of the bake, in the tiles that are new, and

@@ -290,7 +290,7 @@ static std::shared_ptr<const IlluminationMap> finish(const Bake& bake,
   });
   if (sloped) map->normals = pack_normals(normals);
   map->layers = layers;
-  map = std::make_shared<IlluminationMap>(sum_of_layers(std::move(*map)));
+  map = std::make_shared<IlluminationMap>(sum_of_layers(std::move(*map), bake.colors));
   map->error = held_out_error(bake.held_out, *map);
   return map;
 }

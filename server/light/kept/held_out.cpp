@@ -52,7 +52,7 @@ void cut_off(const BakeScene& scene, std::span<vec3> light) {
   if (!scene.known) return;
   const float most = most_brightness * scene.known->mean;
   vec3 sum(0);
-  for (vec3 l : light) sum += l;
+  add_color(scene.plain_colors(), light, sum);
   if (!(luminance(sum) > most)) return;
   for (vec3& l : light) l *= most / luminance(sum);
 }
@@ -120,16 +120,19 @@ float sample_place(const BakeScene& scene, const HeldOutPlace& place, Sampler& s
   sampler.seek(Dimensions::first_surface);
   const DirectLight direct = sample_direct_light(all, Walk{}, lit.surface, lit.bsdf, true, sampler);
   vec3 light = direct.area_diffuse + direct.punctual_diffuse;
+  const std::vector<mat3>& colors =
+      scene.colors.on(scene.world.material_of(place.hit.instance).spectra.reflectance);
   std::fill(gathered.begin(), gathered.end(), vec3(0));
   Walk walk;
   bool inside = false;
   if (leave(lit, sampler, walk)) {
     add_met_light(scene, walk, sampler, gathered, inside);
-    for (vec3& layer : gathered) light += layer, layer = vec3(0);
+    add_color(colors, gathered, light);
+    std::ranges::fill(gathered, vec3(0));
     gather_light(scene, walk, sampler, gathered, inside);
     cut_off(scene, gathered);
   }
-  for (vec3 layer : gathered) light += layer;
+  add_color(colors, gathered, light);
   const float found = lit.uncoated * luminance(light);
   return std::isfinite(found) ? found : 0;
 }
@@ -174,7 +177,7 @@ bool restore(const World& world, const IlluminationCharts& charts, HeldOut& held
 void sample_held_out(const BakeScene& scene, int samples, HeldOut& held) {
   parallel_for(int(held.places.size()), [&](int i) {
     HeldOutPlace& place = held.places[size_t(i)];
-    std::vector<vec3> gathered(size_t(scene.layers()));
+    std::vector<vec3> gathered(scene.layers());
     for (uint64_t half = 0; half < 2; half++)
       for (uint32_t k = 0; k < uint32_t(samples); k++) {
         Sampler sampler(mix64(samples_seed + 2 * uint64_t(i) + half), held.samples + k);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
 
+#include "light/kept/binned_light.h"
 #include "light/random/warp.h"
 #include "light/sample/illumination_map.h"
 #include "light/sample/light_tables.h"
@@ -107,60 +107,12 @@ bool differs(vec3 was, vec3 left, vec3 added) {
 
 }  // namespace
 
-namespace {
-
-// Returns the relative power with which a lamp shines, as an index into Scene::spectra; -1: it has
-// a colour.
-int spectrum_of(const Scene& scene, const Lamp& lamp, LampLevel level) {
-  if (const LampLight* light = dialed(lamp, level)) return light->spectrum;
-  if (!lamp.lights.empty()) return scene.lights[size_t(lamp.lights[0])].spectrum;
-  if (!lamp.materials.empty()) return scene.materials[size_t(lamp.materials[0])].spectra.emission;
-  return -1;
-}
-
-// Finds the nodes on surfaces whose reflectance is known by wavelength.
-std::vector<NodeTints> find_tints(const World& world, const IlluminationMap& map,
-                                  const SpectralTables& tables) {
-  const Scene& scene = world.scene();
-  std::vector<NodeTints> tints;
-  std::vector<char> done(map.places->charts.size(), 0);
-  for (uint32_t instance = 0; instance < uint32_t(scene.instances.size()); instance++) {
-    const Mesh& mesh = world.mesh_of(instance);
-    const int reflectance = scene.materials[size_t(mesh.material)].spectra.reflectance;
-    if (reflectance < 0) continue;
-    std::vector<vec3> factors;
-    for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++) {
-      const int power = spectrum_of(scene, scene.lamps[lamp], world.lamp_levels()[lamp]);
-      factors.push_back(reflected_once(tables, power, reflectance));
-    }
-    for (uint32_t t = 0; t < mesh.triangles.size(); t++)
-      for (bool front : {true, false}) {
-        const uint32_t number = map.places->find(instance, t, front);
-        if (number == no_chart || std::exchange(done[number], 1)) continue;
-        const IlluminationChart& chart = map.places->charts[number];
-        for (uint32_t i = 0; i < uint32_t(chart.columns) * uint32_t(chart.rows); i++)
-          if (const IlluminationTile& tile = map.tiles[chart.first_tile + i]; tile.nodes() > 0)
-            tints.push_back({tile.first, tile.nodes(), factors});
-      }
-  }
-  return tints;
-}
-
-}  // namespace
-
-std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all, const World& world,
-                                             const LightTables& tables) {
-  const std::vector<vec3> factors = lamp_factors(world.scene(), world.lamp_levels());
-  std::vector<NodeTints> tints;
-  if (tables.plan.uses(TransportPart::spectra)) tints = find_tints(world, all, *tables.spectral);
-  return relit(all, factors, tints);
-}
-
 Lights relit(const Lights& all, const World& world) {
   Lights lights = all;
   lights.tables = relit(*all.tables, world.scene(), find_emitting(world));
+  const LayerColors colors = find_layer_colors(world.scene(), world.lamp_levels());
   auto relight = [&](const std::shared_ptr<const IlluminationMap>& map) {
-    return map && map->layers->size() > 1 ? relit(*map, world, *all.tables) : map;
+    return map && map->layers->size() > 1 ? relit(*map, colors) : map;
   };
   lights.maps = relight(all.maps);
   lights.known = all.known == all.maps ? lights.maps : relight(all.known);
@@ -175,16 +127,22 @@ LightChange::LightChange(const Scene& scene, const Lights& all,
   everywhere_ = !cells;
   if (everywhere_) return;
   exact_ = std::move(cells);
+  const std::vector<MapLayer> layers = find_layers(scene);
+  const std::vector<mat3> was_colors = find_layer_colors(scene, before).on(-1),
+                          is_colors = find_layer_colors(scene, after).on(-1);
   for (size_t i = 0; i < exact_->cells.size(); i++) {
     const vec3 always = exact_->light[0][i];
     Known k{always, always, vec3(0), exact_->weight[i]};
-    for (size_t lamp = 0; lamp < before.size(); lamp++) {
-      vec3 more = exact_->light[lamp + 1][i];
-      const vec3 was = factor_of(scene.lamps[lamp], before[lamp]),
-                 is = factor_of(scene.lamps[lamp], after[lamp]);
-      k.was += was * more;
-      k.left += min(was, is) * more;
-      k.added += max(is - was, vec3(0)) * more;
+    for (size_t l = 1; l < layers.size();) {
+      vec3 was(0), is(0);
+      for (const int lamp = layers[l].lamp; l < layers.size() && layers[l].lamp == lamp; l++) {
+        was += was_colors[l] * exact_->light[l][i];
+        is += is_colors[l] * exact_->light[l][i];
+      }
+      was = max(was, vec3(0)), is = max(is, vec3(0));
+      k.was += was;
+      k.left += min(was, is);
+      k.added += max(is - was, vec3(0));
     }
     k.changes = differs(k.was, k.left, k.added);
     known_.push_back(k);

@@ -21,8 +21,7 @@ struct LampCells {
   // place_key of each cell at the slot that find_place_slot() returns, 0: free; and its number.
   std::vector<uint64_t> keys;
   std::vector<uint32_t> number_of;
-  // Each cell has its key, the area of surface in it, and the light that belongs to no lamp, then
-  // the light of each lamp alone.
+  // Each cell has its key, the area of surface in it, and the light of each of the map's layers.
   std::vector<uint64_t> cells;
   std::vector<float> weight;
   std::vector<std::vector<vec3>> light;
@@ -35,9 +34,6 @@ LampCells make_lamp_cells(const World& world, const IlluminationMap& map);
 // Returns the number of the cell of a surface there, or no_lamp_cell.
 uint32_t find_lamp_cell(const LampCells& cells, vec3 place, vec3 normal);
 
-// Returns the map of `world` as its lamps are now; `tables`: of its lights.
-std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all, const World& world,
-                                             const LightTables& tables);
 // Returns the lights of `world` as its lamps are now. `all`: lights of the same world, made and
 // prepared for all techniques in use while all lamps were full. A technique of passes has to begin
 // one before the next sample.

@@ -11,6 +11,7 @@
 #include "base/rng.h"
 #include "base/worker.h"
 #include "light/kept/bake_field.h"
+#include "light/kept/binned_light.h"
 #include "light/kept/finish_bake.h"
 
 namespace wellspring::light {
@@ -241,20 +242,24 @@ void take_standing(std::span<const StandingThing> theirs, std::span<const Standi
   map.places = places;
 }
 
-// Names what the layers of a scene's map hold, a line each; the first belongs to no lamp.
+// Names what the layers of a scene's map hold, a line each; the first belongs to no lamp. A layer
+// of bins has the number of the first behind a tab.
 std::string layer_names(const Scene& scene) {
   std::string names;
-  for (const Lamp& lamp : scene.lamps) {
+  for (const MapLayer& layer : find_layers(scene)) {
+    if (layer.lamp < 0) continue;
     names += '\n';
-    for (char c : lamp.name) names += c == '\n' ? ' ' : c;
+    for (char c : scene.lamps[size_t(layer.lamp)].name) names += c == '\n' || c == '\t' ? ' ' : c;
+    if (layer.bin >= 0) names += '\t' + std::to_string(layer.bin);
   }
   return names;
 }
 
 // Returns the layers of this scene out of those of a map whose layers have other names: lamps are
-// found again by their names, and a lamp that is new has no light yet.
+// found again by their names, and a lamp that is new has no light yet: its layers go to `dark`.
 std::vector<IlluminationNodes> take_layers(const std::string& theirs, const std::string& ours,
-                                           std::vector<IlluminationNodes>& layers) {
+                                           std::vector<IlluminationNodes>& layers,
+                                           std::vector<size_t>& dark) {
   auto split = [](const std::string& names) {
     std::vector<std::string> lines(1);
     for (char c : names)
@@ -262,15 +267,16 @@ std::vector<IlluminationNodes> take_layers(const std::string& theirs, const std:
       else lines.back() += c;
     return lines;
   };
-  const std::vector<std::string> known = split(theirs);
-  std::vector<IlluminationNodes> taken;
-  for (const std::string& name : split(ours)) {
-    const auto found = std::ranges::find(known, name);
+  const std::vector<std::string> known = split(theirs), wanted = split(ours);
+  std::vector<IlluminationNodes> taken{layers[0]};
+  for (size_t i = 1; i < wanted.size(); i++) {
+    const auto found = std::find(known.begin() + 1, known.end(), wanted[i]);
     const size_t at = size_t(found - known.begin());
     IlluminationNodes& layer = taken.emplace_back();
     if (at < layers.size()) {
       layer = layers[at];
     } else {
+      dark.push_back(i);
       layer.light.assign(layers[0].light.size(), pack_rgb9e5(vec3(0)));
       layer.slope.assign(layers[0].slope.size(), pack_slope(vec3(0)));
     }
@@ -367,12 +373,18 @@ LoadedMap load_map(const World& world, const std::string& file, uint64_t key) {
   if (stale) take_standing(things, ours, charts, *map);
   else if (things != ours) return refuse();
   else map->places = charts.places;
-  if (theirs != own) *layers = take_layers(theirs, own, *layers);
+  if (theirs != own) {
+    std::vector<size_t> dark;
+    *layers = take_layers(theirs, own, *layers, dark);
+    const std::vector<MapLayer> all = find_layers(world.scene());
+    for (size_t layer : dark)
+      if (all[layer].bin <= 0) loaded.dark_lamps.push_back(all[layer].lamp);
+  }
   map->layers = layers;
   if (head.sloped)
     map->normals = pack_normals(
         unpack_normals(charts, map->tiles, node_normals(world, charts, map->tiles, nodes)));
-  *map = sum_of_layers(std::move(*map));
+  *map = sum_of_layers(std::move(*map), find_layer_colors(world.scene()));
   loaded.map = map;
   return loaded;
 }

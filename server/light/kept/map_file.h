@@ -32,6 +32,7 @@ struct LoadedMap {
   // here, and none for others. Null: there is no light.
   std::shared_ptr<const IlluminationMap> map;
   KeyedFile found = KeyedFile::missing;
+  std::vector<int> dark_lamps{};  // lamps of the scene whose light is not in the file
 };
 // Reads files of unknown origin: a file that is damaged, cut off or of another format gives no map,
 // and no more memory is taken than for most_map_nodes. Never throws but Cancelled. Takes some

@@ -37,43 +37,44 @@ static float usual_light(const IlluminationMap& map) {
 }
 
 // Sums the layers at some nodes.
-static void sum_layers(std::span<const vec3> factors, size_t begin, size_t end,
+static void sum_layers(std::span<const mat3> colors, size_t begin, size_t end,
                        IlluminationMap& map) {
   const std::vector<IlluminationNodes>& layers = *map.layers;
   const bool sloped = !layers.front().slope.empty();
   for (size_t i = begin; i < end; i++) {
     vec3 sum(0), slope(0);
-    auto add = [&](const IlluminationNodes& layer, vec3 factor) {
-      const vec3 light = factor * unpack_rgb9e5(layer.light[i]);
+    for (size_t l = 0; l < layers.size(); l++) {
+      if (colors[l] == mat3(0)) continue;
+      const vec3 light = colors[l] * unpack_rgb9e5(layers[l].light[i]);
       sum += light;
-      if (sloped) slope += luminance(light) * unpack_slope(layer.slope[i]);
-    };
-    add(layers[0], vec3(1));
-    for (size_t lamp = 0; lamp + 1 < layers.size(); lamp++)
-      if (factors[lamp] != vec3(0)) add(layers[lamp + 1], factors[lamp]);
-    map.nodes.light[i] = pack_rgb9e5(sum);
+      if (sloped) slope += luminance(light) * unpack_slope(layers[l].slope[i]);
+    }
+    map.nodes.light[i] = pack_rgb9e5(max(sum, vec3(0)));
     if (sloped) map.nodes.slope[i] = pack_slope(slope / std::max(luminance(sum), 1e-20f));
   }
 }
 
-static void sum_layers(std::span<const vec3> factors, std::span<const NodeTints> tints,
-                       IlluminationMap& map) {
-  map.nodes.light.resize(map.layers->front().light.size());
-  map.nodes.slope.resize(map.layers->front().slope.size());
+static void sum_layers(const LayerColors& colors, IlluminationMap& map) {
+  const std::vector<IlluminationNodes>& layers = *map.layers;
+  map.nodes.light.resize(layers.front().light.size());
+  map.nodes.slope.resize(layers.front().slope.size());
+  const std::vector<mat3> same(layers.size(), mat3(1));
   parallel_ranges(int(map.nodes.light.size()), 4096, [&](int begin, int end) {
-    sum_layers(factors, size_t(begin), size_t(end), map);
+    sum_layers(colors.of.empty() ? same : colors.of[0], size_t(begin), size_t(end), map);
   });
-  for (const NodeTints& tinted : tints) {
-    std::vector<vec3> both(factors.begin(), factors.end());
-    for (size_t lamp = 0; lamp < both.size(); lamp++) both[lamp] *= tinted.factors[lamp];
-    sum_layers(both, tinted.first, size_t(tinted.first) + tinted.count, map);
-  }
+  if (colors.of.size() > 1)
+    for (const IlluminationChart& chart : map.places->charts) {
+      if (chart.reflectance < 0) continue;
+      for (uint32_t t = 0; t < uint32_t(chart.columns) * uint32_t(chart.rows); t++)
+        if (const IlluminationTile& tile = map.tiles[chart.first_tile + t]; tile.nodes() > 0)
+          sum_layers(colors.on(chart.reflectance), tile.first, size_t(tile.first) + tile.nodes(),
+                     map);
+    }
   map.usual = usual_light(map);
 }
 
-IlluminationMap sum_of_layers(IlluminationMap map) {
-  const std::vector<vec3> full(map.layers->size() - 1, vec3(1));
-  sum_layers(full, {}, map);
+IlluminationMap sum_of_layers(IlluminationMap map, const LayerColors& colors) {
+  sum_layers(colors, map);
   double mean = 0;
   for (uint32_t light : map.nodes.light) mean += double(luminance(unpack_rgb9e5(light)));
   const size_t nodes = map.nodes.light.size();
@@ -82,10 +83,9 @@ IlluminationMap sum_of_layers(IlluminationMap map) {
 }
 
 std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
-                                             std::span<const vec3> factors,
-                                             std::span<const NodeTints> tints) {
+                                             const LayerColors& colors) {
   auto map = std::make_shared<IlluminationMap>(all);
-  sum_layers(factors, tints, *map);
+  sum_layers(colors, *map);
   return map;
 }
 

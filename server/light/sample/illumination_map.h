@@ -30,7 +30,8 @@ struct IlluminationChart {
   int columns = 1, rows = 1;
   // Its mesh's normals differ: light and slope of a node are relative to the node's own normal.
   bool bent = false;
-  bool sloped = false;  // bent, or its material has a map of normals: slopes are kept
+  bool sloped = false;   // bent, or its material has a map of normals: slopes are kept
+  int reflectance = -1;  // of its material by wavelength, index into Scene::spectra; -1: unknown
 };
 
 // A tile is a grid of (columns + 1) x (rows + 1) nodes, row by row.
@@ -67,7 +68,8 @@ struct IlluminationMap {
   IlluminationNodes nodes;  // light and slopes with the lamps as they are
   // Means of the mesh's normals around each node, pack_node_normal(); null if no slopes are kept.
   std::shared_ptr<const std::vector<uint32_t>> normals;
-  // Nodes of the light that belongs to no lamp, then of each lamp alone. Copies share them.
+  // Nodes of the light that belongs to no lamp, then of each lamp alone: colours, or bins of
+  // wavelengths (light/kept/binned_light.h). Copies share them.
   std::shared_ptr<const std::vector<IlluminationNodes>> layers;
   float error = 1;  // estimated error: its root mean square over the mean light
   float mean = 0;   // luminance of the mean light
@@ -77,23 +79,19 @@ struct IlluminationMap {
 // If a map's error is greater, its light waits for visitors' own samples.
 inline constexpr float most_sure_error = 0.5f;
 size_t memory_bytes(const IlluminationMap& map);
-// Returns the number of layers of a scene's map: one for each lamp, and one for the light that
-// belongs to none.
-inline size_t layer_count(const Scene& scene) { return scene.lamps.size() + 1; }
 
-// Gives a map that has only layers its nodes, with all lamps full, and their mean.
-IlluminationMap sum_of_layers(IlluminationMap map);
-
-// Holds nodes on surfaces whose reflectance is known by wavelength, and what that makes of the
-// light of lamps that are known so, too: one more factor for each lamp.
-struct NodeTints {
-  uint32_t first = 0, count = 0;
-  std::vector<vec3> factors;
+// Holds what makes colours of the light in layers: a matrix for each layer, which the light is
+// multiplied by (find_layer_colors() in light/kept/binned_light.h).
+struct LayerColors {
+  // At 0: on charts without a reflectance; at reflectance + 1: on charts with it. Empty: layers
+  // hold colours.
+  std::vector<std::vector<mat3>> of;
+  const std::vector<mat3>& on(int reflectance) const { return of[size_t(reflectance + 1)]; }
 };
-// Returns the map with the light of lamp i times factors[i] (lamp_factors()). Takes milliseconds.
-std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
-                                             std::span<const vec3> factors,
-                                             std::span<const NodeTints> tints = {});
+// Gives a map that has only layers its nodes, and their mean. `colors`: with all lamps full.
+IlluminationMap sum_of_layers(IlluminationMap map, const LayerColors& colors = {});
+// Returns the map with other colours. Takes milliseconds.
+std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all, const LayerColors& colors);
 
 // Returns for each of the scene's objects whether the map has the light of any part of it.
 std::vector<char> mapped_objects(const Scene& scene, const IlluminationMap& map);

@@ -129,9 +129,6 @@ void absorb(const Transport& transport, Walk& walk, float length, uint32_t dimen
 
 namespace {
 
-// Returns whether a material's specular lobes have its base colour as its diffuse one has.
-bool tints_gloss(const Material& material) { return material.metallic >= 0.5f; }
-
 void reflect(const Transport& transport, int reflectance, uint32_t dimensions, Sampler& sampler,
              Wavelengths& carried) {
   const SpectralTables& tables = *transport.tables.spectral;
@@ -278,6 +275,7 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
         vec3 arrives = arriving(light, light_pdf);
         float both = scattering.pdf(value);
         direct.area_direction = light.direction;
+        direct.area_arrives = arrives * mis_weight(light_pdf, both);
         direct.area_diffuse = value.diffuse * arrives * tints.diffuse(light.spectrum) *
                               mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
         direct.specular = value.specular * arrives * tints.specular(light.spectrum) *
@@ -297,6 +295,7 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
         vec3 arrives = arriving(light, punctual_chance);
         direct.punctual_diffuse = value.diffuse * arrives * tints.diffuse(light.spectrum);
         direct.punctual_direction = light.direction;
+        direct.punctual_arrives = arrives;
         direct.specular += value.specular * arrives * tints.specular(light.spectrum);
       }
     }

@@ -105,6 +105,8 @@ void absorb(const Transport& transport, Walk& walk, float length, uint32_t dimen
 // Tells wavelengths that the Lambertian surface at a hit scattered them, likewise.
 void reflect(const Transport& transport, const Hit& hit, uint32_t dimensions, Sampler& sampler,
              Wavelengths& carried);
+// Returns whether a material's specular lobes have its base colour as its diffuse one has.
+inline bool tints_gloss(const Material& material) { return material.metallic >= 0.5f; }
 // Tells wavelengths that a surface of that material scattered them by `lobes`, if its reflectance
 // is known by wavelength. One of all lobes together is chosen, and the sample's weight becomes that
 // lobe's over its chance: so a walk that has all wavelengths keeps them.
@@ -119,14 +121,15 @@ bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered)
 struct DirectLight {
   vec3 area_diffuse{0}, punctual_diffuse{0}, specular{0};
   vec3 area_direction{0}, punctual_direction{0};  // directions to these lights; 0: there is none
-  float punctual_share = 1;                       // LightSample::share
+  // Light from there before the surface scatters it, for lobes that are sampled as a mixture.
+  vec3 area_arrives{0}, punctual_arrives{0};
+  float punctual_share = 1;  // LightSample::share
   bool sure_of_punctual() const { return punctual_share > 0.99f; }
   vec3 sum() const { return area_diffuse + punctual_diffuse + specular; }
 };
 // Samples the light that arrives at a surface; it has the tint of the walk and of the surface.
-// `apart`: the caller samples the diffuse and specular
-// lobes one by one (else as a mixture), and both kinds of light are sampled (else one of them, by
-// area_share).
+// `apart`: the caller samples the diffuse and specular lobes one by one (else as a mixture), and
+// both kinds of light are sampled (else one of them, by area_share).
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const Surface& surface, const Bsdf& bsdf, bool apart,
                                 Sampler& sampler);

@@ -15,6 +15,7 @@
 #include "frame/frame.h"
 #include "frame/tonemap.h"
 #include "image/image.h"
+#include "light/kept/binned_light.h"
 #include "light/technique/technique.h"
 #include "light/visible/guides.h"
 #include "picture/laid_view.h"
@@ -109,8 +110,9 @@ StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_cloc
   lights = make_lights(*world, moving_lights);
   lights.lamps_seen = show.stage.lights.lamps_seen;
   const bool switched = !levels.empty() && show.stage.switches.all.known;
-  lights.known = switched ? relit(*show.stage.switches.all.known, *world, *lights.tables)
-                          : show.stage.lights.known;
+  lights.known =
+      switched ? relit(*show.stage.switches.all.known, find_layer_colors(exhibit.scene, levels))
+               : show.stage.lights.known;
   if (!lights.known) transport.clamp = 0;  // it is the reference
   volumes.begin(exhibit, lights, *technique, *world), place_scans(exhibit, *world);
   lawns.begin(show.stage.lawns), lawns.light(*world, lights, *technique);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "light/kept/finish_bake.h"
 #include "light/technique/technique.h"
+#include "light/walk/known_light.h"
 #include "scenes/lit_world.h"
 #include "spectrum/color.h"
 #include "spectrum/lamps.h"
@@ -57,18 +59,13 @@ Seen look(const LitWorld& lit, const Ray& ray, int max_depth, int count) {
   return seen;
 }
 
-}  // namespace
-
-PigmentErrors render_pigments(std::span<const Spectrum> pigments, const std::string& lamp,
-                              int samples) {
-  const Spectrum power = spectrum::find_lamp(lamp)->power;
-  const LampObserver observer(power);
+// Makes a room for each pigment and one without, which tells how much light there is.
+Scene make_rooms(std::span<const Spectrum> pigments) {
   Scene scene = empty_scene();
   std::vector<int> materials;
   for (const Spectrum& one : pigments) materials.push_back(add_pigment(scene, one));
   const size_t count = pigments.size();
   for (size_t i = 0; i < count; i++) add_room(scene, i, materials[i], materials[(i + 1) % count]);
-  // A room without pigments tells how much light there is.
   const int white = add_material(scene, diffuse(vec3(1)));
   add_room(scene, count, white, white);
   PunctualLight light;
@@ -77,31 +74,90 @@ PigmentErrors render_pigments(std::span<const Spectrum> pigments, const std::str
   light.intensity = vec3(1);
   scene.lights.push_back(light);
   scene.lamps.push_back({"lamp", {0}, {}});
+  return scene;
+}
+
+Ray straight_ray(size_t i) {
+  return {.origin = room(i) + vec3(4.5f, 0, 0), .direction = {0, 1, 0}};
+}
+Ray reflected_ray(size_t i) {
+  return {.origin = room(i) + vec3(0, 0.05f, 0), .direction = {0, -1, 0}};
+}
+
+// White has the light's colour: the channel that is largest in it is not cut.
+double brightness(const dvec3& white, const vec3& lamp) {
+  const int channel = lamp.x > lamp.z ? 0 : 2;
+  return white[channel] / double(lamp[channel]);
+}
+
+double difference(const LampObserver& observer, const dvec3& rgb, const Spectrum& truth) {
+  return ciede2000(lab_of(xyz_of_rgb(rgb), observer.white()),
+                   lab_of(observer.xyz(truth), observer.white()));
+}
+
+}  // namespace
+
+PigmentErrors render_pigments(std::span<const Spectrum> pigments, const std::string& lamp,
+                              int samples) {
+  const Spectrum power = spectrum::find_lamp(lamp)->power;
+  const LampObserver observer(power);
+  Scene scene = make_rooms(pigments);
   set_lamp_spectrum(scene, scene.lamps[0], add_spectrum(scene, lamp, power));
   const LitWorld lit(std::move(scene));
-  auto straight = [&](size_t i, int n) {
-    return look(lit, {.origin = room(i) + vec3(4.5f, 0, 0), .direction = {0, 1, 0}}, 2, n);
-  };
-  auto reflected = [&](size_t i, int n) {
-    return look(lit, {.origin = room(i) + vec3(0, 0.05f, 0), .direction = {0, -1, 0}}, 3, n);
-  };
-  // White has the light's colour: the channel that is largest in it is not cut.
+  const size_t count = pigments.size();
+  auto straight = [&](size_t i, int n) { return look(lit, straight_ray(i), 2, n); };
+  auto reflected = [&](size_t i, int n) { return look(lit, reflected_ray(i), 3, n); };
   const vec3 color = lit.scene.lights[0].intensity;
-  const int channel = color.x > color.z ? 0 : 2;
-  auto brightness = [&](const dvec3& seen) { return seen[channel] / double(color[channel]); };
-  const double once = brightness(straight(count, 1).color),
-               twice = brightness(reflected(count, samples).color);
+  const double once = brightness(straight(count, 1).color, color),
+               twice = brightness(reflected(count, samples).color, color);
   PigmentErrors errors;
-  auto difference = [&](const dvec3& rgb, const Spectrum& truth) {
-    return ciede2000(lab_of(xyz_of_rgb(rgb), observer.white()),
-                     lab_of(observer.xyz(truth), observer.white()));
-  };
   for (size_t i = 0; i < count; i++) {
     const Seen second = reflected(i, samples);
-    errors.once.push_back(difference(straight(i, 1).color / once, pigments[i]));
-    errors.twice.push_back(
-        difference(second.color / twice, product(pigments[i], pigments[(i + 1) % count])));
+    errors.once.push_back(difference(observer, straight(i, 1).color / once, pigments[i]));
+    errors.twice.push_back(difference(observer, second.color / twice,
+                                      product(pigments[i], pigments[(i + 1) % count])));
     errors.negative += second.negative / double(count);
+  }
+  return errors;
+}
+
+std::vector<PigmentErrors> turn_dial(std::span<const Spectrum> pigments,
+                                     std::span<const char* const> lamps) {
+  Scene scene = make_rooms(pigments);
+  Lamp& lamp = scene.lamps[0];
+  for (const char* name : lamps) {
+    const int power = add_spectrum(scene, name, spectrum::find_lamp(name)->power);
+    const vec3 color = lamp_color(scene.spectra[size_t(power)].value);
+    if (lamp.dial.empty()) set_lamp_spectrum(scene, lamp, power);
+    lamp.dial.push_back({power, color / scene.lights[0].intensity});
+  }
+  const World world(scene);
+  const BakeScene lit = make_bake_scene_of_paths(world);
+  Bake bake = begin_bake(world, {}, {.gather_nodes = 4000, .direct_nodes = 4000});
+  go_on(lit, bake, [&] { return bake.passes >= 8; });
+  const auto all = finish_map(bake);
+  const size_t count = pigments.size();
+  std::vector<PigmentErrors> errors;
+  for (size_t k = 0; k < lamps.size(); k++) {
+    const LampLevel turned(lamp_full, uint8_t(k + 1));
+    const auto map = relit(*all, find_layer_colors(scene, std::span(&turned, 1)));
+    auto seen = [&](const Ray& ray) {
+      const Hit hit = world.intersect(ray);
+      const uint32_t chart = find_chart(*map->places, world, ray, hit);
+      const vec3 place = ray.origin + hit.t * ray.direction;
+      return dvec3(eval_illumination(*map, map->places->charts[chart], place) *
+                   vec3(world.material_of(hit.instance).base_color));
+    };
+    const LampObserver observer(spectrum::find_lamp(lamps[k])->power);
+    const vec3 color = scene.lights[0].intensity * lamp.dial[k].factor;
+    const double once = brightness(seen(straight_ray(count)), color),
+                 twice = brightness(seen(reflected_ray(count)), color);
+    PigmentErrors& own = errors.emplace_back();
+    for (size_t i = 0; i < count; i++) {
+      own.once.push_back(difference(observer, seen(straight_ray(i)) / once, pigments[i]));
+      own.twice.push_back(difference(observer, seen(reflected_ray(i)) / twice,
+                                     product(pigments[i], pigments[(i + 1) % count])));
+    }
   }
   return errors;
 }

@@ -11,7 +11,7 @@
 
 namespace wellspring::test {
 
-// Tells how far rendered colours are off, CIEDE2000 beside the lamp's own white.
+// Tells how far colours are off, CIEDE2000 beside the lamp's own white.
 struct PigmentErrors {
   // One for each pigment; twice: in light that the next one had sent back.
   std::vector<double> once, twice;
@@ -20,5 +20,8 @@ struct PigmentErrors {
 // Renders them by `path` with a number of samples for each.
 PigmentErrors render_pigments(std::span<const Spectrum> pigments, const std::string& lamp,
                               int samples);
+// Bakes them under the first of these lamps, and turns its dial to each.
+std::vector<PigmentErrors> turn_dial(std::span<const Spectrum> pigments,
+                                     std::span<const char* const> lamps);
 
 }  // namespace wellspring::test

@@ -78,5 +78,25 @@ TEST(SpectrumBins, TheEstimateIsNearerThanEvenBins) {
   EXPECT_LT(most, 1.5);
 }
 
+// A surface of which only a colour is known has that colour under daylight, and white is white in
+// every bin.
+TEST(SpectralBins, MeansOfAColourHaveThatColour) {
+  const SpectralBins bins = make_bins();
+  const std::vector<dvec3> means = color_means(bins);
+  const std::vector<dvec3> daylight = lamp_matrix(bins, find_lamp("D65")->power);
+  for (const dvec3& rgb : {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1), dvec3(0.8, 0.3, 0.1)}) {
+    std::vector<double> own;
+    for (const dvec3& one : means) own.push_back(dot(one, rgb));
+    const dvec3 seen = rgb_of(xyz_of_means(daylight, own));
+    for (int c = 0; c < 3; c++) EXPECT_NEAR(seen[c], rgb[c], 2e-3) << rgb.x << " " << c;
+  }
+  for (const dvec3& one : means) EXPECT_NEAR(one.x + one.y + one.z, 1, 1e-9);
+  // The estimate is smooth: the colour of a common paint lies between black and white.
+  for (const dvec3& one : means) {
+    EXPECT_GT(dot(one, dvec3(0.4, 0.2, 0.1)), 0);
+    EXPECT_LT(dot(one, dvec3(0.4, 0.2, 0.1)), 1);
+  }
+}
+
 }  // namespace
 }  // namespace wellspring::test

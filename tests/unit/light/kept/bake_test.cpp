@@ -252,7 +252,7 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
   for (int lamp : {0, 1}) {
     LampLevels on(2, 0);
     on[size_t(lamp)] = lamp_full;
-    auto alone = relit(*map, lamp_factors(scene, on));
+    auto alone = relit(*map, find_layer_colors(scene, on));
     for (size_t i = 0; i < map->nodes.light.size(); i++) {
       vec3 layer = unpack_rgb9e5(layers[size_t(lamp) + 1].light[i]);
       ASSERT_LT(length(unpack_rgb9e5(alone->nodes.light[i]) - layer),
@@ -260,7 +260,7 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
     }
     on[size_t(lamp)] = level_of(0.25f);
     const float dim = brightness_of(on[size_t(lamp)]);
-    auto dimmed = relit(*map, lamp_factors(scene, on));
+    auto dimmed = relit(*map, find_layer_colors(scene, on));
     for (size_t i = 0; i < map->nodes.light.size(); i++) {
       vec3 layer = dim * unpack_rgb9e5(layers[size_t(lamp) + 1].light[i]);
       ASSERT_LT(length(unpack_rgb9e5(dimmed->nodes.light[i]) - layer),
@@ -283,7 +283,7 @@ TEST(Bake, LampsAddUpAndAloneAreAsIfThereWereNoOther) {
     EXPECT_LT(differ / wanted, 0.2) << lamp;
   }
   const LampLevels none{0, 0};
-  auto dark = relit(*map, lamp_factors(scene, none));
+  auto dark = relit(*map, find_layer_colors(scene, none));
   for (uint32_t light : dark->nodes.light) EXPECT_EQ(unpack_rgb9e5(light), vec3(0));
 }
 

@@ -48,9 +48,9 @@ struct Added {
     BakeSettings alike = small();
     alike.tile = known.map->places->tile;
     bake = begin_bake(*world, std::vector{vec3(6, 1.6f, 1)}, alike);
-    bake.sampled = find_new_tiles(*world, bake, *known.map, reach_of_neighbours);
+    bake.sampled = find_new_tiles(*world, bake, known, reach_of_neighbours);
     bake_passes(make_bake_scene(*world, {}), bake, 3);
-    is_new = find_new_tiles(*world, bake, *known.map);
+    is_new = find_new_tiles(*world, bake, known);
     fresh = finish_map(bake);
     whole = complete_map(*world, bake, *known.map, *fresh, is_new);
   }
