@@ -90,9 +90,15 @@ double brightness(const dvec3& white, const vec3& lamp) {
   return white[channel] / double(lamp[channel]);
 }
 
+double difference(const LampObserver& observer, const dvec3& rgb, const dvec3& truth) {
+  return ciede2000(lab_of(xyz_of_rgb(rgb), observer.white()), lab_of(truth, observer.white()));
+}
 double difference(const LampObserver& observer, const dvec3& rgb, const Spectrum& truth) {
-  return ciede2000(lab_of(xyz_of_rgb(rgb), observer.white()),
-                   lab_of(observer.xyz(truth), observer.white()));
+  return difference(observer, rgb, observer.xyz(truth));
+}
+// Maps keep no channel below zero, as displays show none.
+double kept_difference(const LampObserver& observer, const dvec3& rgb, const Spectrum& truth) {
+  return difference(observer, rgb, xyz_of_rgb(glm::max(rgb_of(observer.xyz(truth)), dvec3(0))));
 }
 
 }  // namespace
@@ -154,9 +160,9 @@ std::vector<PigmentErrors> turn_dial(std::span<const Spectrum> pigments,
                  twice = brightness(seen(reflected_ray(count)), color);
     PigmentErrors& own = errors.emplace_back();
     for (size_t i = 0; i < count; i++) {
-      own.once.push_back(difference(observer, seen(straight_ray(i)) / once, pigments[i]));
-      own.twice.push_back(difference(observer, seen(reflected_ray(i)) / twice,
-                                     product(pigments[i], pigments[(i + 1) % count])));
+      own.once.push_back(kept_difference(observer, seen(straight_ray(i)) / once, pigments[i]));
+      own.twice.push_back(kept_difference(observer, seen(reflected_ray(i)) / twice,
+                                          product(pigments[i], pigments[(i + 1) % count])));
     }
   }
   return errors;

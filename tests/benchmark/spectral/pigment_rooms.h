@@ -20,7 +20,8 @@ struct PigmentErrors {
 // Renders them by `path` with a number of samples for each.
 PigmentErrors render_pigments(std::span<const Spectrum> pigments, const std::string& lamp,
                               int samples);
-// Bakes them under the first of these lamps, and turns its dial to each.
+// Bakes them under the first of these lamps, and turns its dial to each. Colours of the truth that
+// have a channel below zero are cut there, since maps do so.
 std::vector<PigmentErrors> turn_dial(std::span<const Spectrum> pigments,
                                      std::span<const char* const> lamps);
 
