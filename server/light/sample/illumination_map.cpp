@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/simd.h"
 
 namespace wellspring::light {
 
@@ -36,23 +37,55 @@ static float usual_light(const IlluminationMap& map) {
   return float(std::exp(logs / count));
 }
 
-// Sums the layers at some nodes.
-static void sum_layers(std::span<const mat3> colors, size_t begin, size_t end,
-                       IlluminationMap& map) {
-  const std::vector<IlluminationNodes>& layers = *map.layers;
-  const bool sloped = !layers.front().slope.empty();
-  for (size_t i = begin; i < end; i++) {
-    vec3 sum(0), slope(0);
-    for (size_t l = 0; l < layers.size(); l++) {
-      if (colors[l] == mat3(0)) continue;
-      const vec3 light = colors[l] * unpack_rgb9e5(layers[l].light[i]);
-      sum += light;
-      if (sloped) slope += luminance(light) * unpack_slope(layers[l].slope[i]);
-    }
-    map.nodes.light[i] = pack_rgb9e5(max(sum, vec3(0)));
-    if (sloped) map.nodes.slope[i] = pack_slope(slope / std::max(luminance(sum), 1e-20f));
+namespace {
+
+Lanes brightness(const Lanes3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+struct SummedLayer {
+  const IlluminationNodes* nodes;
+  mat3 color;
+};
+
+// Sums the layers at up to lane_count nodes from the first on.
+void sum_nodes(std::span<const SummedLayer> layers, size_t first, size_t count,
+               IlluminationNodes& to) {
+  auto load = [&](const std::vector<uint32_t>& from) {
+    if (count == size_t(lane_count)) return load_lanes<LaneBits>(&from[first]);
+    uint32_t some[lane_count] = {};
+    std::copy_n(&from[first], count, some);
+    return load_lanes<LaneBits>(some);
+  };
+  const bool sloped = !to.slope.empty();
+  Lanes3 sum = all_lanes(vec3(0)), slope = sum;
+  for (const SummedLayer& layer : layers) {
+    const LaneBits packed = load(layer.nodes->light);
+    if (!any_lane(packed & all_lane_bits(0x7ffffffu))) continue;  // dark, as most of them are
+    Lanes3 in_layer, turns;
+    unpack_rgb9e5(packed, in_layer.x, in_layer.y, in_layer.z);
+    const mat3& m = layer.color;
+    const Lanes3 light =
+        all_lanes(m[0]) * in_layer.x + all_lanes(m[1]) * in_layer.y + all_lanes(m[2]) * in_layer.z;
+    sum = sum + light;
+    if (!sloped) continue;
+    unpack_slope(load(layer.nodes->slope), turns.x, turns.y, turns.z);
+    slope = slope + turns * brightness(light);
+  }
+  const Lanes bright = brightness(sum);
+  for (size_t k = 0; k < count; k++) {
+    to.light[first + k] = pack_rgb9e5(sum.at(int(k)));
+    if (sloped) to.slope[first + k] = pack_slope(slope.at(int(k)) / std::max(bright[k], 1e-20f));
   }
 }
+
+void sum_layers(std::span<const mat3> colors, size_t begin, size_t end, IlluminationMap& map) {
+  std::vector<SummedLayer> layers;
+  for (size_t l = 0; l < map.layers->size(); l++)
+    if (colors[l] != mat3(0)) layers.push_back({&(*map.layers)[l], colors[l]});
+  for (size_t i = begin; i < end; i += lane_count)
+    sum_nodes(layers, i, std::min(end - i, size_t(lane_count)), map.nodes);
+}
+
+}  // namespace
 
 static void sum_layers(const LayerColors& colors, IlluminationMap& map) {
   const std::vector<IlluminationNodes>& layers = *map.layers;
