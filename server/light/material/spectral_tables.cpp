@@ -130,6 +130,7 @@ std::shared_ptr<const SpectralTables> make_spectral_tables(const Scene& scene) {
   for (const Material& material : scene.materials) {
     const int reflectance = material.spectra.reflectance;
     if (reflectance < 0) continue;
+    // Walks carry a reflectance's index and no material, so its colour is in the tables, too.
     tables->colors[size_t(reflectance)] = material.spectra.base;
     for (size_t lamp = 0; lamp <= count; lamp++) {
       if (lamp > 0 && !is_lamp[lamp - 1]) continue;
