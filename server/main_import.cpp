@@ -99,6 +99,19 @@ void import_picture(const Options& options, const std::string& file) {
             << ", \"place\": {\"position\": [0, 1.5, 0], \"yaw_deg\": 0}}\n";
 }
 
+// Several imports have the next three options.
+void add_overwrite(CLI::App& app, bool& overwrite) {
+  app.add_flag("--overwrite", overwrite, "replace what is there");
+}
+
+void add_width(CLI::App& app, double& metres) {
+  app.add_option("--width", metres, "of the picture, in metres")->check(CLI::Range(0.001, 1000.0));
+}
+
+CLI::Option* add_quality(CLI::App& app, int& quality, const char* about) {
+  return app.add_option("--quality", quality, about)->check(CLI::Range(1, 100));
+}
+
 void add_band_options(CLI::App& app, BandImport& import) {
   CLI::App& bands = *app.add_subcommand(
       "bands", "a picture of many bands, as a tiled TIFF; prints a piece for exhibit.json");
@@ -109,19 +122,16 @@ void add_band_options(CLI::App& app, BandImport& import) {
       ->required();
   bands.add_option("--out", import.out, "folder for the picture")->capture_default_str();
   bands.add_option("--name", import.name, "of the picture; without it that of the path");
-  bands.add_option("--width", import.width, "of the picture, in metres")
-      ->check(CLI::Range(0.001, 1000.0));
+  add_width(bands, import.width);
   bands.add_option("--bits", import.bits, "of a value: 8 of its square root, or 16 of itself")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str();
-  bands
-      .add_option("--quality", import.quality,
-                  "of JPEG tiles, which are a third as large; without it nothing else is lost")
-      ->check(CLI::Range(1, 100));
+  add_quality(bands, import.quality,
+              "of JPEG tiles, which are a third as large; without it nothing else is lost");
   bands.add_option("--lamps", import.lamps, "of layers that are proposed")
       ->delimiter(',')
       ->capture_default_str();
-  bands.add_flag("--overwrite", import.overwrite, "replace what is there");
+  add_overwrite(bands, import.overwrite);
   bands.add_flag_callback(
       "--schema",
       [] {
@@ -143,12 +153,9 @@ int main(int argc, char** argv) {
       "picture", "a tiled TIFF with smaller versions inside; prints a piece for exhibit.json");
   picture.add_option("files", options.files, "pictures of any format that vips reads")->required();
   picture.add_option("--out", options.out, "folder for what is made")->capture_default_str();
-  picture.add_option("--width", options.width, "of the picture, in metres")
-      ->check(CLI::Range(0.001, 1000.0));
-  picture.add_option("--quality", options.quality, "of JPEG tiles")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  picture.add_flag("--overwrite", options.overwrite, "replace what is there");
+  add_width(picture, options.width);
+  add_quality(picture, options.quality, "of JPEG tiles")->capture_default_str();
+  add_overwrite(picture, options.overwrite);
   VolumeImport scan;
   CLI::App& volume = *app.add_subcommand(
       "volume", "a scan, for an exhibit: checks it, copies it, prints a piece for exhibit.json");
@@ -169,7 +176,7 @@ int main(int argc, char** argv) {
   volume.add_flag("--bricks", scan.bricks,
                   "write bricks, which are shown without all being in memory; of more than 64 Mi "
                   "samples they are always written");
-  volume.add_flag("--overwrite", scan.overwrite, "replace what is there");
+  add_overwrite(volume, scan.overwrite);
   volume.add_flag_callback(
       "--raw-schema",
       [] {
@@ -198,7 +205,7 @@ int main(int argc, char** argv) {
   points.add_option("--memory", place.memory, "MiB that may be used")
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();
-  points.add_flag("--overwrite", place.overwrite, "replace what is there");
+  add_overwrite(points, place.overwrite);
   BandImport bands;
   add_band_options(app, bands);
   try {

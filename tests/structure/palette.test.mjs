@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 
 import { LAMPS, NM, difference, lab } from '../../art/castle/spectra/colour.mjs';
-import { mixtures, retouch } from '../../art/castle/dusk/palette.mjs';
+import { mixtures, row_names } from '../../art/castle/dusk/palette.mjs';
 import { mix_pigments, pigments, reflectance } from '../../art/castle/spectra/pigments.mjs';
 const data = process.env.WELLSPRING_DATA ?? '';
 
@@ -66,9 +66,10 @@ test('a mixture lies between its pigments, and black is stronger than white', ()
 });
 
 test('the later hand matches the first by day and by no other light', () => {
-  const sky = mixtures.slice(0, retouch.length), told = [];
-  sky.slice(0, 10).forEach((parts, i) => {
-    const one = mix_pigments(parts), other = mix_pigments(retouch[i].parts);
+  // Rows are equally long; the sky is the first, the later hand's the last.
+  const steps = mixtures.length / row_names.length, told = [];
+  mixtures.slice(0, 10).forEach((parts, i) => {
+    const one = mix_pigments(parts), other = mix_pigments(mixtures.at(i - steps));
     const [day, candle] = ['D65', 'candle'].map((lamp) =>
       difference(lab(one, LAMPS[lamp]), lab(other, LAMPS[lamp])));
     told.push(`${day.toFixed(2)} ${candle.toFixed(2)}`);

@@ -82,7 +82,7 @@ export const row_names = [...Object.keys(rows), 'retouch'];
 export const index_of = (row, tone) => row * STEPS +
     Math.round(Math.min(Math.max(tone, 0), 1) * (STEPS - 1));
 
-export const mixtures = Object.values(rows).flatMap((keys) =>
+const first_hand = Object.values(rows).flatMap((keys) =>
   Array.from({ length: STEPS }, (_, i) => {
     const at = (i / (STEPS - 1)) * (keys.length - 1), k = Math.min(Math.floor(at), keys.length - 2);
     return blend(keys[k], keys[k + 1], at - k);
@@ -117,18 +117,19 @@ function match(target, base, names) {
   return undefined;
 }
 
-// The later hand's row: for each tone of the sky the mixture that is farthest from it by candle.
 const shelf = ['cobalt blue', 'viridian', 'cobalt green', 'madder lake', 'lac dye', 'cobalt violet',
   'bone black'];
 const choices = shelf.flatMap((a, i) => shelf.slice(i + 1).flatMap((b, k) =>
   shelf.slice(i + k + 2).map((c) => [a, b, c])));
-export const retouch = mixtures.slice(0, STEPS).map((parts) => {
+// Returns the later hand's mixture for one of the sky: of those that match it by day the one that
+// is farthest from it by candle. Where none matches the first hand's stays.
+function retouch(parts) {
   const target = mix_pigments(parts, NM), by_candle = lab(target, LAMPS.candle);
   const found = choices.map((names) => match(target, { 'zinc white': 0.3 }, names))
-      .filter(Boolean).map(({ parts: other, made }) => ({ parts: other,
-        day: difference(lab(target, LAMPS.D65), lab(made, LAMPS.D65)),
-        candle: difference(by_candle, lab(made, LAMPS.candle)) }));
-  return found.sort((a, b) => b.candle - a.candle)[0];
-});
-// A tone without such a mixture takes the one before it.
-retouch.forEach((one, i) => mixtures.push((one ?? retouch[i - 1] ?? { parts: mixtures[i] }).parts));
+      .filter(Boolean).map(({ parts: other, made }) =>
+        ({ parts: other, candle: difference(by_candle, lab(made, LAMPS.candle)) }));
+  return found.sort((a, b) => b.candle - a.candle)[0]?.parts ?? parts;
+}
+
+// Both hands' rows lie one after another.
+export const mixtures = [...first_hand, ...first_hand.slice(0, STEPS).map(retouch)];

@@ -19,12 +19,15 @@ const Spectrum& white_power() {
 }
 
 // Returns what each nanometre of D65 adds to red, green and blue of a white surface.
-std::array<dvec3, spectrum_size> color_weights() {
-  std::array<dvec3, spectrum_size> weights = LampObserver(white_power()).weights();
-  dvec3 sum(0);
-  for (dvec3& weight : weights) sum += weight = rgb_of(weight);
-  for (dvec3& weight : weights) weight /= sum;
-  return weights;
+const std::array<dvec3, spectrum_size>& color_weights() {
+  static const auto made = [] {
+    std::array<dvec3, spectrum_size> weights = LampObserver(white_power()).weights();
+    dvec3 sum(0);
+    for (dvec3& weight : weights) sum += weight = rgb_of(weight);
+    for (dvec3& weight : weights) weight /= sum;
+    return weights;
+  }();
+  return made;
 }
 
 // Returns the power of a lamp by nanometre as its share of all that is seen.
@@ -64,7 +67,7 @@ Spectrum wavelength_chances(const Scene& scene, const std::vector<char>& is_lamp
 }
 
 void set_responses(const Spectrum& chances, bool exact, SpectralTables& tables) {
-  const std::array<dvec3, spectrum_size> weights = color_weights();
+  const std::array<dvec3, spectrum_size>& weights = color_weights();
   dvec3 shown(0);
   double below = 0;
   for (size_t i = 0; i < spectrum_size; i++) {
@@ -99,11 +102,10 @@ std::vector<char> find_lamps(const Scene& scene) {
 }
 
 // Returns the light of a lamp of that relative power (as in the rows) that a reflectance sends on.
-vec3 reflected(const std::array<dvec3, spectrum_size>& weights, const NanometreRow* lamp,
-               const NanometreRow& reflectance) {
+vec3 reflected(const NanometreRow* lamp, const NanometreRow& reflectance) {
   dvec3 sum(0);
   for (size_t i = 0; i < spectrum_size; i++)
-    sum += weights[i] * double(lamp ? (*lamp)[i] : 1.0f) * double(reflectance[i]);
+    sum += color_weights()[i] * double(lamp ? (*lamp)[i] : 1.0f) * double(reflectance[i]);
   return vec3(sum);
 }
 
@@ -124,19 +126,18 @@ std::shared_ptr<const SpectralTables> make_spectral_tables(const Scene& scene) {
       tables->rows[s][i] = float(is_lamp[s] ? scale * value[i] / white_power()[i] : value[i]);
     if (is_lamp[s]) tables->colors[s] = lamp_color(value);
   }
-  const std::array<dvec3, spectrum_size> weights = color_weights();
   tables->reflected_once.assign((count + 1) * count, vec3(1));
   for (const Material& material : scene.materials) {
     const int reflectance = material.spectra.reflectance;
     if (reflectance < 0) continue;
+    // Walks carry a reflectance's index and no material, so its colour is in the tables, too.
     tables->colors[size_t(reflectance)] = material.spectra.base;
     for (size_t lamp = 0; lamp <= count; lamp++) {
       if (lamp > 0 && !is_lamp[lamp - 1]) continue;
       const NanometreRow* power = lamp > 0 ? &tables->rows[lamp - 1] : nullptr;
       const vec3 color = lamp > 0 ? tables->colors[lamp - 1] : vec3(1);
       tables->reflected_once[lamp * count + size_t(reflectance)] =
-          reflected(weights, power, tables->rows[size_t(reflectance)]) /
-          (color * material.spectra.base);
+          reflected(power, tables->rows[size_t(reflectance)]) / (color * material.spectra.base);
     }
   }
   return tables;

@@ -126,15 +126,19 @@ nlohmann::ordered_json bands_schema() {
   });
 }
 
+std::string bands_file_of(const std::string& tiff) {
+  return std::filesystem::path(tiff).replace_extension(".bands.json").string();
+}
+
 std::optional<Bands> find_bands(const std::string& tiff, const std::string& image_description) {
   // Other programs write JSON, too, such as {"shape": ..}.
   if (image_description.starts_with("{") &&
       image_description.find("\"wavelengths_nm\"") != std::string::npos)
     return read_bands(tiff, image_description);
   std::error_code error;
-  const std::filesystem::path beside = std::filesystem::path(tiff).replace_extension(".bands.json");
+  const std::string beside = bands_file_of(tiff);
   if (!std::filesystem::is_regular_file(beside, error)) return std::nullopt;
-  return read_bands(beside.string(), read_json_text(beside.string()));
+  return read_bands(beside, read_json_text(beside));
 }
 
 }  // namespace wellspring::store

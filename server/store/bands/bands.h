@@ -37,8 +37,10 @@ std::string write_bands(const Bands& bands);
 // Returns the JSON Schema of NAME.bands.json.
 nlohmann::ordered_json bands_schema();
 
-// Returns the description of a TIFF: its ImageDescription, if that is one, else NAME.bands.json
-// beside it; none: it has no bands. Throws LoadError for one that is wrong.
+// Returns the path of NAME.bands.json beside NAME.tif, whether or not it is there.
+std::string bands_file_of(const std::string& tiff);
+// Returns the description of a TIFF: its ImageDescription, if that is one, else that of
+// bands_file_of(); none: it has no bands. Throws LoadError for one that is wrong.
 std::optional<Bands> find_bands(const std::string& tiff, const std::string& image_description);
 
 }  // namespace wellspring::store

@@ -33,6 +33,16 @@ std::optional<FileStamp> find_stamp(const std::string& file) {
                    about.st_mtim.tv_nsec};
 }
 
+// Holds what a TIFF is read from; bands: the description beside it.
+struct TiffStamps {
+  std::optional<FileStamp> tiff, bands;
+  bool operator==(const TiffStamps&) const = default;
+};
+
+TiffStamps find_stamps(const std::string& file) {
+  return {find_stamp(file), find_stamp(bands_file_of(file))};
+}
+
 // Reads a part of a page, which lies within it. Blocks that are absent stay transparent; nothing is
 // returned if all are.
 std::optional<Piece> read_part(const TiffFile& tiff, const TiffPage& page,
@@ -58,8 +68,8 @@ std::optional<Piece> read_part(const TiffFile& tiff, const TiffPage& page,
 class OpenTiff {
  public:
   OpenTiff(const std::string& file, const BandView& view)
-      : stamp_(find_stamp(file)), tiff_(file, view), pages_(tiff_.read_pages()) {}
-  const std::optional<FileStamp>& stamp() const { return stamp_; }  // before it was opened
+      : stamps_(find_stamps(file)), tiff_(file, view), pages_(tiff_.read_pages()) {}
+  const TiffStamps& stamps() const { return stamps_; }  // before it was opened
   const TiffFile& tiff() const { return tiff_; }
   const std::vector<TiffPage>& pages() const { return pages_; }
 
@@ -87,7 +97,7 @@ class OpenTiff {
 
  private:
   static constexpr size_t least_forgotten = 1024;
-  std::optional<FileStamp> stamp_;
+  TiffStamps stamps_;
   TiffFile tiff_;
   std::vector<TiffPage> pages_;  // one a stored level
   mutable std::mutex mutex_;     // guards what follows
@@ -105,7 +115,7 @@ class TiffPyramid : public KeptLevels {
         orientation_(open->pages()[0].orientation),
         open_(std::move(open)),
         look_at_(clock_() + look_again_seconds),
-        seen_(open_->stamp()),
+        seen_(open_->stamps()),
         tried_(seen_) {
     const std::vector<TiffPage>& pages = open_->pages();
     for (const TiffPage& page : pages) {
@@ -166,15 +176,16 @@ class TiffPyramid : public KeptLevels {
     return open_;
   }
 
-  // Opens the file anew if another one lies in its place. The old one is good until then.
+  // Opens the file anew if another one lies in its place, or another description of its bands
+  // beside it. The old one is good until then.
   void look_again() const {
     const std::unique_lock looking(looking_, std::try_to_lock);
     if (!looking || clock_() < look_at_) return;
     look_at_ = clock_() + look_again_seconds;
-    const std::optional<FileStamp> found = find_stamp(file_);
+    const TiffStamps found = find_stamps(file_);
     const bool is_written = found != seen_;
     seen_ = found;
-    if (!found || is_written || found == tried_) return;
+    if (!found.tiff || is_written || found == tried_) return;
     tried_ = found;
     try {
       auto opened = std::make_shared<const OpenTiff>(file_, view_);
@@ -191,11 +202,11 @@ class TiffPyramid : public KeptLevels {
   const BandView view_;
   const std::function<double()> clock_;
   const Orientation orientation_;
-  mutable std::mutex mutex_;                       // guards open_
-  mutable std::shared_ptr<const OpenTiff> open_;   // changed by who has looking_, too
-  mutable std::mutex looking_;                     // guards what follows
-  mutable double look_at_;                         // seconds of the clock
-  mutable std::optional<FileStamp> seen_, tried_;  // the last one seen, and the last one opened
+  mutable std::mutex mutex_;                      // guards open_
+  mutable std::shared_ptr<const OpenTiff> open_;  // changed by who has looking_, too
+  mutable std::mutex looking_;                    // guards what follows
+  mutable double look_at_;                        // seconds of the clock
+  mutable TiffStamps seen_, tried_;               // the last seen, and the last opened
 };
 
 }  // namespace

@@ -17,7 +17,8 @@ namespace wellspring::store {
 //
 // A tiled file that is replaced by one with the same levels while it is shown is read from then on,
 // within seconds of `clock` for new pieces and a minute for others; levels that no file has stay as
-// they were. One with other levels is logged, and the old one stays open.
+// they were. One with other levels is logged, and the old one stays open. The same goes for the
+// description of its bands beside it.
 //
 // Texels of a picture of many bands are shown as `view` says.
 std::shared_ptr<const PicturePyramid> load_tiff(const std::string& file,

@@ -274,7 +274,8 @@ void add_spoken(const Exhibit& exhibit, const std::string& path, const std::stri
   }
 }
 
-// Opens the picture of a layer; without a source of its own it is in that of the piece.
+// Opens the picture of a layer; without a source of its own it is in that of the piece. A fault of
+// a file that several layers show is told once. A source that is not there becomes empty.
 void read_source(const Exhibit& exhibit, FieldReader& fields, const std::string& otherwise,
                  Need need, PieceLayer& layer, std::vector<Problem>& problems,
                  const BandView& bands = {}) {
@@ -286,14 +287,16 @@ void read_source(const Exhibit& exhibit, FieldReader& fields, const std::string&
   std::string name;
   fields.text("layer", name, "of a painting that is described in words; its first");
   const std::string path = find_source(exhibit, fields, layer.source);
-  if (path.empty()) return;
+  if (path.empty()) return layer.source.clear();
   try {
     layer.shown.picture = std::make_shared<LargePicture>(
         shared_store(),
         open_picture(path, name, exhibit.languages.front(), exhibit.allowed_hosts, bands));
     add_spoken(exhibit, path, name, layer);
   } catch (const LoadError& error) {
-    problems.push_back({error.file, error.where, error.what_});
+    const auto tells_it = [&](const Problem& one) { return to_string(one) == error.what(); };
+    if (std::ranges::none_of(problems, tells_it))
+      problems.push_back({error.file, error.where, error.what_});
   } catch (const std::length_error& error) {
     fields.fail("source", std::string("is too much: ") + error.what());
   }

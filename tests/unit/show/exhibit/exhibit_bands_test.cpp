@@ -17,11 +17,14 @@ struct BandPiece {
   Exhibit exhibit;
   std::vector<Problem> problems;
 
-  explicit BandPiece(const std::string& layers) {
+  // `harm` is done to the picture before it is read.
+  explicit BandPiece(
+      const std::string& layers,
+      const std::function<void(const std::string& file)>& harm = [](const std::string&) {}) {
     MadeBands made;
     made.bands = 6, made.description = wavelengths_json(6, 400, 100);
     made.value = [](int, int, int band) { return 10000 * (band + 1); };
-    write_bands_tiff(folder.file("a.tif"), made);
+    harm(write_bands_tiff(folder.file("a.tif"), made));
     exhibit.folder = folder.path;
     exhibit.scene.objects.push_back("");
     const std::string text =
@@ -83,6 +86,18 @@ TEST(ExhibitBands, WhatIsWrongIsNamed) {
     const BandPiece piece(layer("x", fields));
     EXPECT_NE(piece.all().find(what), std::string::npos) << fields << ": " << piece.all();
   }
+}
+
+TEST(ExhibitBands, AFaultOfThePictureIsToldOnceForAllLayers) {
+  const std::string layers = layer("candle", R"("lamp": "candle")") + "," +
+                             layer("red", R"("band_nm": 600)") + "," +
+                             layer("false", R"("false_color_nm": [900, 600, 500])");
+  const BandPiece cut(layers, [](const auto& file) { std::filesystem::resize_file(file, 100); });
+  EXPECT_EQ(cut.problems.size(), 1u) << cut.all();
+  EXPECT_NE(cut.all().find("a.tif: "), std::string::npos) << cut.all();
+  const BandPiece gone(layers, [](const auto& file) { std::filesystem::remove(file); });
+  EXPECT_EQ(gone.problems.size(), 1u) << gone.all();
+  EXPECT_NE(gone.all().find("/pieces/0/source: there is no file"), std::string::npos) << gone.all();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "store/format/tiff_pyramid.h"
+#include "unit/store/band_files/made_bands.h"
 #include "unit/store/format/pictures.h"
 
 namespace wellspring::test {
@@ -384,6 +385,30 @@ TEST(Tiff, AFileThatIsGoneOrHalfWrittenStaysOpen) {
   }
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   expect_same(whole_level(*shown_file.pyramid, 0), before);
+}
+
+TEST(Tiff, AChangedDescriptionOfBandsBesideTheFileIsReadFromThenOn) {
+  const Folder folder;
+  MadeBands made;
+  made.value = [](int, int, int band) { return 10000 * (band + 1); };
+  const std::string file = write_bands_tiff(folder.file("a.tif"), made);
+  const auto describe = [&](const std::string& text) { folder.write("a.bands.json", text); };
+  describe(wavelengths_json(3, 450, 100));
+  double now = 0;
+  const auto pyramid =
+      load_tiff(file, most_whole_texels, [&now] { return now; }, {.shown_nm = {450}});
+  const auto shown_later = [&] {
+    int code = 0;
+    for (int i = 0; i < 3; i++, now += 5.5) code = pyramid->fetch({1, 0, 0, 0}).piece->bytes[0];
+    return code;
+  };
+  const int first_band = shown_later();
+  testing::internal::CaptureStdout();
+  describe("{");
+  EXPECT_EQ(shown_later(), first_band);
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("a.bands.json"), std::string::npos);
+  describe(wavelengths_json(3, 350, 100));
+  EXPECT_GT(shown_later(), first_band);
 }
 
 TEST(Tiff, APieceThatSomebodyHasIsNotReadAgain) {
