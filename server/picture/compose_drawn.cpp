@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "light/sample/illumination_map.h"
 #include "picture/drawn_planes.h"
 #include "picture/drawn_run.h"
@@ -375,7 +375,7 @@ std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
                     taker(composer, NearerPlanes{frame}));
 }
 
-// Draws what moves in the light that is kept on its skin (light/kept/skin_light.h).
+// Draws what moves in the light that is kept on its skin (light/kept/skin/skin_light.h).
 
 namespace {
 

@@ -11,7 +11,7 @@
 namespace wellspring::light {
 struct DynamicImage;     // light/virtual/dynamic_image.h
 struct IlluminationMap;  // light/sample/illumination_map.h
-struct SkinLight;        // light/kept/skin_light.h
+struct SkinLight;        // light/kept/skin/skin_light.h
 }  // namespace wellspring::light
 
 namespace wellspring::picture {

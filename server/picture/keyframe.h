@@ -65,7 +65,7 @@ void make_keyframe(const View& view, const Image8& picture, std::span<const floa
 
 // Draws what moves in a picture at rest by itself, over what does not: a storyteller who breathes
 // and speaks is a few hundredths of a picture, and the rest of it need not be drawn again for each
-// move. The light is that kept on the skin (light/kept/skin_light.h).
+// move. The light is that kept on the skin (light/kept/skin/skin_light.h).
 
 // A layer has what moves alone, with the depth of its pixels, to be laid over other views.
 struct MovingLayer {

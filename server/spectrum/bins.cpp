@@ -135,7 +135,7 @@ std::vector<dvec3> lamp_matrix(const SpectralBins& bins, const Spectrum& power) 
 
 std::vector<dvec3> color_means(const SpectralBins& bins) {
   const size_t n = bins.count();
-  std::vector<dvec3> colors;  // what each bin adds to red, green and blue
+  std::vector<dvec3> colors;  // each bin adds so much to red, green and blue
   dvec3 white(0);
   for (const dvec3& xyz : lamp_matrix(bins, find_lamp("D65")->power))
     white += colors.emplace_back(rgb_of(xyz));

@@ -17,7 +17,7 @@
 #include "frame/picture_file.h"
 #include "frame/tonemap.h"
 #include "judge/flip.h"
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "report.h"

@@ -102,7 +102,7 @@ void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, Ba
 void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, LayerLight& found) {
   BakeField& field = bake.direct;
   Walk arrives;
-  arrives.wavelengths.tinted = true;  // what the surface does with the light is not asked
+  arrives.wavelengths.tinted = true;  // the surface has no part in the light as it arrives
   auto sample = [&](size_t node, const BakePlace& lit, Sampler& sampler) {
     std::fill(found.light.begin(), found.light.end(), vec3(0));
     std::fill(found.slope.begin(), found.slope.end(), vec3(0));

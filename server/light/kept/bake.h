@@ -41,7 +41,7 @@ struct Bake {
   BakeCharts charts;
   std::vector<TilePlace> places;  // one for each tile
   BakeField direct, gather;
-  LayerColors colors;             // of the scene with all lamps full
+  LayerColors colors;             // find_layer_colors() of the scene
   std::vector<PilotTile> pilots;  // one for each tile, while nodes may become finer
   std::vector<char> sampled;      // for each tile; empty: all. Not kept on disk
   HeldOut held_out;

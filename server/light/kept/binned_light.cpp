@@ -13,7 +13,7 @@
 namespace wellspring::light {
 namespace {
 
-constexpr float least_base = 1e-3f;  // of a channel of a colour that is divided by
+constexpr float least_base = 1e-3f;  // a channel of a colour that is divided by is at least so much
 
 const SpectralBins& bins() {
   static const SpectralBins made = make_bins();

@@ -38,7 +38,7 @@ vec3 binned_color(const Scene& scene, int lamp);
 struct WalkBins {
   using Means = std::array<vec3, bin_layers>;
   std::array<mat3, bin_layers> of_color;  // spectrum's color_means()
-  std::vector<Means> means;               // of reflectances and absorptions: Scene::spectra
+  std::vector<Means> means;               // one for each of Scene::spectra
 };
 // Returns null if no lamp's light is kept in bins.
 std::shared_ptr<const WalkBins> make_walk_bins(const Scene& scene);

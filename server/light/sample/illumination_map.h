@@ -31,7 +31,7 @@ struct IlluminationChart {
   // Its mesh's normals differ: light and slope of a node are relative to the node's own normal.
   bool bent = false;
   bool sloped = false;   // bent, or its material has a map of normals: slopes are kept
-  int reflectance = -1;  // of its material by wavelength, index into Scene::spectra; -1: unknown
+  int reflectance = -1;  // MaterialSpectra::reflectance
 };
 
 // A tile is a grid of (columns + 1) x (rows + 1) nodes, row by row.

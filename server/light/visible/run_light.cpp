@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "light/material/bsdf_gloss.h"
 #include "light/sample/sample_light.h"
 #include "light/visible/visibility_impl.h"

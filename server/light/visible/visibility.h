@@ -58,10 +58,10 @@ class VisibleRun {
   // Writes highlights of its pixels (light/visible/facet.h); none if rays have seen them.
   void gloss(uint32_t* codes, uint8_t* metallic) const;
   // Computes the light of its pixels that show what moves, as `surface` describes it
-  // (light/kept/skin_light.h); other pixels get any value. Returns the moving ones, a bit each;
-  // none if rays have seen them. Rough gloss shows the light that is kept, as much as comes about
-  // from where it mirrors; smooth gloss shows what rays meet there, and those of `lights` that have
-  // no size.
+  // (light/kept/skin/skin_light.h); other pixels get any value. Returns the moving ones, a bit
+  // each; none if rays have seen them. Rough gloss shows the light that is kept, as much as comes
+  // about from where it mirrors; smooth gloss shows what rays meet there, and those of `lights`
+  // that have no size.
   uint64_t light(const struct SkinLight& skin, const Lights& lights, const RunSurface& surface,
                  RunSkin& to) const;
   // Computes the light of its pixels whose diffuse light the map has

@@ -10,8 +10,8 @@
 
 namespace wellspring::show {
 
-// Paces the search for light on moving things (light/kept/skin_light.h): few samples if they are
-// small in all pictures, and none if nobody sees them.
+// Paces the search for light on moving things (light/kept/skin/skin_light.h): few samples if they
+// are small in all pictures, and none if nobody sees them.
 
 inline constexpr double least_interval = 0.2;  // seconds; skin light is found no more often
 

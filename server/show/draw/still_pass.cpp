@@ -7,7 +7,7 @@
 #include "base/log.h"
 #include "base/rng.h"
 #include "frame/tonemap.h"
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "picture/compositor.h"
 #include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"

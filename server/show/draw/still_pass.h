@@ -29,9 +29,9 @@ void watch_pass(Show& show);
 // it may be a third of the picture.
 bool may_be_laid_over(const PictureWindow& window, const View& view);
 
-// These find the light on moving things (light/kept/skin_light.h), which all visitors share. First
-// by the tick, while the renderer is idle and the world is in that visitor's state, then on the
-// renderer, as the world is then, then by the tick.
+// These find the light on moving things (light/kept/skin/skin_light.h), which all visitors share.
+// First by the tick, while the renderer is idle and the world is in that visitor's state, then on
+// the renderer, as the world is then, then by the tick.
 void begin_skin_light(Show& show, const Visitor& visitor);
 void compute_skin_light(ExhibitStage& stage, ShowDrawing& drawing);
 void finish_skin_light(ShowDrawing& drawing, ShowTotals& totals);

@@ -78,7 +78,6 @@ StillRoom::StillRoom(const Show& show, std::function<double()> clock)
     : scenery_(std::make_unique<Scenery>(show, std::move(clock))) {}
 
 StillRoom::~StillRoom() = default;
-
 bool StillRoom::denoises() const { return !scenery_->weights.empty(); }
 
 StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_clock)
@@ -109,10 +108,9 @@ StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_cloc
   }
   lights = make_lights(*world, moving_lights);
   lights.lamps_seen = show.stage.lights.lamps_seen;
-  const bool switched = !levels.empty() && show.stage.switches.all.known;
-  lights.known =
-      switched ? relit(*show.stage.switches.all.known, find_layer_colors(exhibit.scene, levels))
-               : show.stage.lights.known;
+  lights.known = show.stage.lights.known;
+  if (const auto& all = show.stage.switches.all.known; all && !levels.empty())
+    lights.known = relit(*all, find_layer_colors(exhibit.scene, levels));
   if (!lights.known) transport.clamp = 0;  // it is the reference
   volumes.begin(exhibit, lights, *technique, *world), place_scans(exhibit, *world);
   lawns.begin(show.stage.lawns), lawns.light(*world, lights, *technique);

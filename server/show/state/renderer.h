@@ -26,7 +26,7 @@
 #include "frame/tonemap.h"
 #include "light/virtual/direct_light.h"
 #include "light/virtual/dynamic_image.h"
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "picture/still/reconstruct_still.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "light/sample/lights.h"
 #include "show/exhibit/exhibit.h"
 #include "show/exhibit/json_fields.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "light/kept/lamps.h"
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 
 namespace wellspring::show {
 

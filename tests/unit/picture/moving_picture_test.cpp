@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "frame/tonemap.h"
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "unit/frame/tonemap_color.h"
 #include "unit/picture/drawn_visit.h"
 

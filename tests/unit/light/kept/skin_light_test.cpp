@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light on what moves, kept at its vertices.
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

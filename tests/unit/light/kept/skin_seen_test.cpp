@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "light/material/light_slope.h"
 #include "unit/light/kept/skin_stage.h"
 

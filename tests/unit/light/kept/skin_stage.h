@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "scenes/scenes.h"
 
 namespace wellspring::test {

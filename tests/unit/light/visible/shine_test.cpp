@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "light/visible/visibility.h"
 #include "scenes/scenes.h"
 #include "unit/light/kept/bake_cases.h"

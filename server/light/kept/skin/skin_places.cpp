@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds where the light on what moves is kept (light/kept/skin_light.h): places, the triangles
+// Finds where the light on what moves is kept (light/kept/skin/skin_light.h): places, the triangles
 // around them and their neighbours.
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "base/rng.h"
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "world/surface.h"
 
 namespace wellspring::light {

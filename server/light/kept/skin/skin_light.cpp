@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spreads light between places: a Gaussian Markov random field solved by multigrid
-// (light/kept/skin_light.h).
+// (light/kept/skin/skin_light.h).
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "light/kept/skin_light.h"
+#include "light/kept/skin/skin_light.h"
 #include "light/material/light_slope.h"
 #include "world/surface.h"
 
@@ -286,7 +286,7 @@ void relight_skin(const World& world, const SkinChange& change, SkinLight& skin)
   });
 }
 
-// Finds by rays of views where light on what moves is seen (light/kept/skin_light.h).
+// Finds by rays of views where light on what moves is seen (light/kept/skin/skin_light.h).
 
 namespace {
 
