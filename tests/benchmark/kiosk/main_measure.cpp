@@ -17,6 +17,7 @@
 #include "base/log.h"
 #include "kiosk/camera.h"
 #include "kiosk/figure.h"
+#include "kiosk/network/graph/graph_network.h"
 #include "kiosk/observe.h"
 
 namespace {
@@ -269,6 +270,27 @@ void measure_cost(const Options& options, const std::string& finder, bool expres
   tell("kiosk.frame_p95_ms", 1000 * walls[walls.size() * 95 / 100], "ms", fields);
 }
 
+// Tells the time of every graph that lies in the folder, for a picture of its size.
+void measure_graphs(const fs::path& folder) {
+  std::error_code none;
+  std::map<std::string, fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ".json") files[entry.path().stem().string()] = entry.path();
+  for (const auto& [name, file] : files) {
+    GraphNetwork network = open_graph(file.string());
+    const GraphNetwork::Input& size = network.input();
+    const std::vector<float> picture(size_t(size.rows * size.columns * size.channels), 0.5f);
+    std::vector<double> times;
+    for (int k = 0; k < 25; k++) {
+      const double before = process_seconds();
+      network.run(picture);
+      times.push_back(process_seconds() - before);
+    }
+    std::sort(times.begin(), times.end());
+    tell("kiosk.graph_ms", 1000 * times[times.size() / 2], "ms", {{"graph", name}});
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -290,6 +312,7 @@ int main(int argc, char** argv) {
       measure_cost(options, finder, false);
       if (finder == "networks") measure_cost(options, finder, true);
     }
+    measure_graphs(fs::path(options.weights).parent_path() / "human");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
