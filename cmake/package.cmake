@@ -14,9 +14,9 @@ install(PROGRAMS deploy/kiosk.sh DESTINATION libexec/wellspring COMPONENT kiosk)
 install(DIRECTORY web DESTINATION share/wellspring)
 install(DIRECTORY content/ DESTINATION share/wellspring/content)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/weights DESTINATION share/wellspring OPTIONAL
-  PATTERN face EXCLUDE PATTERN "*.part" EXCLUDE)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/weights/face DESTINATION share/wellspring/weights
-  COMPONENT kiosk OPTIONAL)
+  PATTERN face EXCLUDE PATTERN human EXCLUDE PATTERN "*.part" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/weights/face ${PROJECT_SOURCE_DIR}/build/weights/human
+  DESTINATION share/wellspring/weights COMPONENT kiosk OPTIONAL)
 install(FILES deploy/nginx.conf deploy/haproxy.cfg docs/operation.md docs/kiosk.md docs/stories.md README.md CHANGELOG.md
   DESTINATION share/doc/wellspring)
 install(FILES LICENSE DESTINATION share/doc/wellspring RENAME copyright)

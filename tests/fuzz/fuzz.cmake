@@ -90,6 +90,7 @@ wellspring_fuzz(gesture_file gesture)
 wellspring_fuzz(kiosk_config kiosk boost_any)
 wellspring_fuzz(kiosk_recording kiosk)
 wellspring_fuzz(face_weights kiosk)
+wellspring_fuzz(graph kiosk)
 
 if(NOT WELLSPRING_FUZZ)
   set(declared "")

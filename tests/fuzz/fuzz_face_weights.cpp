@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Weights of the kiosk's networks: the list of tensors, NUL, their bytes.
 #include "fuzz/fuzz.h"
-#include "kiosk/network/network.h"
+#include "kiosk/network/weights.h"
 
 namespace wellspring::fuzz {
 

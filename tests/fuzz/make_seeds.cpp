@@ -12,6 +12,7 @@
 #include "unit/avatar/load/vrm_person.h"
 #include "unit/denoise/tza.h"
 #include "unit/folder.h"
+#include "unit/kiosk/network/graph/made_graph.h"
 #include "unit/show/exhibit/room_package.h"
 #include "unit/store/band_files/made_bands.h"
 #include "unit/store/format/pictures.h"
@@ -175,6 +176,13 @@ void write_weights(const Corpus& corpus) {
   corpus.put("denoise_weights", "two.tza", weights.bytes());
 }
 
+void write_graphs(const Corpus& corpus) {
+  const std::pair<const char*, MadeGraph> graphs[] = {{"small", small_graph()},
+                                                      {"wide", wide_graph()}};
+  for (const auto& [name, graph] : graphs)
+    corpus.put("graph", name, graph.json_text() + '\0' + graph.bytes);
+}
+
 void write_sums(const Corpus& corpus) {
   const Sums sums = {{{20000, "visits", "castle"}, 3}};
   add_to_file(corpus.folder.file("sums.sqlite"), sums, 100);
@@ -293,6 +301,7 @@ int main(int argc, char** argv) {
   write_kept(corpus);
   write_speech(corpus);
   write_weights(corpus);
+  write_graphs(corpus);
   write_sums(corpus);
   write_large_pictures(corpus);
   write_many_bands(corpus);

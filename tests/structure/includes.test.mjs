@@ -87,8 +87,9 @@ const may_enter = {
     frame: [],
     gesture: [],
     network: [],
+    'network/graph': ['network'],
     process: [],
-    face: ['frame', 'network'],
+    face: ['frame', 'network', 'network/graph'],
     '': ['face', 'frame', 'gesture', 'network', 'process'],
   },
   show: {

@@ -16,7 +16,10 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "kiosk/camera.h"
+#include "kiosk/face/face_finder.h"
+#include "kiosk/face/face_mesh.h"
 #include "kiosk/figure.h"
+#include "kiosk/network/graph/graph_network.h"
 #include "kiosk/observe.h"
 
 namespace {
@@ -269,6 +272,62 @@ void measure_cost(const Options& options, const std::string& finder, bool expres
   tell("kiosk.frame_p95_ms", 1000 * walls[walls.size() * 95 / 100], "ms", fields);
 }
 
+// Tells the time of every graph that lies in the folder, for a picture of its size.
+void measure_graphs(const fs::path& folder) {
+  std::error_code none;
+  std::map<std::string, fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ".json") files[entry.path().stem().string()] = entry.path();
+  for (const auto& [name, file] : files) {
+    GraphNetwork network = open_graph(file.string());
+    const GraphNetwork::Input& size = network.input();
+    const std::vector<float> picture(size_t(size.rows * size.columns * size.channels), 0.5f);
+    std::vector<double> times;
+    for (int k = 0; k < 25; k++) {
+      const double before = process_seconds();
+      network.run(picture);
+      times.push_back(process_seconds() - before);
+    }
+    std::sort(times.begin(), times.end());
+    tell("kiosk.graph_ms", 1000 * times[times.size() / 2], "ms", {{"graph", name}});
+  }
+}
+
+// Compares the mesh of a man who talks with his landmarks: the mean distance at corners of eyes
+// and mouth, nose and chin, over that of the eyes.
+void measure_mesh(const Options& options, const fs::path& graphs) {
+  const fs::path file = fs::path(options.data) / "5_faces" / talking;
+  if (options.data.empty() || !fs::exists(file) || !fs::exists(graphs)) return;
+  constexpr size_t same[][2] = {{33, 36}, {263, 45}, {61, 48}, {291, 54}, {1, 30}, {152, 8}};
+  CameraSettings source;
+  source.source = file.string();
+  auto camera = make_camera(source);
+  const auto finder = make_network_finder(options.weights);
+  MeshReader reader(graphs.string());
+  LivenessReader liveness(graphs.string());
+  Mean apart, alive, time;
+  GrayFrame frame;
+  for (int k = 0; k < (options.quick ? 150 : 900) && camera->next(frame) == Got::frame; k++) {
+    if (k % 15 != 0) continue;
+    const GrayView view{frame.pixels.data(), frame.width, frame.height};
+    for (const Face& face : finder->search(frame)) {
+      const FaceMarks& marks = *face.marks;
+      const Cut cut = mesh_cut_of_mesh(reader.read(view, mesh_cut_of_marks(marks)));
+      const double before = process_seconds();
+      const FaceMesh mesh = reader.read(view, cut);
+      time.add(1000 * (process_seconds() - before));
+      for (const auto& [point, mark] : same)
+        apart.add(glm::length(vec2(mesh.points[point]) - marks[mark]) /
+                  glm::length(marks[36] - marks[45]));
+      alive.add(liveness.read(view, cut));
+    }
+  }
+  const json fields{{"finder", "networks"}};
+  tell("kiosk.mesh.apart", apart.value(), "1", fields);
+  tell("kiosk.mesh.alive", alive.value(), "1", fields);
+  tell("kiosk.mesh_ms", time.value(), "ms", fields);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -290,6 +349,9 @@ int main(int argc, char** argv) {
       measure_cost(options, finder, false);
       if (finder == "networks") measure_cost(options, finder, true);
     }
+    const fs::path graphs = fs::path(options.weights).parent_path() / "human";
+    measure_graphs(graphs);
+    measure_mesh(options, graphs);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

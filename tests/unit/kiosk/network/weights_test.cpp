@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Damaged manifests and weights are refused, with the file and the tensor that is wrong.
-#include "kiosk/network/network.h"
+#include "kiosk/network/weights.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/load_error.h"
+#include "kiosk/network/network.h"
 
 namespace wellspring::test {
 namespace {
@@ -65,9 +66,9 @@ TEST_F(Weights, bytes_and_floats_are_read_in_order) {
 TEST_F(Weights, a_manifest_that_is_none_is_refused) {
   expect_refused(manifest_name, "", "cannot be read");
   write("[{", "");
-  expect_refused(manifest_name, "", "no JSON");
+  expect_refused(manifest_name, "", "line 1");
   write("{}", "");
-  expect_refused(manifest_name, "", "one group");
+  expect_refused(manifest_name, "", "groups of weights");
   write(manifest(plain, "../net.bin"), bytes_of(1));
   expect_refused(manifest_name, "/0/paths/0", "same folder");
   write(manifest(plain, "other.bin"), bytes_of(1));
@@ -77,25 +78,24 @@ TEST_F(Weights, a_manifest_that_is_none_is_refused) {
 TEST_F(Weights, a_wrong_tensor_is_named) {
   for (auto [tensor, what] :
        {std::pair<const char*, const char*>{R"({"name":"b","shape":[0],"dtype":"float32"})",
-                                            "size"},
-        {R"({"name":"b","shape":[-1],"dtype":"float32"})", "size"},
-        {R"({"name":"b","shape":[1073741824,1073741824],"dtype":"float32"})", "size"},
-        {R"({"name":"b","shape":[],"dtype":"float32"})", "shape"},
-        {R"({"name":"b","shape":[1],"dtype":"int32"})", "dtype"},
-        {R"({"name":"b","shape":[1],"dtype":4})", "dtype"},
-        {R"({"name":"b","shape":[1],"dtype":"float32","quantization":{"dtype":null}})",
-         "quantization"},
-        {R"({"name":"b","shape":[1],"dtype":"float32","quantization":{"dtype":"uint16"}})",
-         "uint8"},
+                                            "whole number from 1"},
+        {R"({"name":"b","shape":[-1],"dtype":"float32"})", "whole number from 1"},
+        {R"({"name":"b","shape":[1073741824,1073741824],"dtype":"float32"})", "whole number"},
+        {R"({"name":"b","shape":5,"dtype":"float32"})", "list of sizes"},
+        {R"({"name":"b","shape":[1],"dtype":"bool"})", "float32, int32"},
+        {R"({"name":"b","shape":[1],"dtype":4})", "text"},
+        {R"({"name":"b","shape":[1],"dtype":"int32","quantization":{"dtype":"uint8"}})", "floats"},
+        {R"({"name":"b","shape":[1],"dtype":"float32","quantization":{"dtype":null}})", "text"},
+        {R"({"name":"b","shape":[1],"dtype":"float32","quantization":{"dtype":"int4"}})", "uint8"},
         {R"({"name":"b","shape":[1],"dtype":"float32","quantization":{"dtype":"uint8","scale":1}})",
-         "min"}}) {
+         "missing"}}) {
     write(manifest(quantised + "," + tensor), std::string("\x02\xff", 2) + bytes_of(1));
     expect_refused(manifest_name, "/0/weights/1 (b)", what);
   }
   write(manifest(quantised + "," + quantised), "1234");
   expect_refused(manifest_name, "/0/weights/1 (a)", "second");
   write(manifest(R"({"shape":[1]})"), "1");
-  expect_refused(manifest_name, "/0/weights/0", "name");
+  expect_refused(manifest_name, "/0/weights/0/name", "missing");
 }
 
 TEST_F(Weights, bytes_too_few_too_many_or_not_finite_are_refused) {
