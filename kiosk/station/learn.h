@@ -16,15 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "kiosk/station/tree.h"
+#include "kiosk/station/learn_view.h"
 
 namespace wellspring::kiosk {
-
-struct Photo {
-  std::string file, side;
-  int width = 0, height = 0;
-  std::vector<uint8_t> bgr;  // the object alone
-};
 
 struct LearnObject {
   std::string id;
@@ -45,11 +39,5 @@ std::vector<LearnObject> load_objects(const std::string& folder);
 // Makes the tree; about 0.2 s a photograph. Throws LoadError, which names the folder of an object
 // that cannot be told from all others.
 Learnt learn_tree(std::vector<LearnObject> objects, const std::string& folder);
-
-// Makes a view of a photograph, with the features that are found again under other views, light
-// and noise.
-View learn_view(const Photo& photo, vec2 size);
-// Scales colour to the size of that view's picture.
-std::vector<uint8_t> shrink_photo(const Photo& photo, int width, int height);
 
 }  // namespace wellspring::kiosk

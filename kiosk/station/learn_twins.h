@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "kiosk/station/learn.h"
+#include "kiosk/station/learn_view.h"
 #include "kiosk/station/sight.h"
 #include "kiosk/station/twins.h"
 

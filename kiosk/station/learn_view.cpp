@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kiosk/station/learn_view.h"
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "kiosk/station/learn.h"
 #include "kiosk/station/sight.h"
 
 namespace wellspring::kiosk {

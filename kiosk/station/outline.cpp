@@ -95,6 +95,19 @@ std::vector<Quad> find_quads(const GrayFrame& frame) {
   cv::Mat smooth, edges;
   cv::GaussianBlur(gray, smooth, {5, 5}, 1.2);
   cv::Canny(smooth, edges, 15, 45);
+  // Edges between colours of one brightness are those of the smaller picture in colour.
+  if (!frame.bgr.empty()) {
+    const cv::Mat color(frame.color_height, frame.color_width, CV_8UC3,
+                        const_cast<uint8_t*>(frame.bgr.data()));
+    cv::Mat large, channel, more;
+    cv::resize(color, large, gray.size(), 0, 0, cv::INTER_CUBIC);
+    for (int i = 0; i < 3; i++) {
+      cv::extractChannel(large, channel, i);
+      cv::GaussianBlur(channel, channel, {5, 5}, 1.2);
+      cv::Canny(channel, more, 25, 75);
+      edges |= more;
+    }
+  }
   cv::dilate(edges, edges, cv::Mat());
   std::vector<std::vector<cv::Point>> contours;
   cv::findContours(edges, contours, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);

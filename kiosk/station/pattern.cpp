@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace wellspring::kiosk {
 namespace {
 
 constexpr int pool_size = 2000;  // features of a group
+constexpr size_t most_of_pool = 8000;
 constexpr int least_of_view = 24, most_of_view = 120;
 constexpr int group_bits = 60;
 constexpr float group_clearly = 0.85f;
@@ -29,6 +31,12 @@ PatternSolver::PatternSolver(const RecognitionTree& tree, Sight& sight)
       const auto& below = views_[size_t(child)];
       out.insert(out.end(), below.begin(), below.end());
     }
+    // A node may be reached in several ways.
+    std::ranges::sort(out, {}, [](const OwnedView& one) { return std::pair(one.node, one.index); });
+    const auto same = std::ranges::unique(out, [](const OwnedView& a, const OwnedView& b) {
+      return a.node == b.node && a.index == b.index;
+    });
+    out.erase(same.begin(), same.end());
   };
   gather(gather, tree.root);
   for (size_t n = 0; n < tree.nodes.size(); n++) {
@@ -40,6 +48,7 @@ PatternSolver::PatternSolver(const RecognitionTree& tree, Sight& sight)
     for (size_t v = 0; v < views_[n].size(); v++) {
       const auto [owner, index] = views_[n][v];
       const auto& features = tree.data[size_t(owner)].views[size_t(index)].features;
+      if (pool.features.size() >= most_of_pool) break;
       const size_t count = std::min(size_t(each), features.size());
       pool.features.insert(pool.features.end(), features.begin(), features.begin() + long(count));
       pool.owners.insert(pool.owners.end(), count, int(v));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace wellspring::kiosk {
 
@@ -18,50 +19,47 @@ Traversal::Traversal(const RecognitionTree& tree, Solvers solvers)
 }
 
 void Traversal::find_dependencies() {
-  // Visits nodes on every way from the root; what is above a node is on the stack.
-  std::vector<std::set<std::string>> needed(tree_.nodes.size());
-  std::vector<char> known(tree_.nodes.size(), 0);
-  auto needs_below = [&](auto& self, int at) -> const std::set<std::string>& {
-    std::set<std::string>& out = needed[size_t(at)];
-    if (known[size_t(at)]) return out;
-    known[size_t(at)] = 1;
-    const RecognitionNode& node = tree_.nodes[size_t(at)];
+  const size_t count = tree_.nodes.size();
+  // What solvers at or below each node need. Nodes end up in `order` after all below them.
+  std::vector<std::set<std::string>> needed(count);
+  std::vector<char> known(count, 0);
+  std::vector<size_t> order;
+  auto visit = [&](auto& self, size_t at) -> void {
+    if (std::exchange(known[at], 1)) return;
+    const RecognitionNode& node = tree_.nodes[at];
     for (const SolverChoice& choice : node.solvers)
-      for (const std::string& name : solvers_.at(choice.solver)->needs()) out.insert(name);
+      for (const std::string& name : solvers_.at(choice.solver)->needs()) needed[at].insert(name);
     for (const Conditions& one : node.cases)
-      for (const Condition& condition : one) out.insert(condition.value);
+      for (const Condition& condition : one) needed[at].insert(condition.value);
     for (const int child : node.children) {
-      const std::set<std::string> below = self(self, child);
-      out.insert(below.begin(), below.end());
+      self(self, size_t(child));
+      needed[at].insert(needed[size_t(child)].begin(), needed[size_t(child)].end());
     }
-    return out;
+    order.push_back(at);
   };
-  std::vector<std::set<int>> above(tree_.nodes.size());
-  std::vector<int> waiting{tree_.root};
-  // A node is looked at again when more has come to lie above it; there are no circles.
-  while (!waiting.empty()) {
-    const int at = waiting.back();
-    waiting.pop_back();
-    for (const int child : tree_.nodes[size_t(at)].children) {
-      std::set<int>& of_child = above[size_t(child)];
-      const size_t before = of_child.size();
-      of_child.insert(above[size_t(at)].begin(), above[size_t(at)].end());
-      of_child.insert(at);
-      if (of_child.size() != before) waiting.push_back(child);
+  visit(visit, size_t(tree_.root));
+  std::vector<std::vector<char>> above(count);
+  for (const size_t at : order) above[at].assign(count, 0);
+  for (size_t i = order.size(); i-- > 0;) {
+    const std::vector<char> own = above[order[i]];
+    for (const int child : tree_.nodes[order[i]].children) {
+      std::vector<char>& to = above[size_t(child)];
+      for (size_t n = 0; n < count; n++) to[n] |= own[n];
+      to[order[i]] = 1;
     }
   }
-  for (size_t n = 0; n < tree_.nodes.size(); n++) {
-    refresh_[n] = tree_.nodes[n].refresh;
-    if (!refresh_[n].empty()) continue;
-    const std::set<std::string>& names = needs_below(needs_below, int(n));
-    for (const int one : above[n])
-      for (const SolverChoice& choice : tree_.nodes[size_t(one)].solvers) {
-        const auto gives = solvers_.at(choice.solver)->gives();
-        const bool gives_one = std::ranges::any_of(
-            gives, [&](const std::string& name) { return names.contains(name); });
-        if (gives_one && (refresh_[n].empty() || refresh_[n].back() != one))
-          refresh_[n].push_back(one);
-      }
+  for (const size_t at : order) {
+    refresh_[at] = tree_.nodes[at].refresh;
+    if (!refresh_[at].empty() || needed[at].empty()) continue;
+    std::set<std::string> givers;
+    for (const auto& [name, solver] : solvers_)
+      for (const std::string& value : solver->gives())
+        if (needed[at].contains(value)) givers.insert(name);
+    for (size_t n = 0; n < count; n++)
+      if (above[at][n] && std::ranges::any_of(tree_.nodes[n].solvers, [&](const auto& choice) {
+            return givers.contains(choice.solver);
+          }))
+        refresh_[at].push_back(int(n));
   }
 }
 

@@ -64,7 +64,6 @@ class Traversal {
   std::vector<int> path() const;
   // Forgets the last result.
   void restart() { path_.clear(); }
-  const std::vector<int>& refreshed_at(int node) const { return refresh_[size_t(node)]; }
 
  private:
   struct Step {

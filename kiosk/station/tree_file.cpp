@@ -224,7 +224,10 @@ void check_node(const RecognitionTree& tree, size_t at, FieldReader& root) {
     root.fail(place + "/hint", "names no hint: '" + node.hint + "'");
   const NodeData& data = tree.data[at];
   // Marks lie in views of the class, or in the node's own.
-  for (const int child : node.children)
+  for (const int child : node.children) {
+    if (tree.data[size_t(child)].marks.size() != tree.data[size_t(node.children[0])].marks.size())
+      root.fail("metadata/" + tree.nodes[size_t(child)].name + "/marks",
+                "are not as many as those of its siblings");
     for (const Mark& mark : tree.data[size_t(child)].marks) {
       const std::string where = "metadata/" + tree.nodes[size_t(child)].name + "/marks";
       if (size_t(mark.view) >= data.views.size())
@@ -232,9 +235,8 @@ void check_node(const RecognitionTree& tree, size_t at, FieldReader& root) {
       else if (const View& view = data.views[size_t(mark.view)];
                mark.x + mark.width > view.width || mark.y + mark.height > view.height)
         root.fail(where, "lies outside of the view");
-      if (tree.data[size_t(child)].marks.size() != tree.data[size_t(node.children[0])].marks.size())
-        root.fail(where, "are not as many as those of its siblings");
     }
+  }
 }
 
 ordered_json to_json(const Conditions& when) {
@@ -324,6 +326,11 @@ RecognitionTree parse_tree(const std::string& file, const std::string& text) {
     tree.data[size_t(found->second)] = read_data(part);
   });
   fields.finish();
+  size_t links = 0, views = 0;
+  for (const RecognitionNode& node : tree.nodes) links += node.children.size();
+  for (const NodeData& data : tree.data) views += data.views.size();
+  if (links > most_links) fields.fail("nodes", "have too many children");
+  if (views > most_all_views) fields.fail("metadata", "has too many views");
   if (const int wrong = find_circle(tree); wrong >= 0)
     fields.fail("nodes/" + tree.nodes[size_t(wrong)].name, "is below itself, or too deep");
   for (size_t i = 0; i < tree.nodes.size(); i++) check_node(tree, i, fields);

@@ -184,8 +184,7 @@ std::variant<Observation, WireError> read_observation(std::string_view text, siz
               [&](FieldReader& step) { observation.calibration = read_calibration(step); });
   fields.text("kiosk", observation.kiosk);
   fields.choice("networks", {"all", "no_expression", "none"}, observation.networks, "");
-  fields.part("holding", "",
-              [&](FieldReader& part) { observation.holding = read_holding(part); });
+  fields.part("holding", "", [&](FieldReader& part) { observation.holding = read_holding(part); });
   if (faults.first) return bad_field(type, *faults.first);
 
   const auto distance = [](const Person& person) { return glm::length(person.position); };

@@ -88,6 +88,7 @@ wellspring_fuzz(kept_visit fuzz_stage)
 wellspring_fuzz(bench_report show)
 wellspring_fuzz(gesture_file gesture)
 wellspring_fuzz(kiosk_config kiosk boost_any)
+wellspring_fuzz(station_tree kiosk)
 wellspring_fuzz(kiosk_recording kiosk)
 wellspring_fuzz(face_weights kiosk)
 

@@ -88,7 +88,8 @@ const may_enter = {
     network: [],
     process: [],
     face: ['frame', 'network'],
-    '': ['face', 'frame', 'gesture', 'network', 'process'],
+    station: ['frame'],
+    '': ['face', 'frame', 'gesture', 'network', 'process', 'station'],
   },
   show: {
     lighting: [],
