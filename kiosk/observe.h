@@ -54,7 +54,7 @@ struct ObserverSettings {
   PresenceSettings presence;
   bool expression = false;  // estimate Person::expression; needs the networks' weights
   ExpressionSettings expressions;
-  std::optional<RecognitionTree> station;   // what may be held; empty: nothing is looked for
+  std::optional<RecognitionTree> station;   // objects that may be held; empty: none
   const GestureModels* gestures = nullptr;  // borrowed; null: hands are not followed
 };
 

@@ -26,7 +26,7 @@ class CodeSolver : public Solver {
 
   const RecognitionTree& tree_;
   Sight& sight_;
-  uint64_t number_ = 0;  // of the sight in which corners_ were sought
+  uint64_t number_ = 0;  // Sight::number in which corners_ were sought
   std::vector<vec2> corners_;
 };
 

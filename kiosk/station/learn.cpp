@@ -11,7 +11,7 @@
 namespace wellspring::kiosk {
 namespace {
 
-constexpr size_t least_features = 40;  // of a side that is told by its texture
+constexpr size_t least_features = 40;  // a side with fewer has no texture
 constexpr float told = 0.3f;           // how far marks of two objects have to be apart
 
 const std::map<std::string, Texts>& usual_hints() {
@@ -179,7 +179,7 @@ class Learner {
     return false;
   }
 
-  // Finds the sides that all members have. What is found is marked in `taken`, by member and view.
+  // Finds the sides that all members have. It marks them in `taken`, by member and view.
   std::vector<SharedSide> find_sides(const std::vector<size_t>& members,
                                      std::vector<std::vector<char>>& taken) const {
     std::vector<SharedSide> sides;
@@ -366,7 +366,7 @@ class Learner {
 
   std::vector<LearnObject> objects_;
   std::string folder_;
-  std::vector<std::vector<View>> views_;  // of each object's photographs
+  std::vector<std::vector<View>> views_;  // by object and photograph
   std::vector<size_t> textured_, plain_;  // objects
   std::vector<int> items_;                // nodes that pattern solvers divide
   Learnt out_;

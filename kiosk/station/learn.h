@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learns a recognition tree from photographs: one folder for each object with PNG or JPEG files of
 // its sides, each seen squarely and on its own; the part of a name before '-', '_', ' ' or a digit
-// says the side. What surrounds the object is left out where it is transparent or all of one
-// colour. An optional object.json has
+// says the side. A background that is transparent or all of one
+// colour is left out. An optional object.json has
 //   title, text  {LANGUAGE: text}
 //   class        {LANGUAGE: text}: what objects that are nearly equal to it are called together
 //   size         {SIDE: [width, height]} in metres; or [width, height] for all sides

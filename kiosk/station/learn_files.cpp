@@ -86,7 +86,7 @@ Photo load_photo(const fs::path& file) {
   if (picture.channels() == 1) cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
   cv::Mat part = picture(find_object(picture)), bgr;
   if (part.channels() == 4) {
-    // What shows through is grey, so that it has no edges of its own but the object's.
+    // Grey stands for transparent parts, so that it has no edges of its own but the object's.
     std::vector<cv::Mat> channels;
     cv::split(part, channels);
     bgr = cv::Mat(part.size(), CV_8UC3, cv::Scalar::all(128));

@@ -43,7 +43,7 @@ bool overlaps(const Place& a, const Place& b) {
 struct Chosen {
   std::vector<Place> places;
   std::vector<float> apart;
-  float least = 1;  // of the pair that is told worst
+  float least = 1;  // lowest of all pairs
 };
 
 Chosen choose(const std::vector<SharedSide>& sides, size_t objects, MarkKind kind) {

@@ -18,7 +18,7 @@ std::optional<mat3> align_views(const View& a, const View& b);
 // it were that view.
 struct SharedSide {
   View view;
-  std::vector<std::vector<uint8_t>> pictures;  // of each object: blue, green, red
+  std::vector<std::vector<uint8_t>> pictures;  // by object: blue, green, red
 };
 // Takes a photograph of a view that `pose` takes the other view's places to.
 std::vector<uint8_t> align_photo(const Photo& photo, const View& own, const mat3& pose,
@@ -26,7 +26,7 @@ std::vector<uint8_t> align_photo(const Photo& photo, const View& own, const mat3
 
 struct ClassMarks {
   MarkKind kind = MarkKind::edges;
-  std::vector<std::vector<Mark>> marks;  // of each object
+  std::vector<std::vector<Mark>> marks;  // by object
   std::vector<float> apart;              // [a * objects + b]: how well the two can be told apart
 };
 // Chooses places where any two of the objects differ most.

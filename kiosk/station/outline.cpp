@@ -12,7 +12,7 @@
 namespace wellspring::kiosk {
 namespace {
 
-constexpr float most_error = 0.012f;  // of the corners, over the outline's mean side
+constexpr float most_error = 0.012f;  // mean error of corners over the mean side
 constexpr size_t most_quads = 24;
 
 using Quad = std::array<vec2, 4>;

@@ -36,7 +36,7 @@ class OutlineSolver : public Solver {
 
   const RecognitionTree& tree_;
   Sight& sight_;
-  uint64_t number_ = 0;  // of the sight whose quads these are
+  uint64_t number_ = 0;  // Sight::number in which quads_ were found
   std::vector<std::array<vec2, 4>> quads_;
 };
 

@@ -20,7 +20,7 @@ Traversal::Traversal(const RecognitionTree& tree, Solvers solvers)
 
 void Traversal::find_dependencies() {
   const size_t count = tree_.nodes.size();
-  // What solvers at or below each node need. Nodes end up in `order` after all below them.
+  // Solvers at or below a node need these. Nodes end up in `order` after all below them.
   std::vector<std::set<std::string>> needed(count);
   std::vector<char> known(count, 0);
   std::vector<size_t> order;
@@ -79,8 +79,8 @@ bool Traversal::enter(int child, int from, Solver* by, ContextStore& context, Re
   return false;
 }
 
-// Goes down from the end of the path. False: nothing is there, and the path is as it was. Where
-// `may_stay`, the node itself has just been matched, so that its class can be the result.
+// Goes down from the end of the path. False: nothing is there, and the path is as it was. With
+// `may_stay` the node itself has just been matched, so that its class can be the result.
 bool Traversal::descend(ContextStore& context, Recognition& out, bool may_stay) {
   const int at = path_.back().node;
   const RecognitionNode& node = tree_.nodes[size_t(at)];

@@ -41,7 +41,7 @@ struct SolverChoice {
 struct RecognitionNode {
   std::string name;
   NodeKind kind = NodeKind::model;
-  std::vector<SolverChoice> solvers;  // of a search
+  std::vector<SolverChoice> solvers;  // a search has some
   std::vector<int> children;
   std::vector<Conditions> cases;  // for each child of a context switch
   int backtrack = -1;             // node where the way back goes on; -1: the one above

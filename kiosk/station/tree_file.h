@@ -17,7 +17,7 @@
 namespace wellspring::kiosk {
 
 inline constexpr size_t most_nodes = 4000, most_depth = 64, most_children = 1000;
-inline constexpr size_t most_links = 20'000, most_all_views = 4000;  // of a whole tree
+inline constexpr size_t most_links = 20'000, most_all_views = 4000;  // in all
 inline constexpr int most_view_side = 1024;                          // pixels
 inline constexpr size_t most_features = 2000, most_views = 16, most_marks = 64;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tells nearly equal objects apart by the marks in which they differ: by their structure (the
-// paper's diff-edge solver) or by their colours (its colour-spot solver). Both need a pose. What a
-// mark showed is remembered for some seconds, so that an object may be turned over meanwhile; who
-// cannot tell says what would help, and never asks for a side that was just seen.
+// paper's diff-edge solver) or by their colours (its colour-spot solver). Both need a pose. Marks
+// are remembered for some seconds, so that an object may be turned over meanwhile; who cannot tell
+// says what would help, and never asks for a side that was just seen.
 #pragma once
 #include <map>
 
@@ -28,7 +28,7 @@ class TwinSolver : public Solver {
 
  private:
   struct Seen {
-    std::vector<float> apart;  // of each child, means over frames; empty: never seen
+    std::vector<float> apart;  // by child, means over frames; empty: never seen
     double time = 0;
   };
   struct Memory {

@@ -16,7 +16,7 @@
 namespace wellspring::test {
 
 inline constexpr int made_width = 640, made_height = 480;
-inline constexpr float made_focal = 554.26f;  // of 60 degrees across
+inline constexpr float made_focal = 554.26f;  // pixels; 60 degrees across
 
 struct MadeRandom {
   std::mt19937 engine;
