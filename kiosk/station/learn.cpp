@@ -201,6 +201,13 @@ class Learner {
         }
       if (side.pictures.size() < members.size()) continue;
       for (const auto& [m, k] : used) taken[m][k] = 1;
+      // The light is judged by what all of them look like together.
+      vec3 mean(0);
+      for (const auto& picture : side.pictures)
+        for (size_t i = 0; i + 2 < picture.size(); i += 3)
+          mean += vec3(picture[i], picture[i + 1], picture[i + 2]) /
+                  float(picture.size() / 3 * side.pictures.size());
+      side.view.mean = mean;
       sides.push_back(std::move(side));
     }
     return sides;

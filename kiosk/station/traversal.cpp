@@ -7,6 +7,12 @@
 #include <utility>
 
 namespace wellspring::kiosk {
+namespace {
+
+// A child is tried if its score is at least this share of the best one's.
+constexpr double worth_trying = 0.4;
+
+}  // namespace
 
 Traversal::Traversal(const RecognitionTree& tree, Solvers solvers)
     : tree_(tree), solvers_(std::move(solvers)), refresh_(tree.nodes.size()) {
@@ -112,14 +118,16 @@ bool Traversal::descend(ContextStore& context, Recognition& out, bool may_stay) 
       hint = answer.hint, hinted = true;
   }
   std::ranges::sort(likely);
-  for (const auto& [score, child] : likely)
+  for (const auto& [minus_score, child] : likely) {
+    if (minus_score > std::min(worth_trying * likely[0].first, 0.0) && likely[0].first < 0) break;
     if (enter(child, at, &solver, context, out)) return true;
+  }
   if (may_stay && !node.id.empty() && path_.size() > 1) {
     out.node = at;
     out.hint = hint;
     return true;
   }
-  failed_[size_t(at)] = 1;
+  if (can) failed_[size_t(at)] = 1;
   return false;
 }
 

@@ -55,7 +55,7 @@ GrayFrame show(const cv::Mat& face, const Held& held, unsigned seed, double time
 
 // Counts recordings of people who hold nothing that was learnt.
 void watch_people(Station& station, const std::string& data, int& frames, int& named,
-                  double most_seconds) {
+                  double most_seconds, std::vector<double>& spent) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(data) / "5_faces"))
     if (const auto end = entry.path().extension(); end == ".mp4" || end == ".mkv" || end == ".gif")
@@ -74,7 +74,9 @@ void watch_people(Station& station, const std::string& data, int& frames, int& n
     for (int i = 0; camera->next(frame) == Got::frame && frame.time < most_seconds; i++) {
       if (i % 6 != 0) continue;  // as often as the kiosk looks
       frames++;
+      const double before = process_ms();
       named += station.look(frame).node >= 0;
+      spent.push_back(process_ms() - before);
     }
   }
 }
@@ -121,7 +123,9 @@ void measure_objects(int count, bool quick, const std::string& data) {
     empty.push_back(process_ms() - before);
     frames++;
   }
-  if (!data.empty()) watch_people(station, data, frames, false_names, quick ? 3 : 60);
+  std::vector<double> people;
+  if (!data.empty()) watch_people(station, data, frames, false_names, quick ? 3 : 60, people);
+  if (!people.empty()) tell("kiosk.station.people_ms", part_of(people, 0.5), "ms", fields);
   tell("kiosk.station.cold_ms", part_of(cold, 0.5), "ms", fields);
   tell("kiosk.station.cold_p95_ms", part_of(cold, 0.95), "ms", fields);
   tell("kiosk.station.coherent_ms", part_of(coherent, 0.5), "ms", fields);

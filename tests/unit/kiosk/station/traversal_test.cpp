@@ -254,6 +254,18 @@ TEST(Traversal, class_and_hint_come_first_then_the_object) {
   EXPECT_EQ(boxes.stripe.matches, 6);
 }
 
+TEST(Traversal, what_the_verifier_lost_is_found_again_in_the_same_frame) {
+  Boxes boxes;
+  Traversal walk(*boxes.tree, {{"edges", &boxes.edges}, {"stripe", &boxes.stripe}});
+  ContextStore context;
+  boxes.face = "back";
+  walk.step(context);
+  boxes.edges.still = [](int) { return false; };
+  const Recognition found = walk.step(context);
+  EXPECT_EQ(found.node, boxes.striped);
+  EXPECT_FALSE(found.kept);
+}
+
 TEST(Traversal, class_is_no_result_where_it_was_not_matched_again) {
   Boxes boxes;
   Traversal walk(*boxes.tree, {{"edges", &boxes.edges}, {"stripe", &boxes.stripe}});
