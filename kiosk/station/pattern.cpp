@@ -13,7 +13,7 @@ constexpr size_t most_of_pool = 8000;
 constexpr int least_of_view = 24, most_of_view = 120;
 constexpr int group_bits = 60;
 constexpr float group_clearly = 0.85f;
-constexpr int likely_votes = 8, sure_votes = 25;
+constexpr int likely_votes = 8, sure_votes = 45;
 constexpr int sure_inliers = 14;
 constexpr float sure_agreement = 0.5f;
 

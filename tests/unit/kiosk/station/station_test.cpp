@@ -15,7 +15,7 @@ namespace {
 using Sides = std::vector<std::pair<cv::Mat, std::string>>;
 
 RecognitionTree learn(std::vector<LearnObject> objects) {
-  // What is learnt goes through its file, as ever.
+  // A tree goes through its file, as ever.
   return parse_tree("tree.json", write_tree(learn_tree(std::move(objects), "made").tree));
 }
 
