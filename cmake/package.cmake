@@ -8,7 +8,7 @@ set(server_programs wellspring_server wellspring_voice wellspring_render wellspr
   wellspring_clip wellspring_speak wellspring_check wellspring_new wellspring_import wellspring_bake
   wellspring_nebula wellspring_compare wellspring_lamps)
 install(TARGETS ${server_programs} DESTINATION libexec/wellspring COMPONENT server)
-install(TARGETS wellspring_kiosk DESTINATION libexec/wellspring COMPONENT kiosk)
+install(TARGETS wellspring_kiosk wellspring_station DESTINATION libexec/wellspring COMPONENT kiosk)
 install(PROGRAMS deploy/wellspring.sh DESTINATION bin RENAME wellspring)
 install(PROGRAMS deploy/kiosk.sh DESTINATION libexec/wellspring COMPONENT kiosk)
 install(DIRECTORY web DESTINATION share/wellspring)

@@ -11,14 +11,15 @@ command="${1:-}"
 [ $# -eq 0 ] || shift
 case "$command" in
   run) command=server ;;
-  kiosk | render | avatar | speak | clip | bake | new | import | nebula | compare | lamps | check) ;;
+  kiosk | station | render | avatar | speak | clip | bake | new | import | nebula | compare | lamps | check) ;;
   *)
-    echo "usage: wellspring run | kiosk | render | avatar | speak | clip | new | import | nebula | compare | lamps | check | bake [options]
+    echo "usage: wellspring run | kiosk | station | render | avatar | speak | clip | new | import | nebula | compare | lamps | check | bake [options]
 COMMAND --help tells the options. The service is wellspring-server; its settings are in
 /etc/wellspring/server.conf." >&2
     exit 2 ;;
 esac
 [ -x "$programs/wellspring_$command" ] || {
+  [ "$command" != station ] || command=kiosk
   echo "wellspring: '$command' is in a package that is not installed: wellspring-$command" >&2
   exit 1
 }

@@ -63,6 +63,8 @@ void load_config(const std::string& file, KioskConfig& config) {
   Faults faults(file, true, text);
   FieldReader fields(root, faults);
   fields.text("name", config.name);
+  fields.text("station", config.station, "file of a recognition tree", Need::optional,
+              longest_path);
   fields.text("server", config.server, "its address", Need::optional, longest_path);
   fields.text("token_file", config.token_file, "", Need::optional, longest_path);
   fields.text("ca_file", config.ca_file, "", Need::optional, longest_path);
@@ -224,6 +226,8 @@ void add_eye(CLI::App& app, KioskOptions& options, Written& written) {
                  "on: estimate what faces express (visitors must be told); off")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
+  app.add_option("--station", options.station,
+                 "file that `wellspring station` wrote: what visitors hold to the camera is told");
   app.add_flag("!--no-hands", options.hands, "do not look for hands and their gestures");
   app.add_flag("!--no-sandbox", options.sandbox,
                "let the process that sees pictures write files and use the network");
@@ -243,6 +247,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   if (!file.empty() && (!calibrates || std::ifstream(file))) load_config(file, config);
   options.observer.presence = config.presence;
   options.hands = config.hands;
+  options.station = config.station;
   options.name = config.name;
   if (!config.server.empty()) options.server = config.server;
   options.ca_file = config.ca_file;

@@ -7,6 +7,7 @@
 //   presence    wake_after, confirm_after, hold_person, hold_motion (seconds; kiosk/observe.h)
 //   expression  true or false
 //   hands       true or false
+//   station     file of a recognition tree: what visitors hold is told (kiosk/station)
 //   name        the kiosk's, as its page says it (/kiosk?kiosk=NAME)
 //   server      address for observations: ws://HOST[:PORT][/PATH], or wss:// for TLS
 //   ca_file     PEM file of who must have signed the server's certificate; else the system's
@@ -25,6 +26,7 @@ struct KioskConfig {
   std::vector<CameraSettings> cameras;  // empty: the file names none
   PresenceSettings presence;
   bool expression = false, hands = true;
+  std::string station;     // file; empty: none
   std::string name;        // the kiosk's; empty: the only one of the house
   std::string server;      // address; empty: the file names none
   std::string token_file;  // file; empty: none
@@ -60,6 +62,7 @@ struct KioskOptions {
   std::string name;            // the kiosk's; empty: the house's only one
   std::string recordings;      // folder to learn gestures from; empty: watch
   std::string gestures;        // file of learnt gestures; empty: the built-in ones
+  std::string station;         // file of a recognition tree; empty: nobody holds anything
   bool hands = true;           // hands are followed
   bool sandbox = true;         // kiosk/process/eye_process.h
   std::string record, replay;  // files of observations; empty: none

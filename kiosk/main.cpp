@@ -28,6 +28,7 @@
 #include "kiosk/process/eye_process.h"
 #include "kiosk/process/link.h"
 #include "kiosk/process/recording.h"
+#include "kiosk/station/tree_file.h"
 #include "wire/json.h"
 
 namespace {
@@ -159,6 +160,7 @@ void look(KioskOptions options) {
                                         : load_gesture_models(options.gestures);
     options.observer.gestures = &gestures;
   }
+  if (!options.station.empty()) options.observer.station = load_tree(options.station);
   options.observer.mount = settings.mount;
   Observer observer(options.observer);
   auto camera = make_camera(settings);

@@ -11,6 +11,7 @@
 #include "kiosk/face/head_pose.h"
 #include "kiosk/gesture/hand.h"
 #include "kiosk/gesture/spot.h"
+#include "kiosk/station/station.h"
 
 namespace wellspring::kiosk {
 
@@ -89,6 +90,7 @@ struct Observer::Impl {
   People people;
   PresenceState presence;
   PersonGestures gestures;
+  std::optional<Station> station;
   EyeNeeds needs;
   struct Head {
     OneEuro bearing, distance, rotation;
@@ -107,6 +109,8 @@ struct Observer::Impl {
         motion(s.motion),
         people(*finder, s.people),
         gestures(s.gestures, s.mount.mirrored) {
+    if (s.station) station.emplace(*s.station, StationSettings{.mount = s.mount});
+    settings.station.reset();  // the station has its own
     if (!s.expression) return;
     const std::string folder = weights_folder(s.face);
     try {
@@ -221,7 +225,12 @@ Observation Observer::step(const GrayFrame& frame) {
     if (gone) m.gestures.forget(head.first);
     return gone;
   });
-  return m.finish(frame.time, motion.moving, face);
+  Observation seen = m.finish(frame.time, motion.moving, face);
+  if (!m.station) return seen;
+  // Who holds something to the camera may hide their face with it.
+  if (seen.state != Presence::absent) seen.holding = m.station->step(frame);
+  else m.station->forget();
+  return seen;
 }
 
 void Observer::need(const EyeNeeds& needs) {

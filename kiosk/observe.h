@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns one frame into one observation: motion, faces, heads, hands, presence, in that order. It
-// returns numbers only.
+// Turns one frame into one observation: motion, faces, heads, hands, presence, what is held, in
+// that order. It returns numbers and names only.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "kiosk/face/expression.h"
@@ -10,6 +11,7 @@
 #include "kiosk/frame/head.h"
 #include "kiosk/gesture/gesture_model.h"
 #include "kiosk/people.h"
+#include "kiosk/station/tree.h"
 #include "wire/messages.h"
 
 namespace wellspring::kiosk {
@@ -52,6 +54,7 @@ struct ObserverSettings {
   PresenceSettings presence;
   bool expression = false;  // estimate Person::expression; needs the networks' weights
   ExpressionSettings expressions;
+  std::optional<RecognitionTree> station;   // objects that may be held; empty: none
   const GestureModels* gestures = nullptr;  // borrowed; null: hands are not followed
 };
 

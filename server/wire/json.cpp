@@ -30,6 +30,17 @@ static ordered_json to_json(const Expression& e) {
           {"disgust", rounded(e.disgust)}, {"surprise", rounded(e.surprise)}};
 }
 
+static ordered_json to_json(const Holding& holding) {
+  ordered_json out = ordered_json::object();
+  if (!holding.id.empty()) out["id"] = holding.id;
+  if (!holding.of_class.empty()) out["class"] = holding.of_class;
+  if (!holding.title.empty()) out["title"] = holding.title;
+  if (!holding.hint.empty()) out["hint"] = holding.hint;
+  if (holding.position) out["position"] = rounded(*holding.position);
+  if (holding.rotation) out["rotation"] = rounded(*holding.rotation);
+  return out;
+}
+
 std::string write_observation(const Observation& observation) {
   ordered_json people = ordered_json::array();
   for (const Person& person : observation.people) {
@@ -56,6 +67,7 @@ std::string write_observation(const Observation& observation) {
   if (!observation.kiosk.empty()) message["kiosk"] = observation.kiosk;
   if (observation.networks != EyeNetworks::all)
     message["networks"] = eye_networks[size_t(observation.networks)];
+  if (observation.holding) message["holding"] = to_json(*observation.holding);
   return to_text(message);
 }
 

@@ -26,5 +26,7 @@ inline constexpr int min_jpeg_quality = 1,
 inline constexpr int min_bandwidth = 0, max_bandwidth = 10'000'000;  // settings.bandwidth, kbit/s
 inline constexpr int max_wall_side = 8;   // screens of a wall beside, and above, one another
 inline constexpr size_t max_people = 32;  // most people in one observation
+inline constexpr size_t max_languages = 16,
+                        max_language = 16;  // texts by language; bytes of a name
 
 }  // namespace wellspring::wire

@@ -3,6 +3,7 @@
 // back. Plain values; json.h turns text into them and them into text. Golden files: tests/protocol.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -69,6 +70,19 @@ struct CalibrationStep {
 };
 inline constexpr const char* calibration_steps[] = {"near", "far", "done", "failed"};
 
+// Describes what a visitor holds to the camera (kiosk/station). Texts are by language: the server
+// need not know the objects.
+struct Holding {
+  std::string id;        // object; empty: only its class is known
+  std::string of_class;  // "class" on the wire; empty: the object is of none
+  std::map<std::string, std::string> title;
+  std::map<std::string, std::string> hint;  // asks the visitor for something; empty: for nothing
+  // Says where its middle is, and how it is turned, as a person's are; absent if its size is not
+  // known.
+  std::optional<vec3> position, rotation;
+  bool operator==(const Holding&) const = default;
+};
+
 struct Observation {
   double time = 0;  // seconds, the kiosk's clock (a video file's own time)
   Presence state = Presence::absent;
@@ -78,6 +92,7 @@ struct Observation {
   std::optional<CalibrationStep> calibration;  // during a calibration nobody is a guest
   std::string kiosk{};                         // kiosk's name; empty: the only one of the house
   EyeNetworks networks = EyeNetworks::all;
+  std::optional<Holding> holding{};  // absent: nothing that is known
   bool operator==(const Observation&) const = default;
 };
 

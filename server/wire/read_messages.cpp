@@ -124,6 +124,32 @@ Person read_person(FieldReader& fields) {
   return person;
 }
 
+std::map<std::string, std::string> read_by_language(FieldReader& fields, const char* name) {
+  std::map<std::string, std::string> out;
+  const auto texts = fields.take(name);
+  if (!texts || !texts->object()) return out;
+  const auto members = FieldReader(*texts).members();
+  if (members.size() > max_languages) texts->fail("has too many languages");
+  else
+    for (const auto& [language, text] : members)
+      if (language.empty() || language.size() > max_language) text.fail("is of no language");
+      else text.text(out[language], max_text_bytes, Need::required);
+  return out;
+}
+
+Holding read_holding(FieldReader& fields) {
+  Holding holding;
+  fields.text("id", holding.id);
+  fields.text("class", holding.of_class);
+  holding.title = read_by_language(fields, "title");
+  holding.hint = read_by_language(fields, "hint");
+  vec3 place{0}, rotation{0};
+  if (fields.vector("position", max_kiosk_distance, place)) holding.position = place;
+  if (fields.vector("rotation", max_angle, rotation)) holding.rotation = rotation;
+  if (holding.id.empty() && holding.of_class.empty()) fields.fail("has neither id nor class");
+  return holding;
+}
+
 CalibrationStep read_calibration(FieldReader& fields) {
   CalibrationStep calibration;
   fields.choice("step", {"near", "far", "done", "failed"}, calibration.what, "", Need::required);
@@ -158,6 +184,7 @@ std::variant<Observation, WireError> read_observation(std::string_view text, siz
               [&](FieldReader& step) { observation.calibration = read_calibration(step); });
   fields.text("kiosk", observation.kiosk);
   fields.choice("networks", {"all", "no_expression", "none"}, observation.networks, "");
+  fields.part("holding", "", [&](FieldReader& part) { observation.holding = read_holding(part); });
   if (faults.first) return bad_field(type, *faults.first);
 
   const auto distance = [](const Person& person) { return glm::length(person.position); };

@@ -104,5 +104,6 @@ void bench_kiosk_expression(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_hard(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_screen(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_gestures(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_station(BenchReport& report, const BenchOptions& options);
 
 }  // namespace wellspring::test

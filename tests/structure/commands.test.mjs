@@ -120,6 +120,20 @@ test('the kiosk learns gestures from recordings, and names a bad one', async () 
   assert.equal((await run('wellspring_kiosk', ['--train', recordings])).status, 2);
 });
 
+test('the station names a folder that it cannot learn from', async () => {
+  assert.equal((await run('wellspring_station', [])).status, 2);
+  const objects = join(folder, 'objects'), out = join(folder, 'objects.json');
+  mkdirSync(join(objects, 'coin'), { recursive: true });
+  const bad = await run('wellspring_station', ['--learn', objects, '--out', out]);
+  assert.equal(bad.status, 1);
+  assert.match(bad.stderr, /objects\/coin: has no photograph/);
+  writeFileSync(out, '{"root": "a", "nodes": {"a": {"kind": "model"}}}');
+  const eye = await run('wellspring_kiosk', ['--camera', 'synthetic', '--no-pace', '--print',
+      '--station', out]);
+  assert.equal(eye.status, 1);
+  assert.match(eye.stderr, /objects\.json: \/nodes\/a\/id/);
+});
+
 test('check accepts the castle and lists every problem of a bad package', async () => {
   const good = await run('wellspring_check', [castle]);
   assert.equal(good.status, 0, good.stdout);

@@ -90,7 +90,8 @@ const may_enter = {
     'network/graph': ['network'],
     process: [],
     face: ['frame', 'network', 'network/graph'],
-    '': ['face', 'frame', 'gesture', 'network', 'process'],
+    station: ['frame'],
+    '': ['face', 'frame', 'gesture', 'network', 'process', 'station'],
   },
   show: {
     lighting: [],

@@ -15,6 +15,7 @@ import { make_subtitles } from '../subtitles.js';
 import { first_language, language_names, translate_page, word } from '../words.js';
 import { make_book } from './book.js';
 import { show_calibration } from './calibration.js';
+import { show_holding } from './holding.js';
 import { make_slides } from './slides.js';
 import { make_take_along } from './take_along.js';
 import { kiosk_token } from './token.js';
@@ -233,6 +234,7 @@ function gesture(name) {
 
 function hear_kiosk(message) {
   show_calibration(message.calibration, lang);
+  show_holding(message.holding, lang);
   server_decides = 'stage' in message;
   const cameras = message.cameras ?? 0;
   sound.stands_behind(Math.max(0, (message.distance ?? viewing_distance) - viewing_distance));

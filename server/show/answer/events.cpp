@@ -405,6 +405,13 @@ std::string kiosk_message(const Show& show, const Kiosk& kiosk) {
     message["calibration"] = {{"step", calibration_steps[size_t(step->what)]},
                               {"metres", std::round(10 * double(step->metres)) / 10},
                               {"progress", std::round(20 * double(step->progress)) / 20}};
+  if (const auto& holding = audience.holding) {
+    // Its place changes all the time and is not shown.
+    json& out = message["holding"];
+    out = {{"title", holding->title}, {"hint", holding->hint}};
+    if (!holding->id.empty()) out["id"] = holding->id;
+    if (!holding->of_class.empty()) out["class"] = holding->of_class;
+  }
   if (kiosk.gesture_number > 0 && turns_pages(kiosk.showing))
     message["gesture"] = {{"name", kiosk.gesture}, {"number", kiosk.gesture_number}};
   return message.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -100,6 +100,7 @@ std::string describe_api() {
               "aside": "metres, how far right of the screen's middle that one stands",
               "volume": "0..1", "heard": "[ids of the stories told to these guests]",
               "calibration": "as the kiosk's observation has it; left out: there is none",
+              "holding": "{id?, class?, title, hint}: what a guest holds to the camera, texts by language; left out: nothing",
               "gesture": "{name, number: grows with each} while the page shows book, topics, partners or slides"},
     "house": {"open": "to a kiosk's page: boolean; closed, nothing is shown", "quiet": "boolean",
               "headphones": "boolean: they are to be offered", "volume": "0..1, of a kiosk with no own",
@@ -157,6 +158,7 @@ std::string describe_api() {
       "camera_name": "of kiosk and camera, optional: who comes back under it is the same camera",
       "calibration": "{step: near, far, done or failed, metres of that mark from the screen, progress 0..1}, while the person is asked to stand at two marks; then nobody is a guest",
       "kiosk": "its kiosk's name; left out: the only one of the house",
+      "holding": "{id?, class?, title?, hint? (texts by language), position?, rotation?}: what a visitor holds to the camera",
       "networks": "all (or left out), no_expression (asked for, and its weights are not installed) or none (cascades find faces)"}},
   "server_to_eye": {
     "kiosk": {"stage": "sleep, awake, person, engaged or farewell",

@@ -111,6 +111,9 @@ Audience gather_audience(const std::vector<Eye>& eyes, const std::string& kiosk,
       continue;
     }
     audience.state = std::max(audience.state, eye.seen.state);
+    // A camera that knows the object itself is believed before one that knows its class.
+    if (eye.seen.holding && (!audience.holding || audience.holding->id.empty()))
+      audience.holding = eye.seen.holding;
     if (eye.seen.state != Presence::person) continue;
     for (const Person& person : eye.seen.people) {
       Guest guest = place_person(person, kiosk_view, eye.number, away);

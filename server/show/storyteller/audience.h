@@ -40,6 +40,7 @@ struct Audience {
   float nearest = 0;  // metres of the first from the screen; 0: there is none
   float aside = 0;    // metres right of the screen's middle, of that one
   std::optional<CalibrationStep> calibration;  // step of a camera that is being set up
+  std::optional<Holding> holding;              // object held to a camera
 };
 
 // Distance from the screen at which the picture's camera is where the visitor's eyes are, where

@@ -182,6 +182,28 @@ TEST_F(Cameras, WhoStaysBeforeOneKeepsTheirNumberWhenAnotherGoes) {
   EXPECT_EQ(show->kiosks.all.at(0).audience.guests[0].id, guest);
 }
 
+TEST_F(Cameras, TheScreenIsToldWhatIsHeld) {
+  join(32, 32, "en", "kiosk");
+  auto camera = connect_camera("hall");
+  step(0.1);
+  EXPECT_FALSE(last("kiosk").contains("holding"));
+  seen.holding =
+      Holding{.of_class = "coins", .title = {{"en", "a coin"}}, .hint = {{"en", "Turn"}}};
+  speak(*camera, "hall");
+  step(0.1);
+  EXPECT_EQ(last("kiosk")["holding"],
+            (nlohmann::json{
+                {"class", "coins"}, {"title", {{"en", "a coin"}}}, {"hint", {{"en", "Turn"}}}}));
+  seen.holding = Holding{.id = "as", .title = {{"en", "An as"}}, .position = vec3(0, 0, 0.3f)};
+  speak(*camera, "hall");
+  step(0.1);
+  EXPECT_EQ(last("kiosk")["holding"]["id"], "as");
+  seen.holding.reset();
+  speak(*camera, "hall");
+  step(0.1);
+  EXPECT_FALSE(last("kiosk").contains("holding"));
+}
+
 TEST_F(Cameras, TheScreenIsToldWhereThePersonIsToStand) {
   join(32, 32, "en", "kiosk");
   auto camera = connect_camera("hall");
