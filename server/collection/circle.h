@@ -18,9 +18,9 @@ struct CircleChoice {
 // Holds what a circle around an item means. Indices count the items of the map.
 struct CircleMeaning {
   std::vector<int> inside;           // the circle: K of the paper
-  std::vector<int> outliers;         // of these
-  std::vector<double> local_stress;  // of each inside (eq. 5); 1: the map is true there
-  double mean = 0, deviation = 0;    // of the local stress
+  std::vector<int> outliers;         // indices that the map shows too near
+  std::vector<double> local_stress;  // one for each inside (eq. 5); 1: the map is true there
+  double mean = 0, deviation = 0;    // moments of the local stress
   double ball = 0;                   // the radius rho in the metric (eq. 7)
 };
 

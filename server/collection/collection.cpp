@@ -79,7 +79,7 @@ std::vector<double> place_terms(const Records& records) {
   };
   const auto pairs = top_eigenpairs(int(n), term_numbers, product, most_term_products);
   for (size_t k = 0; k < pairs.size(); k++) {
-    // What is no more than rounding has no direction.
+    // Values that are no more than rounding have no direction.
     if (!(pairs[k].value > 1e-9)) continue;
     for (size_t t = 0; t < n; t++)
       places[t * term_numbers + k] =

@@ -76,7 +76,7 @@ std::vector<EigenPair> top_eigenpairs(int rows, int count, const Product& produc
   Vector in(n * wide), out(n * wide);
   std::vector<EigenPair> found;
   for (int products = 0; products < most_products && basis.size() < n; products++) {
-    // What is new of the next vectors; a second pass mends the rounding of the first.
+    // Keeps what is new of the next vectors; a second pass mends the rounding of the first.
     const size_t before = basis.size();
     for (Vector& one : next) {
       const double length = std::sqrt(dot(one, one));

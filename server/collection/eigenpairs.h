@@ -11,7 +11,7 @@ namespace wellspring::collection {
 
 struct EigenPair {
   double value = 0;
-  std::vector<double> vector;  // of length 1
+  std::vector<double> vector;  // its length is 1
 };
 
 // Returns all pairs of a dense matrix of n rows, the largest value first (Jacobi's rotations).

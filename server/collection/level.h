@@ -29,14 +29,14 @@ struct MapStep {
 struct ClusterNature {
   std::vector<uint32_t> terms;     // the most telling ones, at most 3
   std::optional<int> first, last;  // years in which four of five lie
-  int count = 0;                   // of the objects that are shown
+  int count = 0;                   // counts objects that are shown
 };
 
 struct MapLevel {
   std::vector<int> among;   // objects that circles choose from
   std::vector<int> region;  // objects that the level is about
-  std::vector<int> shown;   // of these, in the order of `layout`
-  Distances distances;      // of those that are shown
+  std::vector<int> shown;   // drawn from the region, in the order of `layout`
+  Distances distances;      // between those that are shown
   Layout layout;
   Clusters clusters;  // indices count `shown`
   std::vector<ClusterNature> natures;

@@ -375,7 +375,7 @@ void read_json(Gathering& to, std::string_view text, const FieldNames& names) {
     if (!scanner.skip(']'))
       throw LoadError(to.file(), "line " + std::to_string(scanner.line()),
                       "not JSON: the list of records goes on without a comma, or does not end");
-    // What is around the list has to be JSON, too.
+    // The text around the list has to be JSON, too.
     const std::string around =
         std::string(text.substr(0, begin)) + "[]" + std::string(text.substr(scanner.at()));
     auto parsed = parse_json(around, {.values = most_record_values});

@@ -137,7 +137,7 @@ std::optional<double> find_year(std::string_view date) {
     i = end;
   }
   if (years.empty()) return {};
-  // Of many years the first two are the span; the others are of other things.
+  // The first two of many years are the span; the others are of other things.
   double year = years.size() == 1 ? years[0] : (years[0] + years[1]) / 2;
   if (before) year = -std::abs(year);
   if (std::abs(year) > most_years) return {};

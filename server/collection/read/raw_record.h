@@ -2,19 +2,20 @@
 // A record as a file has it, and the list that cleans it.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_set>
 #include <vector>
 
-#include "collection/read/read_records.h"
+#include "collection/read/field_names.h"
 #include "collection/records.h"
 
 namespace wellspring::collection {
 
 struct RawRecord {
   std::string id, title, maker, date, link, picture;
-  std::optional<double> year;  // where the file tells it as a number
+  std::optional<double> year;  // set if the file tells it as a number
   std::vector<std::string> subjects, materials;
   std::vector<std::pair<std::string, double>> colors;  // "#rrggbb" and its weight
 };
@@ -28,7 +29,7 @@ class Gathering {
   const std::string& file() const { return file_; }
   // Throws LoadError for one record too many.
   void add(RawRecord&& raw, const std::string& where);
-  // Notes what was left out. Of equal texts the first place is told, and how many there are.
+  // Notes what was left out. Equal texts are told once, with the first place and their number.
   void note(const std::string& where, const std::string& what);
   // Throws LoadError if there is no record.
   Records take(const std::string& path);

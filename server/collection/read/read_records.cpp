@@ -50,13 +50,17 @@ std::vector<std::string> files_below(const std::string& folder) {
 
 }  // namespace
 
-Records read_records(const std::string& path, const FieldNames& names) {
+Records read_records_text(const std::string& file, std::string_view text, const FieldNames& names) {
   Gathering gathering;
+  read_text(gathering, file, text, names);
+  return gathering.take(file);
+}
+
+Records read_records(const std::string& path, const FieldNames& names) {
   std::error_code error;
-  if (!fs::is_directory(path, error)) {
-    read_text(gathering, path, read_file(path, most_collection_bytes), names);
-    return gathering.take(path);
-  }
+  if (!fs::is_directory(path, error))
+    return read_records_text(path, read_file(path, most_collection_bytes), names);
+  Gathering gathering;
   size_t bytes = 0;
   for (const std::string& file : files_below(path)) {
     const std::string text = read_file(file, most_record_bytes);
@@ -65,12 +69,6 @@ Records read_records(const std::string& path, const FieldNames& names) {
     read_text(gathering, file, text, names);
   }
   return gathering.take(path);
-}
-
-Records read_records_text(const std::string& file, std::string_view text, const FieldNames& names) {
-  Gathering gathering;
-  read_text(gathering, file, text, names);
-  return gathering.take(file);
 }
 
 }  // namespace wellspring::collection

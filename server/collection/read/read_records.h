@@ -7,18 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "collection/read/field_names.h"
 #include "collection/records.h"
 
 namespace wellspring::collection {
-
-inline constexpr size_t most_collection_bytes = size_t(256) << 20;
-inline constexpr size_t most_record_bytes = size_t(1) << 20;  // a line of a file of lines
-
-// Names the columns of a table, or the members of flat JSON; an empty name is found by the usual
-// ones. Others that a file has are not read.
-struct FieldNames {
-  std::string id, title, maker, date, subjects, materials, colors, link, picture;
-};
 
 // Throws LoadError if nothing can be used, if a named field is nowhere, and for more than
 // most_records.
