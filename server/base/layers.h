@@ -16,6 +16,7 @@ namespace store {}
 namespace volume {}
 namespace scan {}
 namespace lawn {}
+namespace collection {}
 namespace frame {}
 namespace attention {}
 namespace denoise {}
@@ -61,6 +62,10 @@ namespace lawn {
 using namespace image;
 using namespace json;
 }  // namespace lawn
+
+namespace collection {
+using namespace json;
+}  // namespace collection
 
 namespace wire {
 using namespace json;
@@ -114,6 +119,7 @@ using namespace json;
 
 namespace show {
 using namespace spectrum;
+using namespace collection;
 using namespace picture;
 using namespace store;
 using namespace volume;
@@ -161,6 +167,7 @@ using namespace store;
 using namespace volume;
 using namespace scan;
 using namespace lawn;
+using namespace collection;
 using namespace frame;
 using namespace attention;
 using namespace denoise;

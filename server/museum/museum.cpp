@@ -191,6 +191,7 @@ struct Museum::Impl {
   std::shared_ptr<Capacity> capacity;  // capacity that all rooms share
   std::list<Room> rooms;               // their rehearsals may use all fields above until they end
   StillDesk stills;                    // is closed before rooms are destroyed
+  MapDesk maps;
   AnswerSources sources;
   std::unique_ptr<Reception> reception;
   std::atomic<bool> stopping = false, changed = false;
@@ -327,6 +328,7 @@ Museum::Museum(const MuseumSettings& settings) : impl_(std::make_unique<Impl>(se
   if (!settings.sums.empty()) impl.ledger = std::make_unique<Ledger>(LedgerSettings{settings.sums});
   impl.open_all();
   impl.sources.stills = &impl.stills;
+  impl.sources.maps = &impl.maps;
   impl.sources.changes = settings.show.watched;
   impl.sources.desk.put = [&impl](const Announcement& one) {
     uint32_t number = 0;

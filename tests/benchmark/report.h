@@ -103,6 +103,7 @@ void bench_kiosk_figures(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_expression(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_hard(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_screen(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_map(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_gestures(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_station(BenchReport& report, const BenchOptions& options);
 

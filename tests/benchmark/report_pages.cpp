@@ -348,6 +348,7 @@ std::vector<ReportPage> declared_pages() {
           kiosk_hard_page(),
           kiosk_gestures_page(),
           kiosk_station_page(),
+          kiosk_map_page(),
           cache_display_page(),
           cache_warp_page(),
           cache_visit_page(),

@@ -26,6 +26,7 @@ ReportPage kiosk_expression_page();
 ReportPage kiosk_hard_page();
 ReportPage kiosk_gestures_page();
 ReportPage kiosk_station_page();
+ReportPage kiosk_map_page();
 ReportPage load_visitors_page();
 ReportPage load_seats_page();
 ReportPage light_frame_page();

@@ -57,6 +57,10 @@ const may_enter = {
     'tree/import': ['tree', ''],
     draw: ['tree', ''],
   },
+  collection: {
+    '': [],
+    read: [''],
+  },
   world: {
     '': [],
     motion: [''],

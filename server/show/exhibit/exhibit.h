@@ -305,6 +305,8 @@ struct ServedFile {
   std::string etag;     // hash of its bytes
 };
 
+struct ExhibitCollection;  // show/exhibit/exhibit_collection.h
+
 struct Exhibit {
   std::string id, folder;
   LocalText title, description;
@@ -331,6 +333,7 @@ struct Exhibit {
   std::vector<ExhibitAnimation> animations;
   std::vector<ExhibitMover> movers;
   std::optional<Book> book;
+  std::shared_ptr<const ExhibitCollection> collection;  // null: there is none
   std::vector<AnsweredQuestion> questions;
   std::vector<AmbientSound> sounds;
   std::map<std::string, ServedFile> files;  // by the name that exhibit.json gives

@@ -88,6 +88,7 @@ json describe(const Exhibit& exhibit) {
     about["storytellers"].push_back(
         {{"id", storyteller_place.id}, {"name", storyteller_place.name}});
   about["book"] = describe_book(exhibit);
+  about["collection"] = exhibit.collection ? json(exhibit.collection->title) : json(nullptr);
   about["credits"] = json::array();
   for (const Credit& credit : exhibit.credits)
     about["credits"].push_back({{"file", credit.file},
@@ -126,6 +127,15 @@ HttpReply answer_still(const ServedExhibit& sources, const HttpQuestion& questio
   const StillQuestion asked = read_still_question(*sources.exhibit, question.query);
   if (asked.status != 200) return error_reply(asked.status, asked.code, asked.problem);
   return still_reply({});
+}
+
+// Without a map: of a wrong question, or to whoever does not want its body.
+HttpReply answer_collection(const ServedExhibit& sources, const HttpQuestion& question) {
+  if (!sources.exhibit->collection)
+    return error_reply(404, "no_collection", "this exhibit has no collection");
+  const MapQuestion asked = read_map_question(question.query);
+  if (!asked.problem.empty()) return error_reply(400, "bad_parameter", asked.problem);
+  return {};
 }
 
 HttpReply answer_map(const ServedExhibit& sources) {
@@ -172,6 +182,7 @@ HttpReply answer_exhibit(const AnswerSources& sources, const HttpQuestion& quest
   if (!served) return error_reply(404, "unknown_exhibit", "there is no exhibit '" + id + "' here");
   if (tail.empty() || tail == "/") return json_reply(describe(*served->exhibit));
   if (tail == "/transcript") return json_reply(describe_transcript(*served->exhibit));
+  if (tail == "/collection") return answer_collection(*served, question);
   if (tail == "/map") return fresh(answer_map(*served), sources);
   if (tail == "/qr.svg") return answer_qr(*served->exhibit, served->address, question);
   if (tail == "/still.jpg") return fresh(answer_still(*served, question), sources);
@@ -255,13 +266,20 @@ HttpReply answer_while_loading(const std::map<std::string, PageFile>& pages,
 
 bool answer_later(const AnswerSources& sources, const HttpQuestion& question,
                   const std::shared_ptr<HttpAsker>& asker) {
-  const std::string before = "/api/v1/exhibits/", after = "/still.jpg";
+  const std::string before = "/api/v1/exhibits/";
   const std::string& path = question.path;
-  if (question.method != "GET" || !path.starts_with(before) || !path.ends_with(after)) return false;
-  if (!sources.stills || path.size() < before.size() + after.size()) return false;
+  if (question.method != "GET" || !path.starts_with(before)) return false;
+  const size_t end = path.find('/', before.size());
   const ServedExhibit* served =
-      find_exhibit(sources, path.substr(before.size(), path.size() - before.size() - after.size()));
-  if (!served) return false;
+      find_exhibit(sources, path.substr(before.size(), end - before.size()));
+  if (!served || end == std::string::npos) return false;
+  if (path.substr(end) == "/collection" && sources.maps && served->exhibit->collection) {
+    const MapQuestion asked = read_map_question(question.query);
+    if (!asked.problem.empty()) return false;
+    sources.maps->ask(*served->exhibit, asked, asker);
+    return true;
+  }
+  if (path.substr(end) != "/still.jpg" || !sources.stills) return false;
   const StillQuestion asked = read_still_question(*served->exhibit, question.query);
   if (asked.status != 200) return false;
   const bool changes = sources.changes;

@@ -12,6 +12,7 @@
 #include "show/exhibit/exhibit_book.h"
 #include "show/exhibit/exhibit_files.h"
 #include "show/exhibit/exhibit_lights.h"
+#include "show/exhibit/exhibit_collection.h"
 #include "show/exhibit/exhibit_spectra.h"
 #include "show/exhibit/exhibit_objects.h"
 #include "show/exhibit/pieces/exhibit_pieces.h"
@@ -266,6 +267,7 @@ void read_manifest(Exhibit& exhibit, FieldReader& root, const std::string& cache
   read_objects(exhibit, root);
   read_animations(exhibit, root);
   check_marks(exhibit, problems);
+  read_collection(exhibit, root);
   read_book(exhibit, root);
   read_questions(exhibit, root);
   read_ambient_sounds(exhibit, root);
