@@ -12,7 +12,7 @@ namespace wellspring::collection {
 namespace {
 
 constexpr double mass_unit = 0x1p-50;
-constexpr double no_spread = 1e-9;  // of a correlation's eigenvalue
+constexpr double no_spread = 1e-9;  // an eigenvalue of correlations that is no more than rounding
 
 // Makes masses whole multiples of the unit that sum to 1.
 void settle_masses(std::span<double> masses) {

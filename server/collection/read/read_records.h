@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a collection that strangers keep: a table (.csv, .tsv), JSON (an array, or an object that
 // has one), a record a line (.jsonl, .ndjson), or a folder of JSON files. Records of JSON are flat,
-// Linked Art's (JSON-LD) or Tate's; each says by itself which. What is wrong is refused, or put
-// right and noted with its line.
+// Linked Art's (JSON-LD) or Tate's; each says by itself which. Wrong text is refused, or put right
+// and noted with its line.
 #pragma once
 #include <string>
 #include <string_view>
