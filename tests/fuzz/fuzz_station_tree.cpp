@@ -17,7 +17,7 @@ void fuzz_station_tree(Bytes bytes) {
     frame.bgr.resize(3 * 32 * 24);
     for (int i = 0; i < 64 * 48; i++) frame.pixels.push_back(uint8_t(i * 37 ^ i / 64 * 91));
     try {
-      Station station(std::move(tree));
+      kiosk::Station station(std::move(tree));
       for (int i = 0; i < 2; i++) station.look(frame);
     } catch (const std::invalid_argument&) {}  // it names a solver that there is not
   });
