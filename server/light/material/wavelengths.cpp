@@ -20,19 +20,27 @@ vec3 mean_response(const Wavelengths& w, const std::array<vec3, spectrum_size>& 
   return density > 0 ? sum / density : vec3(0);
 }
 
+// Takes `colored` out of a colour. A channel that solids have swallowed all but whole is dark: what
+// is left of it would be divided by next to nothing.
+constexpr float least_colored = 1e-30f;
+vec3 uncolored(vec3 color, vec3 colored) {
+  for (int c = 0; c < 3; c++) color[c] = colored[c] > least_colored ? color[c] / colored[c] : 0;
+  return color;
+}
+
 }  // namespace
 
 vec3 tint_of(const SpectralTables& tables, const Wavelengths& w, int lamp) {
   if (w.tinted) return vec3(1);
   if (w.carried == 0) return w.reflected < 0 ? vec3(1) : reflected_once(tables, lamp, w.reflected);
-  if (lamp < 0) return mean_response(w, tables.response, nullptr) / w.colored;
-  return mean_response(w, tables.response, &tables.rows[size_t(lamp)]) /
-         (w.colored * tables.colors[size_t(lamp)]);
+  if (lamp < 0) return uncolored(mean_response(w, tables.response, nullptr), w.colored);
+  return uncolored(mean_response(w, tables.response, &tables.rows[size_t(lamp)]),
+                   w.colored * tables.colors[size_t(lamp)]);
 }
 
 vec3 shown_tint(const SpectralTables& tables, const Wavelengths& w) {
   return w.carried == 0 ? max(tint_of(tables, w), vec3(0))
-                        : mean_response(w, tables.shown, nullptr) / w.colored;
+                        : uncolored(mean_response(w, tables.shown, nullptr), w.colored);
 }
 
 void begin_cluster(const SpectralTables& tables, float place, Wavelengths& w) {
@@ -85,7 +93,7 @@ void blend_wavelengths(const WavelengthSpread& spread, const BsdfValue* others, 
     chance += w.density[i] * each.specular_pdf;
     sum += w.density[i];
   }
-  value.specular = divide_tint(colored / sum / w.colored, spread.tint_before);
+  value.specular = divide_tint(uncolored(colored / sum, w.colored), spread.tint_before);
   value.specular_pdf = chance / sum;
 }
 

@@ -292,5 +292,27 @@ TEST(Cluster, BlackIsBlackWhateverWasDrawn) {
   }
 }
 
+// A walk that runs on and on in a gem, which takes up all red, has no red: nothing is divided by
+// it.
+TEST(Cluster, AGemMaySwallowAChannelWhole) {
+  Scene scene = empty_scene();
+  Spectrum absorption{};
+  for (size_t i = 0; i < spectrum_size; i++) absorption[i] = nm_of(i) > 560 ? 500 : 1;
+  const int gem = add_spectrum(scene, "gem", absorption);
+  const std::shared_ptr<const SpectralTables> tables = make_spectral_tables(scene);
+  Wavelengths w;
+  begin_cluster(*tables, 0.5f, w);
+  vec3 throughput(1);
+  const vec3 tint(1e-6f, 0.8f, 0.9f);
+  for (int k = 0; k < 20; k++) {
+    absorb_wavelengths(*tables, gem, 0.02f, tint, w);
+    throughput *= tint;
+    const vec3 seen = throughput * tint_of(*tables, w);
+    EXPECT_TRUE(is_finite(seen)) << k;
+    EXPECT_TRUE(is_finite(throughput * shown_tint(*tables, w))) << k;
+  }
+  EXPECT_EQ(throughput.x * tint_of(*tables, w).x, 0);
+}
+
 }  // namespace
 }  // namespace wellspring::test
