@@ -8,6 +8,7 @@
 #include "base/rng.h"
 #include "light/material/light_slope.h"
 #include "light/sample/lamps_seen.h"
+#include "light/sample/light_tables.h"
 #include "light/walk/first_surface.h"
 
 namespace wellspring::light {
@@ -361,6 +362,8 @@ int update_skin(const World& world, const Lights& lights, const SkinUpdate& upda
   WalkRules rules;
   rules.max_depth = update.transport.max_depth;
   if (lights.known) rules.blunt = gather_blunt;
+  const SpectralTables* spectral = lights.tables->spectral.get();
+  const bool hues = spectral && !spectral->rows.empty();
   std::vector<Answer> answers(asked.size());
   parallel_ranges(int(asked.size()), 64, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {
@@ -369,6 +372,8 @@ int update_skin(const World& world, const Lights& lights, const SkinUpdate& upda
       if (skin.history[asked[i].place].blocked > maybe_hidden || answers[i].blocked)
         answers[i].shut = is_shut(world, skin, asked[i].place, answers[i].blocked, sampler);
       vec3& light = answers[i].light;
+      // Hues beyond the colours of a display are below zero in a channel (finish_samples).
+      if (hues && is_finite(light)) light = max(light, vec3(0));
       if (!is_finite(light) || std::min({light.x, light.y, light.z}) < 0) {
         answers[i].valid = false;
         lights.bad_samples->fetch_add(1, std::memory_order_relaxed);
