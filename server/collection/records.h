@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a museum tells of its objects, whatever file it was in.
+// Holds all that a museum tells of its objects, whatever file it was in.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a guest holds to the camera: its title, and what would help to tell it.
+// Shows the title of the thing that a guest holds to the camera, and the hint that would help.
 let panel = null;
 
 function make_panel() {
