@@ -172,15 +172,18 @@ struct Observer::Impl {
     return head.person;
   }
 
-  EyeNetworks networks() const {
-    if (!finder->finds_landmarks()) return EyeNetworks::none;
-    return settings.expression && !classes ? EyeNetworks::no_expression : EyeNetworks::all;
+  EyeParts parts() const {
+    EyeParts out;
+    out.faces = finder->finds_landmarks();
+    if (settings.expression) out.expression = classes.has_value();
+    if (station) out.objects = true;
+    return out;
   }
 
   Observation finish(double time, bool moving, bool face) {
     Observation out;
     out.time = time;
-    out.networks = networks();
+    out.parts = parts();
     out.state = step_presence(presence, settings.presence, time, moving, face);
     const double hold = settings.presence.hold_person;
     if (out.state == Presence::person)

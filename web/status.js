@@ -91,13 +91,26 @@ const camera_words = { good: 'works', dark: 'sees only black', frozen: 'stands s
   missing: 'gives no picture', slow: 'is slow', silent: 'says nothing',
   disconnected: 'not connected', calibrating: 'is being calibrated' };
 
+const eye_words = { faces: 'faces', mesh: 'fine faces', liveness: 'whether a face is alive',
+  expression: 'expressions', bodies: 'bodies', hands: 'hands', objects: 'objects' };
+
+// Says what a camera's program sees, and what it is asked for and cannot see.
+function say_eyes(eyes = {}) {
+  const of = (works) => Object.keys(eye_words).filter((part) => eyes[part] === works)
+    .map((part) => eye_words[part]).join(', ');
+  const missing = of(false);
+  return { text: missing ? `${of(true) || '–'}; without networks: ${missing}` : of(true),
+    bad: missing !== '' };
+}
+
 function show_kiosks({ kiosks, cameras }) {
   fill(by_id('kiosks'), ['Kiosk', 'Stage', 'People', 'Storyteller', 'Screens', 'Cameras'],
       kiosks.map((one) => [one.name || 'without a name', one.stage, one.people,
         one.storyteller ? 'here' : '–', one.screens, one.cameras]));
-  fill(by_id('cameras'), ['Camera', 'Kiosk', 'State', 'For'], cameras.map((one) => [
+  fill(by_id('cameras'), ['Camera', 'Kiosk', 'State', 'Sees', 'For'], cameras.map((one) => [
     one.name, one.kiosk || '–', { text: camera_words[one.state] ?? one.state,
-      bad: !['good', 'calibrating'].includes(one.state) }, duration(one.seconds)]));
+      bad: !['good', 'calibrating'].includes(one.state) }, say_eyes(one.eyes),
+    duration(one.seconds)]));
   by_id('kiosks-section').hidden = kiosks.length === 0;
   by_id('cameras-section').hidden = cameras.length === 0;
 }

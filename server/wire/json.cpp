@@ -24,10 +24,49 @@ static ordered_json rounded(vec3 v) {
   return ordered_json::array({rounded(v.x), rounded(v.y), rounded(v.z)});
 }
 
+static ordered_json rounded(vec2 v) { return ordered_json::array({rounded(v.x), rounded(v.y)}); }
+
 static ordered_json to_json(const Expression& e) {
-  return {{"joy", rounded(e.joy)},         {"sadness", rounded(e.sadness)},
-          {"anger", rounded(e.anger)},     {"fear", rounded(e.fear)},
-          {"disgust", rounded(e.disgust)}, {"surprise", rounded(e.surprise)}};
+  ordered_json out = {{"joy", rounded(e.joy)},         {"sadness", rounded(e.sadness)},
+                      {"anger", rounded(e.anger)},     {"fear", rounded(e.fear)},
+                      {"disgust", rounded(e.disgust)}, {"surprise", rounded(e.surprise)}};
+  if (e.valence) out["valence"] = rounded(*e.valence);
+  if (e.arousal) out["arousal"] = rounded(*e.arousal);
+  return out;
+}
+
+static ordered_json to_json(const Hand& hand) {
+  ordered_json out = {{"position", rounded(hand.position)},
+                      {"pose", hand_poses[size_t(hand.pose)]}};
+  if (hand.fingers) out["fingers"] = *hand.fingers;
+  if (hand.points_at) out["points_at"] = rounded(*hand.points_at);
+  return out;
+}
+
+static ordered_json to_json(const Person& person) {
+  ordered_json out = {{"id", person.id},
+                      {"position", rounded(person.position)},
+                      {"rotation", rounded(person.rotation)},
+                      {"confidence", rounded(person.confidence)}};
+  if (person.expression) out["expression"] = to_json(*person.expression);
+  if (!person.gesture.empty()) out["gesture"] = person.gesture;
+  if (person.liveness) out["liveness"] = rounded(*person.liveness);
+  if (person.gaze) out["gaze"] = rounded(*person.gaze);
+  if (person.lids) out["lids"] = rounded(*person.lids);
+  if (person.mouth) out["mouth"] = rounded(*person.mouth);
+  for (const Hand& hand : person.hands) out["hands"].push_back(to_json(hand));
+  return out;
+}
+
+static ordered_json to_json(const Body& body) {
+  ordered_json out = {{"id", body.id},
+                      {"position", rounded(body.position)},
+                      {"course", body_courses[size_t(body.course)]},
+                      {"confidence", rounded(body.confidence)}};
+  if (body.height > 0) out["height"] = rounded(body.height);
+  if (body.seated) out["seated"] = true;
+  if (body.raised_hand) out["raised_hand"] = true;
+  return out;
 }
 
 static ordered_json to_json(const Holding& holding) {
@@ -43,15 +82,7 @@ static ordered_json to_json(const Holding& holding) {
 
 std::string write_observation(const Observation& observation) {
   ordered_json people = ordered_json::array();
-  for (const Person& person : observation.people) {
-    ordered_json item = {{"id", person.id},
-                         {"position", rounded(person.position)},
-                         {"rotation", rounded(person.rotation)},
-                         {"confidence", rounded(person.confidence)}};
-    if (person.expression) item["expression"] = to_json(*person.expression);
-    if (!person.gesture.empty()) item["gesture"] = person.gesture;
-    people.push_back(std::move(item));
-  }
+  for (const Person& person : observation.people) people.push_back(to_json(person));
   ordered_json message = {{"type", "observation"},
                           {"time", rounded(observation.time)},
                           {"presence", observation.state == Presence::person},
@@ -65,9 +96,13 @@ std::string write_observation(const Observation& observation) {
                               {"metres", rounded(step->metres)},
                               {"progress", rounded(step->progress)}};
   if (!observation.kiosk.empty()) message["kiosk"] = observation.kiosk;
-  if (observation.networks != EyeNetworks::all)
-    message["networks"] = eye_networks[size_t(observation.networks)];
+  if (observation.parts != EyeParts{}) {
+    FieldWriter parts;
+    EyeParts::list(observation.parts, parts);
+    message["eyes"] = std::move(parts.out);
+  }
   if (observation.holding) message["holding"] = to_json(*observation.holding);
+  for (const Body& body : observation.bodies) message["bodies"].push_back(to_json(body));
   return to_text(message);
 }
 

@@ -20,7 +20,27 @@ namespace wellspring::wire {
 
 struct Expression {  // 0..1 each
   float joy = 0, sadness = 0, anger = 0, fear = 0, disgust = 0, surprise = 0;
+  // How pleasant, and how excited, -1..1 (Russell 1980); absent if they are not told.
+  std::optional<float> valence{}, arousal{};
   bool operator==(const Expression&) const = default;
+};
+
+enum class HandPose : uint8_t {
+  other,
+  open,   // all fingers are stretched: stop
+  fist,   // it grabs
+  pinch,  // thumb and index hold something small
+  point,  // the index alone is stretched
+};
+inline constexpr const char* hand_poses[] = {"other", "open", "fist", "pinch", "point"};
+
+// Describes a hand in front of the camera; places in the frame of Person::position.
+struct Hand {
+  vec3 position{0, 0, 1};  // middle of the palm, metres
+  HandPose pose = HandPose::other;
+  std::optional<int> fingers{};     // stretched ones, 0..5; absent if they cannot be counted
+  std::optional<vec2> points_at{};  // place on the screen's plane that the index points at, metres
+  bool operator==(const Hand&) const = default;
 };
 
 // Describes one person. position: metres from the screen's centre, +x to the right as the visitor
@@ -35,7 +55,28 @@ struct Person {
   float confidence = 0;
   std::optional<Expression> expression;  // absent if the kiosk does not estimate it
   std::string gesture;                   // empty: none
+  // How sure it is that a living face is seen, and no picture of one, 0..1; absent: nobody can
+  // tell.
+  std::optional<float> liveness{};
+  std::optional<vec2> gaze{};  // place on the screen's plane that the eyes look at, metres
+  std::optional<float> lids{}, mouth{};  // how far they are open, 0 (closed) to 1; absent: unknown
+  std::vector<Hand> hands{};             // at most two
   bool operator==(const Person&) const = default;
+};
+
+enum class BodyCourse : uint8_t { stays, comes, leaves, passes };
+inline constexpr const char* body_courses[] = {"stays", "comes", "leaves", "passes"};
+
+// Describes a body that is seen from afar, perhaps without a face.
+struct Body {
+  uint32_t id = 0;         // of its own; a body and a face are joined by their places
+  vec3 position{0, 0, 1};  // middle of the shoulders, in the frame of Person::position, metres
+  float height = 0;        // metres from sole to crown, as it would stand; 0: not known
+  BodyCourse course = BodyCourse::stays;
+  bool seated = false;       // in a wheelchair or on a chair
+  bool raised_hand = false;  // a wrist is above the shoulders
+  float confidence = 0;      // 0..1
+  bool operator==(const Body&) const = default;
 };
 
 enum class Presence : uint8_t { absent, motion, person };
@@ -51,13 +92,22 @@ enum class CameraState : uint8_t {
 };
 inline constexpr const char* camera_states[] = {"good", "dark", "frozen", "missing", "slow"};
 
-// The networks that a kiosk's eye has: their weights are installed apart from the program.
-enum class EyeNetworks : uint8_t {
-  all,            // all that are asked for
-  no_expression,  // expressions are asked for and not estimated
-  none,           // cascades find faces instead, and estimate head rotations poorly
+// What a kiosk's eye can see: true: it does; false: it is asked for, and its network's weights are
+// not installed; absent: it is not asked for. Without `faces`, cascades find them, and estimate
+// head rotations poorly.
+struct EyeParts {
+  std::optional<bool> faces = true, mesh{}, liveness{}, expression{}, bodies{}, hands{}, objects{};
+  static void list(auto& parts, auto& fields) {
+    fields.boolean("faces", parts.faces, "");
+    fields.boolean("mesh", parts.mesh, "");
+    fields.boolean("liveness", parts.liveness, "");
+    fields.boolean("expression", parts.expression, "");
+    fields.boolean("bodies", parts.bodies, "");
+    fields.boolean("hands", parts.hands, "");
+    fields.boolean("objects", parts.objects, "");
+  }
+  bool operator==(const EyeParts&) const = default;
 };
-inline constexpr const char* eye_networks[] = {"all", "no_expression", "none"};
 
 // Shows the state of a kiosk's calibration of its camera: where the person is to stand, and for
 // which share of the needed time they have been steady there.
@@ -91,8 +141,9 @@ struct Observation {
   std::string name;  // name of kiosk and camera, for technicians; may be empty
   std::optional<CalibrationStep> calibration;  // during a calibration nobody is a guest
   std::string kiosk{};                         // kiosk's name; empty: the only one of the house
-  EyeNetworks networks = EyeNetworks::all;
+  EyeParts parts{};
   std::optional<Holding> holding{};  // absent: nothing that is known
+  std::vector<Body> bodies{};        // nearest first
   bool operator==(const Observation&) const = default;
 };
 
@@ -100,8 +151,8 @@ struct Observation {
 
 // Says which results of a kiosk's cameras are used at the moment; the rest need not be computed.
 struct EyeNeeds {
-  bool faces = true;  // false: presence is enough
-  bool expression = true, gestures = true;
+  bool faces = true;                        // false: presence is enough
+  bool expression = true, gestures = true;  // gestures: hands, too
   bool operator==(const EyeNeeds&) const = default;
 };
 

@@ -109,7 +109,36 @@ Expression read_expression(FieldReader& fields) {
   fields.number("fear", 0, 1, expression.fear);
   fields.number("disgust", 0, 1, expression.disgust);
   fields.number("surprise", 0, 1, expression.surprise);
+  fields.number("valence", -1, 1, expression.valence);
+  fields.number("arousal", -1, 1, expression.arousal);
   return expression;
+}
+
+// Reads a place on the screen's plane.
+std::optional<vec2> read_on_screen(FieldReader& fields, const char* name) {
+  vec2 place{0};
+  return fields.vector(name, max_kiosk_distance, place) ? std::optional(place) : std::nullopt;
+}
+
+Hand read_hand(FieldReader& fields) {
+  Hand hand;
+  fields.vector("position", max_kiosk_distance, hand.position, "", Need::required);
+  fields.choice("pose", {"other", "open", "fist", "pinch", "point"}, hand.pose, "", Need::required);
+  fields.integer("fingers", 0, 5, hand.fingers);
+  hand.points_at = read_on_screen(fields, "points_at");
+  return hand;
+}
+
+Body read_body(FieldReader& fields) {
+  Body body;
+  fields.u32("id", body.id, "", Need::required);
+  fields.vector("position", max_kiosk_distance, body.position, "", Need::required);
+  fields.choice("course", {"stays", "comes", "leaves", "passes"}, body.course, "", Need::required);
+  fields.number("confidence", 0, 1, body.confidence, "", Need::required);
+  fields.number("height", 0, 3, body.height);
+  fields.boolean("seated", body.seated);
+  fields.boolean("raised_hand", body.raised_hand);
+  return body;
 }
 
 Person read_person(FieldReader& fields) {
@@ -121,6 +150,11 @@ Person read_person(FieldReader& fields) {
   fields.text("gesture", person.gesture);
   fields.part("expression", "",
               [&](FieldReader& part) { person.expression = read_expression(part); });
+  fields.number("liveness", 0, 1, person.liveness);
+  person.gaze = read_on_screen(fields, "gaze");
+  fields.number("lids", 0, 1, person.lids);
+  fields.number("mouth", 0, 1, person.mouth);
+  fields.parts("hands", 2, "", [&](FieldReader& hand) { person.hands.push_back(read_hand(hand)); });
   return person;
 }
 
@@ -183,12 +217,18 @@ std::variant<Observation, WireError> read_observation(std::string_view text, siz
   fields.part("calibration", "",
               [&](FieldReader& step) { observation.calibration = read_calibration(step); });
   fields.text("kiosk", observation.kiosk);
-  fields.choice("networks", {"all", "no_expression", "none"}, observation.networks, "");
+  fields.part("eyes", "", [&](FieldReader& part) {
+    observation.parts.faces.reset();
+    EyeParts::list(observation.parts, part);
+  });
   fields.part("holding", "", [&](FieldReader& part) { observation.holding = read_holding(part); });
+  fields.parts("bodies", max_people, "",
+               [&](FieldReader& body) { observation.bodies.push_back(read_body(body)); });
   if (faults.first) return bad_field(type, *faults.first);
 
-  const auto distance = [](const Person& person) { return glm::length(person.position); };
+  const auto distance = [](const auto& one) { return glm::length(one.position); };
   std::ranges::stable_sort(observation.people, {}, distance);
+  std::ranges::stable_sort(observation.bodies, {}, distance);
   return observation;
 }
 

@@ -154,13 +154,14 @@ std::string describe_api() {
       "payload": "16-bit samples, in order; pieces come about a second before they are due"}},
   "eye_to_server": {
     "observation": {"time": "seconds", "presence": "boolean", "state": "absent, motion or person",
-      "people": "[{id, position [x, y, z] m from the screen's centre, rotation [yaw, pitch, roll], confidence, expression?, gesture?}]",
+      "people": "[{id, position [x, y, z] m from the screen's centre, rotation [yaw, pitch, roll], confidence, expression? {joy, sadness, anger, fear, disgust, surprise, valence?, arousal?}, gesture?, liveness? (0..1: no picture of a face), gaze? [x, y] m on the screen's plane, lids? and mouth? (0 closed..1 open), hands? [{position, pose: other, open, fist, pinch or point, fingers? 0..5, points_at? [x, y]}]}]",
+      "bodies": "[{id, position of the shoulders, course: stays, comes, leaves or passes, confidence, height? m, seated?, raised_hand?}]: those seen from afar, with a face or without",
       "camera_state": "good (or left out), dark, frozen, missing or slow",
       "camera_name": "of kiosk and camera, optional: who comes back under it is the same camera",
       "calibration": "{step: near, far, done or failed, metres of that mark from the screen, progress 0..1}, while the person is asked to stand at two marks; then nobody is a guest",
       "kiosk": "its kiosk's name; left out: the only one of the house",
       "holding": "{id?, class?, title?, hint? (texts by language), position?, rotation?}: what a visitor holds to the camera",
-      "networks": "all (or left out), no_expression (asked for, and its weights are not installed) or none (cascades find faces)"}},
+      "eyes": "{faces, mesh, liveness, expression, bodies, hands, objects}: booleans, what the camera's program sees; false: it is asked for, and the weights are not installed (without faces, cascades find them); left out: all that is asked for, faces alone"}},
   "server_to_eye": {
     "kiosk": {"stage": "sleep, awake, person, engaged or farewell",
       "needs": "{faces, expression, gestures}: booleans, what is used at the moment",

@@ -18,7 +18,7 @@ static CameraReport report_camera(const Eye& eye, double now) {
                       eye.seen.name,
                       camera_states[size_t(eye.seen.camera)],
                       now - eye.camera_since,
-                      eye.seen.networks};
+                      eye.seen.parts};
   if (eye.seen.calibration && eye.seen.camera == CameraState::good) report.state = "calibrating";
   if (is_silent(eye, now))
     report.state = "silent", report.since = now - std::max(eye.received, eye.camera_since);

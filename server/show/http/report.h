@@ -49,7 +49,7 @@ struct CameraReport {
   // One of camera_states; "silent": it has said nothing for long; "disconnected"; "calibrating".
   std::string state;
   double since = 0;  // seconds that it has been so
-  EyeNetworks networks = EyeNetworks::all;
+  EyeParts parts{};
 };
 
 // Counts what the server's sockets did since the start.

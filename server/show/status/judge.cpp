@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/core.h>
+#include <optional>
 #include <set>
 
 #include "show/answer/cameras.h"
@@ -113,26 +114,40 @@ constexpr CameraWords camera_words[] = {
      "See whether its computer is on and the program 'wellspring kiosk' runs."},
     {"disconnected", "The ", " is gone", "Check its cable and the program 'wellspring kiosk'."}};
 
-// The networks' weights are installed apart from the program, so they may be missing.
-void judge_networks(Judge& judge, const CameraReport& camera, const std::string& name) {
-  if (camera.networks == EyeNetworks::all || camera.state == "disconnected") return;
-  const bool none = camera.networks == EyeNetworks::none;
+// Part of an eye whose network's weights, which are installed apart from the program, are missing.
+struct PartWords {
+  std::optional<bool> EyeParts::*part;
+  const char *before, *after;  // before + "camera 'x' at kiosk 'y'" + after
+};
+constexpr PartWords part_words[] = {
+    {&EyeParts::faces, "How heads are turned is told badly by the ", ""},
+    {&EyeParts::mesh, "Eyes and distances are told badly by the ", ""},
+    {&EyeParts::liveness, "Pictures of faces may be greeted as visitors at the ", ""},
+    {&EyeParts::expression, "No expressions are told by the ", ", though they are asked for"},
+    {&EyeParts::bodies, "Nobody far away is seen by the ", ""},
+    {&EyeParts::hands, "Hands are told badly by the ", ""}};
+
+void judge_parts(Judge& judge, const CameraReport& camera, const std::string& name) {
+  if (camera.state == "disconnected") return;
   const std::string at = name + at_kiosk(camera.kiosk);
-  judge.tell({.about = fmt::format("networks {}/{}", camera.kiosk, camera.number),
-              .what = none ? "How heads are turned is told badly by the " + at
-                           : "No expressions are told by the " + at + ", though they are asked for",
-              .why = none ? "the weights of the networks for faces are not installed there"
-                          : "the weights of the network for expressions cannot be read there",
-              .remedy = "Start its program once by './wellspring kiosk' with a network: it "
-                        "installs the weights. The kiosk's log names the folder."},
-             {.before = 2});
+  for (size_t k = 0; k < std::size(part_words); ++k) {
+    const PartWords& words = part_words[k];
+    if ((camera.parts.*words.part).value_or(true)) continue;
+    judge.tell({.about = fmt::format("eye {}/{}/{}", camera.kiosk, camera.number, k),
+                .what = words.before + at + words.after,
+                .why = "the weights of a network are not installed there",
+                .remedy = "Start its program once by './wellspring kiosk' with a network: it "
+                          "installs the weights. The kiosk's log names the folder."},
+               {.before = 2});
+    if (k == 0) return;  // the others say no more
+  }
 }
 
 void judge_camera(Judge& judge, const CameraReport& camera, double now) {
   const std::string name = camera.name.empty() || camera.name == camera.kiosk
                                ? "camera "
                                : "camera '" + camera.name + "' ";
-  judge_networks(judge, camera, name);
+  judge_parts(judge, camera, name);
   for (const CameraWords& words : camera_words) {
     if (camera.state != words.state) continue;
     judge.tell({.about = fmt::format("camera {}/{}", camera.kiosk, camera.number),

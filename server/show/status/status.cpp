@@ -6,6 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "json/fields.h"
+
 namespace wellspring::show {
 
 namespace {
@@ -75,12 +77,16 @@ void put_kiosks(json& status, const Standing& one) {
                                 {"storyteller", kiosk.storyteller},
                                 {"screens", kiosk.screens},
                                 {"cameras", kiosk.cameras}});
-  for (const CameraReport& camera : one.report.cameras)
+  for (const CameraReport& camera : one.report.cameras) {
+    FieldWriter eyes;
+    EyeParts::list(camera.parts, eyes);
     status["cameras"].push_back(
         {{"kiosk", camera.kiosk},
          {"name", camera.name.empty() ? std::to_string(camera.number) : camera.name},
          {"state", camera.state},
+         {"eyes", std::move(eyes.out)},
          {"seconds", std::round(camera.since)}});
+  }
 }
 
 }  // namespace

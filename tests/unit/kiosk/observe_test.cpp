@@ -99,10 +99,10 @@ TEST(Observe, with_networks_yaw_and_roll_are_known_too) {
 }
 
 TEST(Observe, networks_that_are_missing_are_told) {
-  EXPECT_EQ(watch_round({}, 0.2).at(0).networks, EyeNetworks::none);
+  EXPECT_EQ(watch_round({}, 0.2).at(0).parts.faces, false);
   const std::string weights = WELLSPRING_WEIGHTS_FOLDER "/face";
   if (!std::filesystem::exists(weights)) GTEST_SKIP() << weights << " is not here";
-  EXPECT_EQ(watch_round({}, 0.2, weights).at(0).networks, EyeNetworks::all);
+  EXPECT_EQ(watch_round({}, 0.2, weights).at(0).parts.faces, true);
   // The folder lacks only the network for expressions.
   const std::filesystem::path part = testing::TempDir() + "some_face_networks";
   std::filesystem::create_directories(part);
@@ -112,9 +112,9 @@ TEST(Observe, networks_that_are_missing_are_told) {
                                  std::filesystem::copy_options::overwrite_existing);
   ObserverSettings eye;
   eye.face.weights = part.string();
-  EXPECT_EQ(Observer(eye).step_blind(0).networks, EyeNetworks::all);
+  EXPECT_FALSE(Observer(eye).step_blind(0).parts.expression) << "it is not asked for";
   eye.expression = true;
-  EXPECT_EQ(Observer(eye).step_blind(0).networks, EyeNetworks::no_expression);
+  EXPECT_EQ(Observer(eye).step_blind(0).parts.expression, false);
 }
 
 TEST(Observe, a_camera_above_the_screen_that_looks_down_gives_the_same_place) {

@@ -69,20 +69,21 @@ TEST_F(Judged, EachStateOfACamera) {
 TEST_F(Judged, NetworksThatAKioskIsMissing) {
   report.kiosks = {{.name = "hall", .cameras = 1}};
   report.cameras = {{"hall", 1, "", "good", 100}};
-  report.cameras[0].networks = EyeNetworks::none;
+  report.cameras[0].parts = {.faces = false, .mesh = false};
   wait(5);
   const char* heads = "How heads are turned is told badly by the camera at kiosk 'hall'";
   ASSERT_TRUE(found(heads)) << all();
   EXPECT_FALSE(found(heads)->grave);
+  EXPECT_EQ(all().find("Eyes and distances"), std::string::npos) << "the heads' line says it all";
   EXPECT_NE(found(heads)->remedy.find("./wellspring kiosk"), std::string::npos);
-  report.cameras[0].networks = EyeNetworks::no_expression;
+  report.cameras[0].parts = {.expression = false};
   wait(5);
   EXPECT_TRUE(
       found("No expressions are told by the camera at kiosk 'hall', though they are asked "
             "for"))
       << all();
   EXPECT_FALSE(found(heads));
-  report.cameras[0].networks = EyeNetworks::all;
+  report.cameras[0].parts = {.mesh = true, .expression = true};
   wait(5);
   EXPECT_EQ(all(), "");
 }
