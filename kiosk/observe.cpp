@@ -7,7 +7,9 @@
 
 #include "base/load_error.h"
 #include "base/log.h"
+#include "kiosk/face/eyes.h"
 #include "kiosk/face/face_finder.h"
+#include "kiosk/face/face_mesh.h"
 #include "kiosk/face/head_pose.h"
 #include "kiosk/gesture/hand.h"
 #include "kiosk/gesture/spot.h"
@@ -24,7 +26,8 @@ void gather(double& evidence, bool cue, double step, double enough) {
 }  // namespace
 
 Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
-                       bool moving, bool face) {
+                       bool moving, FacesSeen faces) {
+  const bool visitor = faces == FacesSeen::visitor;
   if (!std::isfinite(time)) return state.now;
   if (!state.started) {
     state.started = true;
@@ -40,14 +43,14 @@ Presence step_presence(PresenceState& state, const PresenceSettings& settings, d
   double step = std::min(time - state.last_time, settings.longest_step);
   state.last_time = time;
   gather(state.motion_evidence, moving, step, settings.wake_after);
-  gather(state.face_evidence, face, step, settings.confirm_after);
+  gather(state.face_evidence, faces != FacesSeen::none, step, settings.confirm_after);
   if (moving) state.last_motion = time;
-  if (face) state.last_face = time;
+  if (visitor) state.last_face = time;
 
   // Sums of frame times carry rounding, which must not decide about a tick of the clock.
   constexpr double rounding = 1e-6;
   const bool woken = state.motion_evidence >= settings.wake_after - rounding;
-  const bool confirmed = state.face_evidence >= settings.confirm_after - rounding;
+  const bool confirmed = visitor && state.face_evidence >= settings.confirm_after - rounding;
   const bool quiet = time - std::max(state.last_motion, state.last_face) > settings.hold_motion;
 
   Presence next = state.now;
@@ -81,6 +84,10 @@ namespace {
 constexpr OneEuroSettings bearing_filter{1.5f, 8.f, 1.f};    // tangents
 constexpr OneEuroSettings distance_filter{0.5f, 1.5f, 1.f};  // logarithm of metres
 
+constexpr double mesh_every = 0.2;    // seconds between looks at the mesh of one face
+constexpr float least_eye_face = 60;  // pixels of a face's box; the irises of smaller ones blur
+constexpr float is_a_face = 0.5f;     // confidence of a mesh
+
 }  // namespace
 
 struct Observer::Impl {
@@ -88,6 +95,7 @@ struct Observer::Impl {
   std::unique_ptr<FaceFinder> finder;
   MotionWatch motion;
   People people;
+  LivenessWatch liveness;
   PresenceState presence;
   PersonGestures gestures;
   std::optional<Station> station;
@@ -96,9 +104,14 @@ struct Observer::Impl {
     OneEuro bearing, distance, rotation;
     ExpressionState expression;
     Person person;
-    double seen_time = 0;
+    double seen_time = 0, mesh_time = -1e9;
+    FaceSize size;
+    bool is_face = false;  // a mesh has said so
+    bool visitor = false;  // it is no picture, and counts
   };
   std::map<uint32_t, Head> heads;
+  std::optional<MeshReader> meshes;  // absent without the networks' weights
+  bool read_mesh = false;            // whether this frame reads one: one look a frame
   double last_time = -1e9;
   std::optional<ClassReader> classes;  // only while expressions are asked for
   bool read_classes = false;           // whether this frame reads them: one look a frame
@@ -108,17 +121,54 @@ struct Observer::Impl {
         finder(make_face_finder(s.face)),
         motion(s.motion),
         people(*finder, s.people),
+        liveness(s.liveness),
         gestures(s.gestures, s.mount.mirrored) {
     if (s.station) station.emplace(*s.station, StationSettings{.mount = s.mount});
     settings.station.reset();  // the station has its own
+    if (finder->finds_landmarks()) try {
+        meshes.emplace(mesh_folder(s.face));
+      } catch (const LoadError& error) {
+        log::warn("no fine faces: {}", error.what());
+      }
     if (!s.expression) return;
-    const std::string folder = weights_folder(s.face);
     try {
-      classes.emplace(folder);
+      classes.emplace(weights_folder(s.face));
       log::info("expressions are estimated: visitors must be told before they are seen");
     } catch (const LoadError& error) {
       log::warn("no expressions: {}", error.what());
     }
+  }
+
+  // Looks at the mesh of a face: whether it is one, how large, and what its eyes and mouth do.
+  void look_at_mesh(Head& head, const GrayFrame& frame, const Followed& who, const HeadPose& pose) {
+    const bool due =
+        !read_mesh && (frame.time - head.mesh_time >= mesh_every || frame.time < head.mesh_time);
+    if (!meshes || !due) return;
+    read_mesh = true;
+    head.mesh_time = frame.time;
+    const bool eyes = who.face.box.width >= least_eye_face;
+    if (!eyes && head.is_face) return;
+    const FaceMesh mesh = meshes->read({frame.pixels.data(), frame.width, frame.height},
+                                       mesh_cut_of_marks(*who.face.marks), eyes);
+    head.is_face |= mesh.confidence >= is_a_face;
+    Person& person = head.person;
+    person.gaze.reset(), person.lids = open_lids(mesh), person.mouth.reset();
+    if (!mesh.irises) return;
+    person.mouth = open_mouth(mesh);
+    const float focal = focal_length(settings.mount, frame.width);
+    add_look(head.size, *iris_width(mesh), focal, pose.position.z);
+    if (const auto look = look_direction(mesh, pose, focal, frame.width, frame.height))
+      person.gaze = seen_place(person.position, *look);
+  }
+
+  // Returns where a look from `eyes` in camera direction `look` meets the screen's plane.
+  std::optional<vec2> seen_place(vec3 eyes, vec3 look) const {
+    const vec3 towards =
+        camera_to_screen(settings.mount, look) - camera_to_screen(settings.mount, vec3(0));
+    if (!(towards.z < -0.1f)) return {};
+    const vec2 place = vec2(eyes + towards * (eyes.z / -towards.z));
+    constexpr float far_off = 5;  // metres: nothing is there
+    return glm::length(place) < far_off ? std::optional(place) : std::nullopt;
   }
 
   void express(Head& head, const GrayFrame& frame, const FaceMarks& marks, const HeadPose& pose) {
@@ -155,8 +205,8 @@ struct Observer::Impl {
     const float focal = focal_length(mount, frame.width);
     std::optional<HeadPose> pose;
     if (who.face.marks) pose = solve_head_pose(*who.face.marks, focal, frame.width, frame.height);
-    vec3 raw =
-        pose ? pose->position : face_in_camera(who.face.box, focal, frame.width, frame.height);
+    vec3 raw = pose ? pose->position * size_of(head.size)
+                    : face_in_camera(who.face.box, focal, frame.width, frame.height);
     vec3 bearing =
         step_one_euro(head.bearing, bearing_filter, frame.time, {raw.x / raw.z, raw.y / raw.z, 0});
     vec3 away = step_one_euro(head.distance, distance_filter, frame.time, {std::log(raw.z), 0, 0});
@@ -166,6 +216,7 @@ struct Observer::Impl {
     const vec3 rotation =
         pose ? rotation_on_screen(mount, pose->rotation) : crude_rotation(head.person, who, camera);
     head.person.rotation = step_one_euro(head.rotation, rotation_filter, frame.time, rotation);
+    if (pose) look_at_mesh(head, frame, who, *pose);
     if (classes && pose && needs.expression) express(head, frame, *who.face.marks, *pose);
     head.person.confidence = std::clamp(who.face.confidence, 0.f, 1.f);
     head.seen_time = frame.time;
@@ -176,21 +227,22 @@ struct Observer::Impl {
     EyeParts out;
     out.faces = finder->finds_landmarks();
     if (settings.expression) out.expression = classes.has_value();
+    if (out.faces == true) out.mesh = meshes.has_value();
     if (station) out.objects = true;
     return out;
   }
 
-  Observation finish(double time, bool moving, bool face) {
+  Observation finish(double time, bool moving, FacesSeen faces) {
     Observation out;
     out.time = time;
     out.parts = parts();
-    out.state = step_presence(presence, settings.presence, time, moving, face);
+    out.state = step_presence(presence, settings.presence, time, moving, faces);
     const double hold = settings.presence.hold_person;
     if (out.state == Presence::person)
       for (const auto& [id, head] :
            heads) {  // a person just lost stays where they were, less and less surely
         double age = time - head.seen_time;
-        if (age < 0 || age > hold) continue;
+        if (age < 0 || age > hold || !head.visitor) continue;
         Person person = head.person;
         person.confidence *= float(1 - age / hold);
         out.people.push_back(person);
@@ -210,25 +262,27 @@ Observation Observer::step(const GrayFrame& frame) {
   if (frame.time < m.last_time) m.heads.clear();
   m.last_time = frame.time;
   Motion motion = m.motion.step(frame);
-  bool face = false;
+  FacesSeen faces = FacesSeen::none;
   m.read_classes = false;
-  for (const Followed& who : m.people.step(frame, motion, m.motion)) {
-    if (who.picture) {
-      m.heads.erase(who.id);
-      continue;
-    }
+  m.read_mesh = false;
+  for (const Followed& who : m.people.step(frame, motion)) {
     if (!who.visible) continue;
-    face = true;
-    m.place(m.heads[who.id], frame, who);
-    std::string& gesture = m.heads[who.id].person.gesture;
-    if (m.needs.gestures) gesture = m.gestures.step(frame, who.id, who.face.box);
+    const LivenessState& alive = m.liveness.step(frame, who.id, who.face.box);
+    Impl::Head& head = m.heads[who.id];
+    m.place(head, frame, who);
+    head.person.liveness = liveness(alive);
+    head.visitor = m.liveness.counts(alive) && (!m.meshes || head.is_face);
+    if (!head.visitor && alive.evidence >= 0) faces = std::max(faces, FacesSeen::unsure);
+    if (head.visitor) faces = FacesSeen::visitor;
+    std::string& gesture = head.person.gesture;
+    if (m.needs.gestures && head.visitor) gesture = m.gestures.step(frame, who.id, who.face.box);
   }
   std::erase_if(m.heads, [&](const auto& head) {
     const bool gone = frame.time - head.second.seen_time > m.settings.people.recall;
-    if (gone) m.gestures.forget(head.first);
+    if (gone) m.gestures.forget(head.first), m.liveness.forget(head.first);
     return gone;
   });
-  Observation seen = m.finish(frame.time, motion.moving, face);
+  Observation seen = m.finish(frame.time, motion.moving, faces);
   if (!m.station) return seen;
   // Who holds something to the camera may hide their face with it.
   if (seen.state != Presence::absent) seen.holding = m.station->step(frame);
@@ -247,7 +301,7 @@ void Observer::need(const EyeNeeds& needs) {
 
 Observation Observer::step_blind(double time) {
   impl_->last_time = std::max(impl_->last_time, time);
-  return impl_->finish(time, false, false);
+  return impl_->finish(time, false, FacesSeen::none);
 }
 
 namespace {

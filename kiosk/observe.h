@@ -8,6 +8,7 @@
 
 #include "kiosk/face/expression.h"
 #include "kiosk/face/face_finder.h"
+#include "kiosk/face/liveness.h"
 #include "kiosk/frame/head.h"
 #include "kiosk/gesture/gesture_model.h"
 #include "kiosk/people.h"
@@ -38,10 +39,14 @@ struct PresenceState {
   bool started = false;
 };
 
-// Takes one frame: `moving` as motion.h says, `face` if a face is followed. A time that runs
-// backwards (a file that starts again) counts as no time passed. Returns state.now.
+// Says what a frame shows of faces: `unsure` ones gather evidence, as it takes a moment to tell
+// whether they live (face/liveness.h), but nobody is there before one of them is a visitor's.
+enum class FacesSeen : uint8_t { none, unsure, visitor };
+
+// Takes one frame: `moving` as Motion says. A time that runs backwards (a file that starts again)
+// counts as no time passed. Returns state.now.
 Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
-                       bool moving, bool face);
+                       bool moving, FacesSeen faces);
 
 // Filters a head's rotation, radians; docs/benchmarks/kiosk.eye.md compares it.
 inline constexpr OneEuroSettings rotation_filter{0.6f, 6.f, 1.f};
@@ -52,6 +57,7 @@ struct ObserverSettings {
   MotionSettings motion;
   PeopleSettings people;
   PresenceSettings presence;
+  LivenessSettings liveness;
   bool expression = false;  // estimate Person::expression; needs the networks' weights
   ExpressionSettings expressions;
   std::optional<RecognitionTree> station;   // objects that may be held; empty: none

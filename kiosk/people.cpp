@@ -10,10 +10,9 @@ namespace wellspring::kiosk {
 
 namespace {
 
-constexpr int patch_side = 28;          // pixels of the remembered texture
-constexpr float same_texture = 0.72f;   // correlation from which a patch is the same face
-constexpr float stirred_share = 0.01f;  // share of the face's surroundings; less is noise
-constexpr int hits_to_count = 3;        // number of detections before a face counts
+constexpr int patch_side = 28;         // pixels of the remembered texture
+constexpr float same_texture = 0.72f;  // correlation from which a patch is the same face
+constexpr int hits_to_count = 3;       // number of detections before a face counts
 
 float distance(const Box& a, const Box& b) {
   return std::hypot(a.center_x() - b.center_x(), a.center_y() - b.center_y());
@@ -104,7 +103,6 @@ struct People::Impl {
       tracks.emplace_back();
       known = &tracks.back();
       known->who.id = next_id++;
-      known->who.first_time = known->who.moved_time = frame.time;
     }
     see(*known, frame, face);
   }
@@ -119,8 +117,7 @@ void People::tilt(uint32_t id, float roll) {
     if (track.who.id == id) track.roll = roll;
 }
 
-const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& motion,
-                                          const MotionWatch& watch) {
+const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& motion) {
   Impl& m = *impl_;
   const double time = frame.time;
   if (time < m.last_time) m.tracks.clear(), m.searched = m.searched_thoroughly = -1e9;
@@ -167,14 +164,8 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
     return time - who.seen_time > (who.hits >= hits_to_count ? m.settings.recall : 0.5);
   });
   m.result.clear();
-  for (Impl::Track& track : m.tracks) {
-    Followed& who = track.who;
-    const Box& b = who.face.box;
-    Box around{b.x - 0.3f * b.width, b.y - 0.2f * b.height, 1.6f * b.width, 1.6f * b.height};
-    if (watch.changed(around) > stirred_share) who.moved_time = time;
-    who.picture = time - who.moved_time > m.settings.still;
-    if (who.hits >= hits_to_count) m.result.push_back(who);
-  }
+  for (const Impl::Track& track : m.tracks)
+    if (track.who.hits >= hits_to_count) m.result.push_back(track.who);
   std::sort(m.result.begin(), m.result.end(),
             [](auto& a, auto& b) { return a.face.box.width > b.face.box.width; });
   return m.result;

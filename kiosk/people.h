@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows faces from frame to frame, under a number each. A followed face is sought in a small
 // window; the whole frame only now and then, for newcomers. A face that turns away is carried on
-// for a moment by its own texture. A face that never stirs is a picture on the wall and does not
-// count as a person.
+// for a moment by its own texture. Pictures of faces are followed, too (face/liveness.h).
 #pragma once
 #include <memory>
 #include <vector>
@@ -55,7 +54,6 @@ struct PeopleSettings {
   double thorough_more = 2;   // the same while somebody is followed and something moves
   double carry = 1.2;         // seconds a face is carried on by texture alone
   double recall = 4;          // seconds after which a lost face's number is forgotten
-  double still = 20;          // seconds without any movement; then it is a picture
   int most = 6;               // faces followed at once
 };
 
@@ -64,8 +62,7 @@ struct Followed {
   Face face;
   bool seen = false;     // a detector saw it in this frame
   bool visible = false;  // seen or carried on
-  bool picture = false;  // has not stirred for too long
-  double first_time = 0, seen_time = 0, moved_time = 0;
+  double seen_time = 0;
   int hits = 0;  // frames in which a detector saw it
 };
 
@@ -75,8 +72,7 @@ class People {
   explicit People(FaceFinder& finder, const PeopleSettings& settings = {});
   ~People();
   // Takes a frame after motion.step(frame). The result is nearest (largest) first.
-  const std::vector<Followed>& step(const GrayFrame& frame, const Motion& motion,
-                                    const MotionWatch& watch);
+  const std::vector<Followed>& step(const GrayFrame& frame, const Motion& motion);
   // Sets how far that head is tilted, radians, for the next frame's search (FaceFinder::follow).
   void tilt(uint32_t id, float roll);
 

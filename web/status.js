@@ -91,8 +91,8 @@ const camera_words = { good: 'works', dark: 'sees only black', frozen: 'stands s
   missing: 'gives no picture', slow: 'is slow', silent: 'says nothing',
   disconnected: 'not connected', calibrating: 'is being calibrated' };
 
-const eye_words = { faces: 'faces', mesh: 'fine faces', liveness: 'whether a face is alive',
-  expression: 'expressions', bodies: 'bodies', hands: 'hands', objects: 'objects' };
+const eye_words = { faces: 'faces', mesh: 'fine faces', expression: 'expressions',
+  bodies: 'bodies', hands: 'hands', objects: 'objects' };
 
 // Says what a camera's program sees, and what it is asked for and cannot see.
 function say_eyes(eyes = {}) {

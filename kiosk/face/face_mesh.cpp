@@ -19,7 +19,8 @@ constexpr float eye_rim = 2.3f;  // side of an eye's square over the distance of
 // These points are the corners of the eyes: at image left the outer and the inner one, at image
 // right the inner and the outer one.
 constexpr size_t eye_corners[2][2] = {{33, 133}, {362, 263}};
-constexpr size_t iris_values = 228, contour_points = 71;
+// The iris network tells points of the lids first, then those of the iris.
+constexpr size_t contour_points = 71, lower_lid = 4, upper_lid = 12, lid_corners[] = {0, 8};
 
 std::string graph_file(const std::string& folder, const char* name) {
   return (std::filesystem::path(folder) / (std::string(name) + ".json")).string();
@@ -69,7 +70,7 @@ MeshReader::MeshReader(const std::string& folder)
     : mesh_(open_graph(graph_file(folder, "facemesh"))),
       iris_(open_graph(graph_file(folder, "iris"))) {}
 
-FaceMesh MeshReader::read(const GrayView& picture, const Cut& square) {
+FaceMesh MeshReader::read(const GrayView& picture, const Cut& square, bool eyes) {
   const Tensors outputs = mesh_.run(levels(picture, square, mesh_));
   const std::vector<float>& values = outputs.at("output_mesh").values;
   const auto side = float(mesh_.input().columns);
@@ -78,42 +79,31 @@ FaceMesh MeshReader::read(const GrayView& picture, const Cut& square) {
   for (size_t k = 0; k < mesh_points; k++)
     mesh.points[k] = vec3(cut_to_picture(square, vec2(values[3 * k], values[3 * k + 1]) / side),
                           values[3 * k + 2] / side * square.width);
-  if (!(mesh.confidence >= least_confidence)) return mesh;
+  if (!eyes || !(mesh.confidence >= least_confidence)) return mesh;
   mesh.irises.emplace();
-  for (size_t eye = 0; eye < 2; eye++) {
-    const vec2 from{mesh.points[eye_corners[eye][0]]}, to{mesh.points[eye_corners[eye][1]]};
-    const float width = eye_rim * glm::length(to - from);
-    (*mesh.irises)[eye] =
-        read_iris(picture, {(from + to) / 2.f, width, width, square.angle}, eye == 1);
-  }
+  for (size_t eye = 0; eye < 2; eye++) read_eye(picture, square, eye, mesh);
   return mesh;
 }
 
-std::array<vec2, iris_points> MeshReader::read_iris(const GrayView& picture, const Cut& eye,
-                                                    bool mirrored) {
+void MeshReader::read_eye(const GrayView& picture, const Cut& square, size_t eye, FaceMesh& mesh) {
+  const vec2 from{mesh.points[eye_corners[eye][0]]}, to{mesh.points[eye_corners[eye][1]]};
+  const float width = eye_rim * glm::length(to - from);
+  const Cut cut{(from + to) / 2.f, width, width, square.angle};
+  const bool mirrored = eye == 1;  // the network knows the eye at image left
   const auto side = float(iris_.input().columns);
-  std::vector<float> planes = levels(picture, eye, iris_);
+  std::vector<float> planes = levels(picture, cut, iris_);
   if (mirrored) mirror(planes, size_t(side));
   const Tensors outputs = iris_.run(planes);
   const std::vector<float>& values = outputs.at("Identity").values;
-  std::array<vec2, iris_points> out;
+  const auto point = [&](size_t k) { return vec2(values[3 * k], values[3 * k + 1]) / side; };
+  auto& iris = (*mesh.irises)[eye];
   for (size_t k = 0; k < iris_points; k++) {
-    const float* point = &values[3 * (contour_points + k)];
-    const vec2 share = vec2(point[0], point[1]) / side;
-    out[k] = cut_to_picture(eye, {mirrored ? 1 - share.x : share.x, share.y});
+    const vec2 share = point(contour_points + k);
+    iris[k] = cut_to_picture(cut, {mirrored ? 1 - share.x : share.x, share.y});
   }
-  if (mirrored) std::swap(out[1], out[3]);
-  return out;
-}
-
-LivenessReader::LivenessReader(const std::string& folder)
-    : real_(open_graph(graph_file(folder, "antispoof"))),
-      alive_(open_graph(graph_file(folder, "liveness"))) {}
-
-float LivenessReader::read(const GrayView& picture, const Cut& square) {
-  const float real = first_of(real_.run(levels(picture, square, real_)), "activation_4");
-  const float alive = first_of(alive_.run(levels(picture, square, alive_)), "activation_6");
-  return (real + alive) / 2;
+  if (mirrored) std::swap(iris[1], iris[3]);
+  mesh.lids[eye] = glm::length(point(lower_lid) - point(upper_lid)) /
+                   std::max(1e-3f, glm::length(point(lid_corners[0]) - point(lid_corners[1])));
 }
 
 }  // namespace wellspring::kiosk

@@ -96,11 +96,10 @@ inline constexpr const char* camera_states[] = {"good", "dark", "frozen", "missi
 // not installed; absent: it is not asked for. Without `faces`, cascades find them, and estimate
 // head rotations poorly.
 struct EyeParts {
-  std::optional<bool> faces = true, mesh{}, liveness{}, expression{}, bodies{}, hands{}, objects{};
+  std::optional<bool> faces = true, mesh{}, expression{}, bodies{}, hands{}, objects{};
   static void list(auto& parts, auto& fields) {
     fields.boolean("faces", parts.faces, "");
     fields.boolean("mesh", parts.mesh, "");
-    fields.boolean("liveness", parts.liveness, "");
     fields.boolean("expression", parts.expression, "");
     fields.boolean("bodies", parts.bodies, "");
     fields.boolean("hands", parts.hands, "");

@@ -62,8 +62,9 @@ Visitor at(int figure, vec3 eyes) {
 VisitorSequence spin() {
   VisitorSequence sequence =
       named("full spin in 3 s", begin_visit(0, 1, VisitorLight::normal, 1.5));
+  const VisitorFrame stands = sequence.frames.back();
   for (int k = 1; k <= 24; k++) {
-    VisitorFrame frame = sequence.frames[1];
+    VisitorFrame frame = stands;
     const float yaw = 15 * float(k);
     frame.shot.visitors[0].turn.x = (yaw > 180 ? yaw - 360 : yaw) * degree;
     frame.seconds = k < 24 ? 0.125 : 1, frame.judged = true;
@@ -94,15 +95,16 @@ VisitorSequence upside_down() {
 VisitorSequence escalator(bool somebody) {
   VisitorSequence sequence = begin_visit(0, 1, VisitorLight::normal, 1.5);
   sequence.about = {{"case", somebody ? "escalator behind" : "escalator, nobody"}};
+  if (!somebody) sequence.frames.resize(1);
+  const VisitorFrame before = sequence.frames.back();
   for (int k = 0; k < 20; k++) {
-    VisitorFrame frame = sequence.frames[somebody ? 1 : 0];
+    VisitorFrame frame = before;
     frame.seconds = 0.1, frame.judged = k > 4;
     frame.change = [k](VisitorPicture& picture) {
       paste_stripes({380, 0, 260, 480}, 0.13f * float(k), picture);
     };
     sequence.frames.push_back(frame);
   }
-  if (!somebody) sequence.frames.erase(sequence.frames.begin() + 1);
   return sequence;
 }
 

@@ -34,10 +34,15 @@ VisitorSequence begin_visit(int figure, float metres, VisitorLight light, double
   frame.seconds = 0.5, frame.judged = false;
   sequence.frames.push_back(frame);
   Visitor visitor;
-  visitor.figure = figure, visitor.eyes = {0, 0, metres};
-  frame.shot.visitors = {visitor};
-  frame.seconds = seconds;
-  sequence.frames.push_back(frame);
+  visitor.figure = figure;
+  frame.seconds = 0.1;
+  for (float steps : {5.f, 4.f, 3.f, 2.f, 1.f, 0.f}) {  // in from the side, turned that way
+    visitor.eyes = {0.03f * steps * metres, 0, metres};
+    visitor.turn.x = -0.05f * steps;
+    frame.shot.visitors = {visitor};
+    sequence.frames.push_back(frame);
+  }
+  sequence.frames.back().seconds = seconds;
   return sequence;
 }
 

@@ -161,7 +161,7 @@ std::string describe_api() {
       "calibration": "{step: near, far, done or failed, metres of that mark from the screen, progress 0..1}, while the person is asked to stand at two marks; then nobody is a guest",
       "kiosk": "its kiosk's name; left out: the only one of the house",
       "holding": "{id?, class?, title?, hint? (texts by language), position?, rotation?}: what a visitor holds to the camera",
-      "eyes": "{faces, mesh, liveness, expression, bodies, hands, objects}: booleans, what the camera's program sees; false: it is asked for, and the weights are not installed (without faces, cascades find them); left out: all that is asked for, faces alone"}},
+      "eyes": "{faces, mesh, expression, bodies, hands, objects}: booleans, what the camera's program sees; false: it is asked for, and the weights are not installed (without faces, cascades find them); left out: all that is asked for, faces alone"}},
   "server_to_eye": {
     "kiosk": {"stage": "sleep, awake, person, engaged or farewell",
       "needs": "{faces, expression, gestures}: booleans, what is used at the moment",

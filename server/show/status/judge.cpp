@@ -122,7 +122,6 @@ struct PartWords {
 constexpr PartWords part_words[] = {
     {&EyeParts::faces, "How heads are turned is told badly by the ", ""},
     {&EyeParts::mesh, "Eyes and distances are told badly by the ", ""},
-    {&EyeParts::liveness, "Pictures of faces may be greeted as visitors at the ", ""},
     {&EyeParts::expression, "No expressions are told by the ", ", though they are asked for"},
     {&EyeParts::bodies, "Nobody far away is seen by the ", ""},
     {&EyeParts::hands, "Hands are told badly by the ", ""}};

@@ -304,8 +304,7 @@ void measure_mesh(const Options& options, const fs::path& graphs) {
   auto camera = make_camera(source);
   const auto finder = make_network_finder(options.weights);
   MeshReader reader(graphs.string());
-  LivenessReader liveness(graphs.string());
-  Mean apart, alive, time;
+  Mean apart, time;
   GrayFrame frame;
   for (int k = 0; k < (options.quick ? 150 : 900) && camera->next(frame) == Got::frame; k++) {
     if (k % 15 != 0) continue;
@@ -319,12 +318,10 @@ void measure_mesh(const Options& options, const fs::path& graphs) {
       for (const auto& [point, mark] : same)
         apart.add(glm::length(vec2(mesh.points[point]) - marks[mark]) /
                   glm::length(marks[36] - marks[45]));
-      alive.add(liveness.read(view, cut));
     }
   }
   const json fields{{"finder", "networks"}};
   tell("kiosk.mesh.apart", apart.value(), "1", fields);
-  tell("kiosk.mesh.alive", alive.value(), "1", fields);
   tell("kiosk.mesh_ms", time.value(), "ms", fields);
 }
 

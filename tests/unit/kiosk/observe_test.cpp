@@ -134,16 +134,27 @@ TEST(Observe, a_camera_above_the_screen_that_looks_down_gives_the_same_place) {
 }
 
 TEST(Observe, a_face_that_never_stirs_is_a_picture) {
+  Observer observer;
+  for (int i = 0; i < 30; i++) {
+    const GrayFrame frame =
+        draw_figure({320, 240, 1, 2.5f, uint64_t(i)}, {}, {.visible = true}, 0.1 * i);
+    EXPECT_NE(observer.step(frame).state, Presence::person) << "at " << frame.time;
+  }
+}
+
+TEST(Observe, who_stirs_no_more_becomes_a_picture) {
   ObserverSettings settings;
-  settings.people.still = 3;
+  settings.liveness.still = 2;
   Observer observer(settings);
-  FigurePose pose{.visible = true};
   bool person_early = false;
   for (int i = 0; i < 8 * 10; i++) {
     const double time = 0.1 * i;
-    Observation o = observer.step(draw_figure({320, 240, 1, 2.5f, 9}, {}, pose, time));
+    FigurePose pose{.visible = true};
+    if (time < 2)
+      pose.position.x = 0.02f * std::sin(float(i)), pose.rotation.x = 5 * pose.position.x;
+    Observation o = observer.step(draw_figure({320, 240, 1, 2.5f, uint64_t(i)}, {}, pose, time));
     person_early |= time < 3 && o.state == Presence::person;
-    if (time > 3 + 2 + 0.5) {
+    if (time > 2 + 2 + 2 + 0.5) {
       EXPECT_NE(o.state, Presence::person) << "at " << time;
     }
   }

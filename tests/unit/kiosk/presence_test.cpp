@@ -30,7 +30,8 @@ struct Script {
     for (const long end = frame + std::lround(seconds * rate); frame < end; frame++) {
       double time = double(frame) / rate;
       Presence before = state.now;
-      Presence now = step_presence(state, settings, time, moving(time - begin), face(time - begin));
+      Presence now = step_presence(state, settings, time, moving(time - begin),
+                                   face(time - begin) ? FacesSeen::visitor : FacesSeen::none);
       if (now != before) changes.push_back({time, now});
     }
   }
@@ -146,11 +147,19 @@ TEST(Presence, ten_hertz_noise_on_the_way_out_changes_nothing_twice) {
   EXPECT_LE(s.changes.size(), 3u);
 }
 
+TEST(Presence, who_may_be_a_picture_is_nobody_and_who_turns_out_to_live_is_there_at_once) {
+  PresenceState state;
+  double time = 0;
+  for (; time < 3; time += 0.1)
+    EXPECT_EQ(step_presence(state, {}, time, false, FacesSeen::unsure), Presence::absent);
+  EXPECT_EQ(step_presence(state, {}, time, false, FacesSeen::visitor), Presence::person);
+}
+
 TEST(Presence, one_late_frame_is_not_long_evidence) {
   PresenceState state;
   PresenceSettings settings;
-  step_presence(state, settings, 0, false, false);
-  EXPECT_EQ(step_presence(state, settings, 5, true, true), Presence::absent);
+  step_presence(state, settings, 0, false, FacesSeen::none);
+  EXPECT_EQ(step_presence(state, settings, 5, true, FacesSeen::visitor), Presence::absent);
 }
 
 TEST(Presence, a_clock_set_back_neither_frees_nor_freezes) {
@@ -167,9 +176,10 @@ TEST(Presence, a_clock_set_back_neither_frees_nor_freezes) {
 
 TEST(Presence, a_time_that_is_no_number_changes_nothing) {
   PresenceState state;
-  step_presence(state, {}, 1, true, true);
-  EXPECT_EQ(step_presence(state, {}, std::numeric_limits<double>::quiet_NaN(), true, true),
-            Presence::absent);
+  step_presence(state, {}, 1, true, FacesSeen::visitor);
+  EXPECT_EQ(
+      step_presence(state, {}, std::numeric_limits<double>::quiet_NaN(), true, FacesSeen::visitor),
+      Presence::absent);
   EXPECT_EQ(state.last_time, 1);
 }
 

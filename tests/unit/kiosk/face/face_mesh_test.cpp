@@ -87,13 +87,6 @@ TEST_F(FaceMeshes, NoFaceHasNoIrises) {
   EXPECT_FALSE(mesh.irises);
 }
 
-TEST_F(FaceMeshes, ALivingFaceIsBelieved) {
-  LivenessReader reader((weights / "human").string());
-  const float living = reader.read(view(), mesh_cut_of_marks(marks));
-  EXPECT_GT(living, 0.5f);
-  EXPECT_LE(living, 1);
-}
-
 TEST(FaceMeshFiles, MissingGraphsAreNamed) {
   try {
     MeshReader reader("/nowhere");

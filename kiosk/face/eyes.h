@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures eyes and mouth of a mesh: how far away the face is, by its irises, which are 11.7 mm
+// wide in children and adults alike (Hashemi et al., "White-to-white corneal diameter", 2010: 11.4
+// to 12.0); where it looks; how far lids and lips are open.
+#pragma once
+#include <optional>
+
+#include "kiosk/face/face_mesh.h"
+#include "kiosk/face/head_pose.h"
+
+namespace wellspring::kiosk {
+
+inline constexpr float iris_metres = 0.0117f;
+
+// Returns the width of the irises in pixels, mean of both eyes; each the longer of its axes, as a
+// turned one is foreshortened. Nothing without irises.
+std::optional<float> iris_width(const FaceMesh& mesh);
+
+// Returns how far lids (mean of both eyes) and lips are open, 0 closed to 1; nothing without
+// irises.
+std::optional<float> open_lids(const FaceMesh& mesh);
+float open_mouth(const FaceMesh& mesh);
+
+// Returns the direction in which the eyes look, in camera axes, 1 long: from the middle of each
+// eyeball, which lies behind its corners in the face's model, to where the ray through the iris
+// meets it. `pose` is that of the same picture, `focal` in pixels. Nothing without irises.
+std::optional<vec3> look_direction(const FaceMesh& mesh, const HeadPose& pose, float focal,
+                                   int width, int height);
+
+// Learns how large a face is against an adult's, from irises: each look counts by how large it sees
+// them, against the assumption of an adult with a spread of 12 %.
+struct FaceSize {
+  double weight = 0, sum = 0;  // of logarithms
+};
+// Takes a look: `iris` in pixels, `pose_distance` in metres along the camera's axis for an adult's
+// face (HeadPose::position.z).
+void add_look(FaceSize& size, float iris, float focal, float pose_distance);
+// Returns the factor by which the face, and with it its distance, differs from an adult's.
+float size_of(const FaceSize& size);
+
+}  // namespace wellspring::kiosk
