@@ -3,14 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "base/load_error.h"
 #include "base/log.h"
 #include "kiosk/face/face_finder.h"
 #include "kiosk/face/head_pose.h"
-#include "kiosk/gesture/hand.h"
-#include "kiosk/gesture/spot.h"
+#include "kiosk/limbs.h"
 #include "kiosk/station/station.h"
 
 namespace wellspring::kiosk {
@@ -24,7 +24,7 @@ void gather(double& evidence, bool cue, double step, double enough) {
 }  // namespace
 
 Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
-                       bool moving, bool face) {
+                       bool moving, bool face, bool coming) {
   if (!std::isfinite(time)) return state.now;
   if (!state.started) {
     state.started = true;
@@ -41,7 +41,8 @@ Presence step_presence(PresenceState& state, const PresenceSettings& settings, d
   state.last_time = time;
   gather(state.motion_evidence, moving, step, settings.wake_after);
   gather(state.face_evidence, face, step, settings.confirm_after);
-  if (moving) state.last_motion = time;
+  if (coming) state.motion_evidence = settings.wake_after;
+  if (moving || coming) state.last_motion = time;
   if (face) state.last_face = time;
 
   // Sums of frame times carry rounding, which must not decide about a tick of the clock.
@@ -81,6 +82,11 @@ namespace {
 constexpr OneEuroSettings bearing_filter{1.5f, 8.f, 1.f};    // tangents
 constexpr OneEuroSettings distance_filter{0.5f, 1.5f, 1.f};  // logarithm of metres
 
+// Graphs lie beside the face networks' weights.
+std::string folder_of_graphs(const FaceSettings& face) {
+  return (std::filesystem::path(weights_folder(face)).parent_path() / "human").string();
+}
+
 }  // namespace
 
 struct Observer::Impl {
@@ -89,7 +95,7 @@ struct Observer::Impl {
   MotionWatch motion;
   People people;
   PresenceState presence;
-  PersonGestures gestures;
+  Limbs limbs;
   std::optional<Station> station;
   EyeNeeds needs;
   struct Head {
@@ -108,7 +114,7 @@ struct Observer::Impl {
         finder(make_face_finder(s.face)),
         motion(s.motion),
         people(*finder, s.people),
-        gestures(s.gestures, s.mount.mirrored) {
+        limbs({s.mount, folder_of_graphs(s.face), s.bodies, s.gestures}) {
     if (s.station) station.emplace(*s.station, StationSettings{.mount = s.mount});
     settings.station.reset();  // the station has its own
     if (!s.expression) return;
@@ -176,6 +182,8 @@ struct Observer::Impl {
     EyeParts out;
     out.faces = finder->finds_landmarks();
     if (settings.expression) out.expression = classes.has_value();
+    out.bodies = limbs.sees_bodies();
+    out.hands = limbs.sees_hands();
     if (station) out.objects = true;
     return out;
   }
@@ -184,7 +192,9 @@ struct Observer::Impl {
     Observation out;
     out.time = time;
     out.parts = parts();
-    out.state = step_presence(presence, settings.presence, time, moving, face);
+    out.state = step_presence(presence, settings.presence, time, moving,
+                              face || limbs.somebody_stays_near(time), limbs.somebody_comes());
+    out.bodies = limbs.bodies(time);
     const double hold = settings.presence.hold_person;
     if (out.state == Presence::person)
       for (const auto& [id, head] :
@@ -193,6 +203,7 @@ struct Observer::Impl {
         if (age < 0 || age > hold) continue;
         Person person = head.person;
         person.confidence *= float(1 - age / hold);
+        if (age > 0) person.hands.clear();
         out.people.push_back(person);
       }
     std::sort(out.people.begin(), out.people.end(), [](const Person& a, const Person& b) {
@@ -212,6 +223,7 @@ Observation Observer::step(const GrayFrame& frame) {
   Motion motion = m.motion.step(frame);
   bool face = false;
   m.read_classes = false;
+  std::vector<PersonInView> in_view;
   for (const Followed& who : m.people.step(frame, motion, m.motion)) {
     if (who.picture) {
       m.heads.erase(who.id);
@@ -219,13 +231,20 @@ Observation Observer::step(const GrayFrame& frame) {
     }
     if (!who.visible) continue;
     face = true;
-    m.place(m.heads[who.id], frame, who);
-    std::string& gesture = m.heads[who.id].person.gesture;
-    if (m.needs.gestures) gesture = m.gestures.step(frame, who.id, who.face.box);
+    const Person& person = m.place(m.heads[who.id], frame, who);
+    const float depth = screen_to_camera(m.settings.mount, person.position).z;
+    in_view.push_back({who.id, who.face.box, depth, person.position});
+  }
+  m.limbs.step(frame, motion.zones, in_view, m.needs.gestures);
+  for (const PersonInView& one : in_view) {
+    Limbs::Arms arms = m.limbs.arms_of(one.id);
+    Person& person = m.heads[one.id].person;
+    person.hands = std::move(arms.hands);
+    person.gesture = std::move(arms.gesture);
   }
   std::erase_if(m.heads, [&](const auto& head) {
     const bool gone = frame.time - head.second.seen_time > m.settings.people.recall;
-    if (gone) m.gestures.forget(head.first);
+    if (gone) m.limbs.forget(head.first);
     return gone;
   });
   Observation seen = m.finish(frame.time, motion.moving, face);
@@ -241,7 +260,10 @@ void Observer::need(const EyeNeeds& needs) {
   m.needs = needs;
   for (auto& [id, head] : m.heads) {
     if (!needs.expression) head.expression = {}, head.person.expression.reset();
-    if (!needs.gestures) m.gestures.forget(id), head.person.gesture.clear();
+    if (!needs.gestures) {
+      m.limbs.forget(id);
+      head.person.gesture.clear(), head.person.hands.clear();
+    }
   }
 }
 
@@ -249,46 +271,5 @@ Observation Observer::step_blind(double time) {
   impl_->last_time = std::max(impl_->last_time, time);
   return impl_->finish(time, false, false);
 }
-
-namespace {
-
-constexpr double told_for = 0.5;  // seconds a gesture is reported: observations may be thinned out
-
-struct Arm {
-  HandTracker hand;
-  GestureSpotter spotter;
-  std::string gesture;
-  double recognised = -1e9;
-  Arm(const GestureModels& models, bool mirrored) : hand(mirrored), spotter(models) {}
-};
-
-}  // namespace
-
-struct PersonGestures::Impl {
-  const GestureModels* models;
-  bool mirrored;
-  std::map<uint32_t, Arm> arms;
-};
-
-PersonGestures::PersonGestures(const GestureModels* models, bool mirrored)
-    : impl_(std::make_unique<Impl>(Impl{models, mirrored, {}})) {}
-PersonGestures::~PersonGestures() = default;
-
-std::string PersonGestures::step(const GrayFrame& frame, uint32_t id, const Box& face) {
-  if (!impl_->models || frame.bgr.empty() || frame.width < 1) return {};
-  Arm& arm = impl_->arms.try_emplace(id, *impl_->models, impl_->mirrored).first->second;
-  const float scale = float(frame.color_width) / float(frame.width);
-  const HeadInView head{vec2(face.center_x(), face.center_y()) * scale, face.width * scale};
-  const ColorView view{frame.color_width, frame.color_height, frame.bgr.data()};
-  const std::optional<HandSeen> hand = arm.hand.step(view, head, frame.time);
-  const std::optional<vec2> place = hand ? std::optional(hand->place) : std::nullopt;
-  if (const auto found = arm.spotter.step(frame.time, place)) {
-    arm.gesture = found->label;
-    arm.recognised = frame.time;
-  }
-  return frame.time - arm.recognised < told_for ? arm.gesture : std::string();
-}
-
-void PersonGestures::forget(uint32_t id) { impl_->arms.erase(id); }
 
 }  // namespace wellspring::kiosk

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns one frame into one observation: motion, faces, heads, hands, presence, what is held, in
-// that order. It returns numbers and names only.
+// Turns one frame into one observation: motion, faces, heads, bodies, hands, presence, what is
+// held, in that order. It returns numbers and names only.
 #pragma once
 #include <memory>
 #include <optional>
@@ -38,10 +38,11 @@ struct PresenceState {
   bool started = false;
 };
 
-// Takes one frame: `moving` as motion.h says, `face` if a face is followed. A time that runs
-// backwards (a file that starts again) counts as no time passed. Returns state.now.
+// Takes one frame: `moving` as motion.h says, `face` if a face is followed or somebody stays near
+// whose face is turned away, `coming` if a body comes from afar, which is motion at once. A time
+// that runs backwards (a file that starts again) counts as no time passed. Returns state.now.
 Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
-                       bool moving, bool face);
+                       bool moving, bool face, bool coming = false);
 
 // Filters a head's rotation, radians; docs/benchmarks/kiosk.eye.md compares it.
 inline constexpr OneEuroSettings rotation_filter{0.6f, 6.f, 1.f};
@@ -56,6 +57,7 @@ struct ObserverSettings {
   ExpressionSettings expressions;
   std::optional<RecognitionTree> station;   // objects that may be held; empty: none
   const GestureModels* gestures = nullptr;  // borrowed; null: hands are not followed
+  bool bodies = false;                      // see bodies, also without a face, from afar
 };
 
 class Observer {
@@ -69,25 +71,6 @@ class Observer {
   void need(const EyeNeeds& needs);
   // Notes that the camera gave nothing up to `time`: nobody is seen, and holds run out.
   Observation step_blind(double time);
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
-// Reads the gestures of people who are followed: with a hand and a spotter for each person
-// (kiosk/gesture).
-
-class PersonGestures {
- public:
-  // `models` is borrowed and must outlive this; null: nobody's hands are followed. `mirrored`: the
-  // camera delivers a mirror image.
-  PersonGestures(const GestureModels* models, bool mirrored);
-  ~PersonGestures();
-  // Takes a frame for each person whose face is followed. Returns the gesture that was recognised
-  // within the last half second, or nothing; about 2 ms.
-  std::string step(const GrayFrame& frame, uint32_t id, const Box& face);
-  void forget(uint32_t id);
 
  private:
   struct Impl;
