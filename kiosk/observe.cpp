@@ -82,9 +82,10 @@ namespace {
 constexpr OneEuroSettings bearing_filter{1.5f, 8.f, 1.f};    // tangents
 constexpr OneEuroSettings distance_filter{0.5f, 1.5f, 1.f};  // logarithm of metres
 
-// Graphs lie beside the face networks' weights.
-std::string folder_of_graphs(const FaceSettings& face) {
-  return (std::filesystem::path(weights_folder(face)).parent_path() / "human").string();
+std::string folder_of_graphs(const ObserverSettings& settings) {
+  if (!settings.graphs.empty()) return settings.graphs;
+  const std::filesystem::path weights = weights_folder(settings.face);
+  return (weights.parent_path() / "human").string();
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ struct Observer::Impl {
         finder(make_face_finder(s.face)),
         motion(s.motion),
         people(*finder, s.people),
-        limbs({s.mount, folder_of_graphs(s.face), s.bodies, s.gestures}) {
+        limbs({s.mount, folder_of_graphs(s), s.bodies, s.gestures}) {
     if (s.station) station.emplace(*s.station, StationSettings{.mount = s.mount});
     settings.station.reset();  // the station has its own
     if (!s.expression) return;

@@ -58,6 +58,7 @@ struct ObserverSettings {
   std::optional<RecognitionTree> station;   // objects that may be held; empty: none
   const GestureModels* gestures = nullptr;  // borrowed; null: hands are not followed
   bool bodies = false;                      // see bodies, also without a face, from afar
+  std::string graphs;  // folder of networks of bodies and hands; empty: beside the face networks'
 };
 
 class Observer {

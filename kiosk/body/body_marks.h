@@ -37,7 +37,7 @@ enum class BodyPoint : uint8_t {
 inline constexpr size_t body_points = 17;
 
 struct BodyMark {
-  vec2 pixel{0};    // of the picture
+  vec2 pixel{0};    // place in the picture
   float score = 0;  // how sure it is that the point is seen there, 0..1
 };
 

@@ -8,9 +8,9 @@ namespace wellspring::kiosk {
 
 namespace {
 
-constexpr float least_pixels = 4;      // of a segment that a distance is read from
+constexpr float least_pixels = 4;      // a segment needs, to tell a distance
 constexpr float seated_thigh = 0.5f;   // height of the thigh over the torso's; 0.85 standing
-constexpr float over_shoulder = 0.2f;  // of the shoulders' width, that a raised wrist is above
+constexpr float over_shoulder = 0.2f;  // a raised wrist is above by so many widths of the shoulders
 constexpr float nearest = 0.3f, farthest = 12;  // metres
 
 // Returns the middle of the sides that are seen.
@@ -25,7 +25,7 @@ std::optional<vec2> middle_of(const BodyMarks& marks, BodyPoint left, BodyPoint 
 
 struct Joints {
   std::optional<vec2> shoulders, hips, knees, ankles, nose;
-  float width = 0;  // of the shoulders, pixels; 0: one is not seen
+  float width = 0;  // pixels between the shoulders; 0: one is not seen
 };
 
 Joints joints_of(const BodyMarks& marks) {

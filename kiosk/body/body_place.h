@@ -20,12 +20,12 @@ inline constexpr float adult_shoulders = 0.36f, adult_height = 1.68f;
 
 struct BodyView {
   float focal = 1;            // pixels
-  int width = 0, height = 0;  // of the picture
+  int width = 0, height = 0;  // pixels
 };
 
 // Holds what is known of a body's distance besides its points, metres along the camera's axis.
 struct KnownDepth {
-  std::optional<float> face;   // of the face that belongs to it
+  std::optional<float> face;   // depth of a face that belongs to it
   std::optional<float> floor;  // the floor's height in the frame of the screen
 };
 

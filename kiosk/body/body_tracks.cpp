@@ -127,7 +127,7 @@ std::optional<BodyLook> BodyTracks::plan(double time, int width, int height,
     oldest->looked = time;
     return look(body_cut(oldest->marks), 1);
   }
-  // What moves and belongs to nobody near may be a body.
+  // Something that moves and belongs to nobody near may be a body.
   std::vector<Box> open;
   for (const Box& zone : zones) {
     if (std::ranges::none_of(faces, [&](const FaceInView& face) {

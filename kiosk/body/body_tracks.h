@@ -74,7 +74,7 @@ class BodyTracks {
     double first = 0, seen = 0, looked = -1e9, course_since = 0;
     float seated = 0;  // evidence: -1 stands, 1 sits
     OneEuro bearing, distance;
-    std::deque<Step> way;  // of the last seconds
+    std::deque<Step> way;  // places of the last seconds
   };
 
   bool counts(const Track& track) const;
@@ -85,7 +85,7 @@ class BodyTracks {
   Mount mount_;
   BodySettings settings_;
   std::vector<Track> tracks_;
-  std::vector<Box> zones_;  // of the last plan
+  std::vector<Box> zones_;  // zones of the last plan
   std::optional<float> floor_;
   BodyView view_;
   uint32_t next_id_ = 1;

@@ -42,7 +42,7 @@ class HandGestures {
   std::string swipe() const;
   std::string turn() const;
 
-  std::deque<Moment> moments_;  // of the last seconds
+  std::deque<Moment> moments_;  // those of the last seconds
   bool told_ = false;           // the sign that is held was told
   double told_at_ = -1e9;       // when a motion was told: what follows is its way back
 };

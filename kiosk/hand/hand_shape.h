@@ -16,7 +16,7 @@ struct HandShape {
   HandPose pose = HandPose::other;
   int fingers = 0;
   bool upright = false;  // fingers that are stretched point up in the picture, as one counts
-  float roll = 0;        // of the palm in the picture, radians; 0 upright, positive clockwise
+  float roll = 0;  // radians by which the palm is turned in the picture, clockwise; 0: upright
 };
 HandShape shape_of(const HandMarks& marks);
 

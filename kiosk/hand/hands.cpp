@@ -8,8 +8,8 @@ namespace wellspring::kiosk {
 
 namespace {
 
-constexpr float least_presence = 0.5f;  // of a hand that is followed
-constexpr float found_presence = 0.7f;  // of one that is new
+constexpr float least_presence = 0.5f;  // a hand that is followed needs it
+constexpr float found_presence = 0.7f;  // a new one needs more
 constexpr double lost_after = 0.2;      // seconds without a read that succeeds
 constexpr double retry_after = 0.4;     // seconds before a place without a hand is read again
 constexpr int agree = 2;                // reads that must agree on a pose

@@ -17,9 +17,9 @@ namespace wellspring::kiosk {
 
 struct HandLook {
   double time = 0;
-  int width = 0, height = 0;      // of the picture, pixels
+  int width = 0, height = 0;      // pixels
   vec3 eye{0};                    // between the person's eyes, in the frame of the screen
-  std::span<const Cut> places{};  // where a hand may be, the likeliest first
+  std::span<const Cut> places{};  // places for a new hand, the likeliest first
   size_t most_reads = 2;          // runs of the network in this frame
 };
 

@@ -129,7 +129,7 @@ TEST(BodyTracks, WhoIsNearAndHasAFaceCostsNothing) {
   scene.play(
       4, 15, [&](double) { return std::vector{body}; }, std::span(&face, 1));
   EXPECT_EQ(scene.looks, 0);
-  // Where wrists are asked for, they are looked for a few times a second.
+  // Wrists that are asked for are looked for a few times a second.
   scene.play(
       4, 15, [&](double) { return std::vector{body}; }, std::span(&face, 1), true);
   EXPECT_GT(scene.looks, 8);

@@ -2,7 +2,7 @@
 // Makes reference.json: what the package @vladmandic/human itself computes, by the TensorFlow.js
 // that it ships, for a picture that a formula gives (reference_test.cpp has the same one). An
 // output is told by its shape, its mean and some of its values. The network of bodies, which wants
-// whole numbers, gets levels of grey (tests/unit/kiosk/body/body_marks_test.cpp), and is told whole.
+// whole numbers, gets levels of grey and is told whole (unit/kiosk/body/body_marks_test.cpp).
 //   cd FOLDER && npm ci --ignore-scripts    in a copy of kiosk/weights
 //   node make_reference.mjs FOLDER > reference.json
 import { copyFileSync, readFileSync } from 'node:fs';
