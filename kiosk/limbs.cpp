@@ -75,11 +75,12 @@ struct Limbs::Impl {
         if (skin) squares.push_back(hand_cut_of_place(skin->pixel, tenth));
       }
       const GrayView picture{frame.pixels.data(), frame.width, frame.height};
+      const TintView tint{frame.bgr.data(), frame.color_width, frame.color_height};
       const HandLook look{frame.time, frame.width, frame.height,
                           person.eye, squares,     most_reads - std::min(most_reads, reads)};
       both.told.hands = both.hands.step(look, [&](const Cut& square) {
         reads++;
-        return reader->read(picture, square);
+        return reader->read(picture, tint, square);
       });
       found = both.hands.gesture();
       if (const auto tip = both.hands.index_tip()) place = place_of(*tip, person.face);

@@ -22,7 +22,8 @@ class BodyWatch {
     const auto look = tracks_.plan(frame.time, frame.width, frame.height, zones, faces, arms);
     if (!look) return;
     const GrayView picture{frame.pixels.data(), frame.width, frame.height};
-    tracks_.take(frame.time, reader_.read(picture, look->square, look->most), faces);
+    const TintView tint{frame.bgr.data(), frame.color_width, frame.color_height};
+    tracks_.take(frame.time, reader_.read(picture, tint, look->square, look->most), faces);
   }
   const BodyTracks& tracks() const { return tracks_; }
 

@@ -109,9 +109,10 @@ BodyReader::BodyReader(const std::string& folder) : network_(load_maps(folder)) 
   expect(guesses, 2 * body_points), expect(offsets, 2 * body_points);
 }
 
-std::vector<BodyMarks> BodyReader::read(const GrayView& picture, const Cut& square, size_t most) {
+std::vector<BodyMarks> BodyReader::read(const GrayView& picture, const TintView& tint,
+                                        const Cut& square, size_t most) {
   const GraphNetwork::Input& size = network_.input();
-  const NetworkInput input = cut_out(picture, square, size.columns, size.rows);
+  const NetworkInput input = cut_out(picture, tint, square, size.columns, size.rows);
   const Tensors outputs = network_.run(input.planes);
   const Maps maps = maps_of(outputs);
   std::vector<BodyMarks> found;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads 17 points of people's bodies in a part of a picture, by the graph movenet-lightning of
 // @vladmandic/human: MoveNet (Votel, Li, "Next-Generation Pose Detection with MoveNet and
-// TensorFlow.js", 2021), a centre net (Zhou, Wang, Krähenbühl 2019) over four maps. It learnt from
-// colours; here it gets levels of grey.
+// TensorFlow.js", 2021), a centre net (Zhou, Wang, Krähenbühl 2019) over four maps.
 #pragma once
 #include <array>
 #include <string>
@@ -58,7 +57,8 @@ class BodyReader {
   explicit BodyReader(const std::string& folder);
   // Reads the bodies whose centres stand out in the cut, at most `most`, in about 10 ms. The first
   // is the one that the network's own decoding returns: the surest near the middle of the cut.
-  std::vector<BodyMarks> read(const GrayView& picture, const Cut& square, size_t most = 1);
+  std::vector<BodyMarks> read(const GrayView& picture, const TintView& tint, const Cut& square,
+                              size_t most = 1);
 
  private:
   GraphNetwork network_;

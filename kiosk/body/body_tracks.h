@@ -85,7 +85,9 @@ class BodyTracks {
   Mount mount_;
   BodySettings settings_;
   std::vector<Track> tracks_;
-  std::vector<Box> zones_;  // zones of the last plan
+  std::vector<Cut> candidates_;  // squares of what may be a body, to be looked at closely
+  bool wide_ = false;            // the last look was for several bodies
+  std::vector<Box> zones_;       // zones of the last plan
   std::optional<float> floor_;
   BodyView view_;
   uint32_t next_id_ = 1;

@@ -60,9 +60,9 @@ Cut hand_cut_of_place(vec2 middle, float tenth) {
 HandReader::HandReader(const std::string& folder)
     : network_(open_graph((std::filesystem::path(folder) / graph_name).string())) {}
 
-HandMarks HandReader::read(const GrayView& picture, const Cut& square) {
+HandMarks HandReader::read(const GrayView& picture, const TintView& tint, const Cut& square) {
   const GraphNetwork::Input& size = network_.input();
-  NetworkInput input = cut_out(picture, square, size.columns, size.rows);
+  NetworkInput input = cut_out(picture, tint, square, size.columns, size.rows);
   for (float& level : input.planes) level /= 255;
   const Tensors outputs = network_.run(input.planes);
   const std::vector<float>& values = outputs.at("Identity").values;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads 21 landmarks of a hand whose place is known, by the graph handlandmark-lite of
 // @vladmandic/human: the hand landmark model of MediaPipe (Zhang et al., "MediaPipe Hands:
-// On-device Real-time Hand Tracking", 2020). It learnt from colours; here it gets levels of grey.
+// On-device Real-time Hand Tracking", 2020).
 #pragma once
 #include <array>
 #include <string>
@@ -39,7 +39,7 @@ class HandReader {
   // `folder` has handlandmark-lite (WELLSPRING_WEIGHTS/human). Throws LoadError as open_graph does.
   explicit HandReader(const std::string& folder);
   // Reads a hand in about 10 ms.
-  HandMarks read(const GrayView& picture, const Cut& square);
+  HandMarks read(const GrayView& picture, const TintView& tint, const Cut& square);
 
  private:
   GraphNetwork network_;

@@ -32,7 +32,7 @@ TEST(BodyMarks, AreThoseOfThePackage) {
       pixels.push_back(uint8_t((x * 7 + y * 13 + x * y % 31 * 5) % 256));
   BodyReader reader(weights.string());
   const auto found =
-      reader.read({pixels.data(), side, side}, {{side / 2, side / 2}, side, side, 0}, 3);
+      reader.read({pixels.data(), side, side}, {}, {{side / 2, side / 2}, side, side, 0}, 3);
   ASSERT_FALSE(found.empty());
   ASSERT_EQ(wanted.size(), 3 * body_points);
   for (size_t k = 0; k < body_points; k++) {
