@@ -75,6 +75,7 @@ void load_config(const std::string& file, KioskConfig& config) {
               [&](FieldReader& part) { read_presence(part, config.presence); });
   fields.boolean("expression", config.expression);
   fields.boolean("hands", config.hands);
+  fields.boolean("bodies", config.bodies);
   if (const auto cameras = fields.take("cameras"))
     for (const JsonValue& one : cameras->list(1, most_cameras, "cameras"))
       fields.read_object(one, [&](FieldReader& part) {
@@ -229,6 +230,8 @@ void add_eye(CLI::App& app, KioskOptions& options, Written& written) {
   app.add_option("--station", options.station,
                  "file that `wellspring station` wrote: what visitors hold to the camera is told");
   app.add_flag("!--no-hands", options.hands, "do not look for hands and their gestures");
+  app.add_flag("!--no-bodies", options.observer.bodies,
+               "do not look for bodies, who may be far away or turned away");
   app.add_flag("!--no-sandbox", options.sandbox,
                "let the process that sees pictures write files and use the network");
   app.add_option(observe_to, options.observe_to)->group("");
@@ -247,6 +250,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   if (!file.empty() && (!calibrates || std::ifstream(file))) load_config(file, config);
   options.observer.presence = config.presence;
   options.hands = config.hands;
+  options.observer.bodies = config.bodies;
   options.station = config.station;
   options.name = config.name;
   if (!config.server.empty()) options.server = config.server;

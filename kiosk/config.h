@@ -7,6 +7,7 @@
 //   presence    wake_after, confirm_after, hold_person, hold_motion (seconds; kiosk/observe.h)
 //   expression  true or false
 //   hands       true or false
+//   bodies      true or false: bodies are seen from afar
 //   station     file of a recognition tree: what visitors hold is told (kiosk/station)
 //   name        the kiosk's, as its page says it (/kiosk?kiosk=NAME)
 //   server      address for observations: ws://HOST[:PORT][/PATH], or wss:// for TLS
@@ -25,7 +26,7 @@ struct KioskConfig {
   CameraSettings camera;                // common to all cameras; the mount within counts
   std::vector<CameraSettings> cameras;  // empty: the file names none
   PresenceSettings presence;
-  bool expression = false, hands = true;
+  bool expression = false, hands = true, bodies = true;
   std::string station;     // file; empty: none
   std::string name;        // the kiosk's; empty: the only one of the house
   std::string server;      // address; empty: the file names none

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "base/load_error.h"
@@ -11,8 +12,7 @@
 #include "kiosk/face/face_finder.h"
 #include "kiosk/face/face_mesh.h"
 #include "kiosk/face/head_pose.h"
-#include "kiosk/gesture/hand.h"
-#include "kiosk/gesture/spot.h"
+#include "kiosk/limbs.h"
 #include "kiosk/station/station.h"
 
 namespace wellspring::kiosk {
@@ -26,7 +26,7 @@ void gather(double& evidence, bool cue, double step, double enough) {
 }  // namespace
 
 Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
-                       bool moving, FacesSeen faces) {
+                       bool moving, FacesSeen faces, bool coming) {
   const bool visitor = faces == FacesSeen::visitor;
   if (!std::isfinite(time)) return state.now;
   if (!state.started) {
@@ -44,7 +44,8 @@ Presence step_presence(PresenceState& state, const PresenceSettings& settings, d
   state.last_time = time;
   gather(state.motion_evidence, moving, step, settings.wake_after);
   gather(state.face_evidence, faces != FacesSeen::none, step, settings.confirm_after);
-  if (moving) state.last_motion = time;
+  if (coming) state.motion_evidence = settings.wake_after;
+  if (moving || coming) state.last_motion = time;
   if (visitor) state.last_face = time;
 
   // Sums of frame times carry rounding, which must not decide about a tick of the clock.
@@ -88,6 +89,12 @@ constexpr double mesh_every = 0.2;    // seconds between looks at the mesh of on
 constexpr float least_eye_face = 60;  // pixels of a face's box; the irises of smaller ones blur
 constexpr float is_a_face = 0.5f;     // confidence of a mesh
 
+std::string folder_of_graphs(const ObserverSettings& settings) {
+  if (!settings.graphs.empty()) return settings.graphs;
+  const std::filesystem::path weights = weights_folder(settings.face);
+  return (weights.parent_path() / "human").string();
+}
+
 }  // namespace
 
 struct Observer::Impl {
@@ -97,7 +104,7 @@ struct Observer::Impl {
   People people;
   LivenessWatch liveness;
   PresenceState presence;
-  PersonGestures gestures;
+  Limbs limbs;
   std::optional<Station> station;
   EyeNeeds needs;
   struct Head {
@@ -122,11 +129,11 @@ struct Observer::Impl {
         motion(s.motion),
         people(*finder, s.people),
         liveness(s.liveness),
-        gestures(s.gestures, s.mount.mirrored) {
+        limbs({s.mount, folder_of_graphs(s), s.bodies, s.gestures}) {
     if (s.station) station.emplace(*s.station, StationSettings{.mount = s.mount});
     settings.station.reset();  // the station has its own
     if (finder->finds_landmarks()) try {
-        meshes.emplace(mesh_folder(s.face));
+        meshes.emplace(folder_of_graphs(s));
       } catch (const LoadError& error) {
         log::warn("no fine faces: {}", error.what());
       }
@@ -228,6 +235,8 @@ struct Observer::Impl {
     out.faces = finder->finds_landmarks();
     if (settings.expression) out.expression = classes.has_value();
     if (out.faces == true) out.mesh = meshes.has_value();
+    out.bodies = limbs.sees_bodies();
+    out.hands = limbs.sees_hands();
     if (station) out.objects = true;
     return out;
   }
@@ -236,7 +245,12 @@ struct Observer::Impl {
     Observation out;
     out.time = time;
     out.parts = parts();
-    out.state = step_presence(presence, settings.presence, time, moving, faces);
+    // Who turns away and stays is still there.
+    if (presence.now == Presence::person && limbs.somebody_stays_near(time))
+      faces = FacesSeen::visitor;
+    out.state =
+        step_presence(presence, settings.presence, time, moving, faces, limbs.somebody_comes());
+    out.bodies = limbs.bodies(time);
     const double hold = settings.presence.hold_person;
     if (out.state == Presence::person)
       for (const auto& [id, head] :
@@ -245,6 +259,7 @@ struct Observer::Impl {
         if (age < 0 || age > hold || !head.visitor) continue;
         Person person = head.person;
         person.confidence *= float(1 - age / hold);
+        if (age > 0) person.hands.clear();
         out.people.push_back(person);
       }
     std::sort(out.people.begin(), out.people.end(), [](const Person& a, const Person& b) {
@@ -265,21 +280,30 @@ Observation Observer::step(const GrayFrame& frame) {
   FacesSeen faces = FacesSeen::none;
   m.read_classes = false;
   m.read_mesh = false;
+  std::vector<PersonInView> in_view;
   for (const Followed& who : m.people.step(frame, motion)) {
     if (!who.visible) continue;
     const LivenessState& alive = m.liveness.step(frame, who.id, who.face.box);
     Impl::Head& head = m.heads[who.id];
-    m.place(head, frame, who);
+    const Person& person = m.place(head, frame, who);
     head.person.liveness = liveness(alive);
     head.visitor = m.liveness.counts(alive) && (!m.meshes || head.is_face);
     if (!head.visitor && alive.evidence >= 0) faces = std::max(faces, FacesSeen::unsure);
-    if (head.visitor) faces = FacesSeen::visitor;
-    std::string& gesture = head.person.gesture;
-    if (m.needs.gestures && head.visitor) gesture = m.gestures.step(frame, who.id, who.face.box);
+    if (!head.visitor) continue;
+    faces = FacesSeen::visitor;
+    const float depth = screen_to_camera(m.settings.mount, person.position).z;
+    in_view.push_back({who.id, who.face.box, depth, person.position});
+  }
+  m.limbs.step(frame, motion.zones, in_view, m.needs.gestures);
+  for (const PersonInView& one : in_view) {
+    Limbs::Arms arms = m.limbs.arms_of(one.id);
+    Person& person = m.heads[one.id].person;
+    person.hands = std::move(arms.hands);
+    person.gesture = std::move(arms.gesture);
   }
   std::erase_if(m.heads, [&](const auto& head) {
     const bool gone = frame.time - head.second.seen_time > m.settings.people.recall;
-    if (gone) m.gestures.forget(head.first), m.liveness.forget(head.first);
+    if (gone) m.limbs.forget(head.first), m.liveness.forget(head.first);
     return gone;
   });
   Observation seen = m.finish(frame.time, motion.moving, faces);
@@ -295,7 +319,10 @@ void Observer::need(const EyeNeeds& needs) {
   m.needs = needs;
   for (auto& [id, head] : m.heads) {
     if (!needs.expression) head.expression = {}, head.person.expression.reset();
-    if (!needs.gestures) m.gestures.forget(id), head.person.gesture.clear();
+    if (!needs.gestures) {
+      m.limbs.forget(id);
+      head.person.gesture.clear(), head.person.hands.clear();
+    }
   }
 }
 
@@ -303,46 +330,5 @@ Observation Observer::step_blind(double time) {
   impl_->last_time = std::max(impl_->last_time, time);
   return impl_->finish(time, false, FacesSeen::none);
 }
-
-namespace {
-
-constexpr double told_for = 0.5;  // seconds a gesture is reported: observations may be thinned out
-
-struct Arm {
-  HandTracker hand;
-  GestureSpotter spotter;
-  std::string gesture;
-  double recognised = -1e9;
-  Arm(const GestureModels& models, bool mirrored) : hand(mirrored), spotter(models) {}
-};
-
-}  // namespace
-
-struct PersonGestures::Impl {
-  const GestureModels* models;
-  bool mirrored;
-  std::map<uint32_t, Arm> arms;
-};
-
-PersonGestures::PersonGestures(const GestureModels* models, bool mirrored)
-    : impl_(std::make_unique<Impl>(Impl{models, mirrored, {}})) {}
-PersonGestures::~PersonGestures() = default;
-
-std::string PersonGestures::step(const GrayFrame& frame, uint32_t id, const Box& face) {
-  if (!impl_->models || frame.bgr.empty() || frame.width < 1) return {};
-  Arm& arm = impl_->arms.try_emplace(id, *impl_->models, impl_->mirrored).first->second;
-  const float scale = float(frame.color_width) / float(frame.width);
-  const HeadInView head{vec2(face.center_x(), face.center_y()) * scale, face.width * scale};
-  const ColorView view{frame.color_width, frame.color_height, frame.bgr.data()};
-  const std::optional<HandSeen> hand = arm.hand.step(view, head, frame.time);
-  const std::optional<vec2> place = hand ? std::optional(hand->place) : std::nullopt;
-  if (const auto found = arm.spotter.step(frame.time, place)) {
-    arm.gesture = found->label;
-    arm.recognised = frame.time;
-  }
-  return frame.time - arm.recognised < told_for ? arm.gesture : std::string();
-}
-
-void PersonGestures::forget(uint32_t id) { impl_->arms.erase(id); }
 
 }  // namespace wellspring::kiosk

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns one frame into one observation: motion, faces, heads, hands, presence, what is held, in
-// that order. It returns numbers and names only.
+// Turns one frame into one observation: motion, faces, heads, bodies, hands, presence, what is
+// held, in that order. It returns numbers and names only.
 #pragma once
 #include <memory>
 #include <optional>
@@ -43,10 +43,11 @@ struct PresenceState {
 // whether they live (face/liveness.h), but nobody is there before one of them is a visitor's.
 enum class FacesSeen : uint8_t { none, unsure, visitor };
 
-// Takes one frame: `moving` as Motion says. A time that runs backwards (a file that starts again)
-// counts as no time passed. Returns state.now.
+// Takes one frame: `moving` as Motion says, `coming` if a body comes from afar, which is motion at
+// once. A time that runs backwards (a file that starts again) counts as no time passed. Returns
+// state.now.
 Presence step_presence(PresenceState& state, const PresenceSettings& settings, double time,
-                       bool moving, FacesSeen faces);
+                       bool moving, FacesSeen faces, bool coming = false);
 
 // Filters a head's rotation, radians; docs/benchmarks/kiosk.eye.md compares it.
 inline constexpr OneEuroSettings rotation_filter{0.6f, 6.f, 1.f};
@@ -62,6 +63,9 @@ struct ObserverSettings {
   ExpressionSettings expressions;
   std::optional<RecognitionTree> station;   // objects that may be held; empty: none
   const GestureModels* gestures = nullptr;  // borrowed; null: hands are not followed
+  bool bodies = false;                      // see bodies, also without a face, from afar
+  std::string
+      graphs;  // folder of networks of meshes, bodies and hands; empty: beside the face networks'
 };
 
 class Observer {
@@ -75,25 +79,6 @@ class Observer {
   void need(const EyeNeeds& needs);
   // Notes that the camera gave nothing up to `time`: nobody is seen, and holds run out.
   Observation step_blind(double time);
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
-// Reads the gestures of people who are followed: with a hand and a spotter for each person
-// (kiosk/gesture).
-
-class PersonGestures {
- public:
-  // `models` is borrowed and must outlive this; null: nobody's hands are followed. `mirrored`: the
-  // camera delivers a mirror image.
-  PersonGestures(const GestureModels* models, bool mirrored);
-  ~PersonGestures();
-  // Takes a frame for each person whose face is followed. Returns the gesture that was recognised
-  // within the last half second, or nothing; about 2 ms.
-  std::string step(const GrayFrame& frame, uint32_t id, const Box& face);
-  void forget(uint32_t id);
 
  private:
   struct Impl;

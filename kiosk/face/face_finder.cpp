@@ -15,11 +15,6 @@ std::string weights_folder(const FaceSettings& settings) {
   return set ? (std::filesystem::path(set) / "face").string() : "";
 }
 
-std::string mesh_folder(const FaceSettings& settings) {
-  const std::filesystem::path faces = weights_folder(settings);
-  return faces.empty() ? "" : (faces.parent_path() / "human").string();
-}
-
 std::unique_ptr<FaceFinder> make_face_finder(const FaceSettings& settings) {
   const std::string folder = weights_folder(settings);
   try {

@@ -62,8 +62,6 @@ class FaceFinder {
 
 // Returns the folder of the networks' weights; empty: it is set nowhere.
 std::string weights_folder(const FaceSettings& settings);
-// Returns the folder of those for meshes, which lies beside it.
-std::string mesh_folder(const FaceSettings& settings);
 
 // Makes a finder by networks if all their weights can be read, else by cascades. The log says
 // which, and why. Throws LoadError when a cascade is missing too.

@@ -13,8 +13,8 @@ vec2 cut_to_picture(const Cut& cut, vec2 share) {
   return cut.middle + vec2(c * q.x + s * q.y, -s * q.x + c * q.y);
 }
 
-NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int rows) {
-  const cv::Mat whole(picture.height, picture.width, CV_8U, const_cast<uint8_t*>(picture.pixels));
+// Returns the cut of a picture of bytes with any number of channels.
+static cv::Mat cut_of(const cv::Mat& whole, const Cut& cut, int columns, int rows) {
   cv::Mat source = whole, out;
   vec2 origin{0};
   float scale = 1;  // pixels of `source` per pixel of the picture
@@ -24,7 +24,7 @@ NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int r
     const float reach = 0.5f * std::hypot(cut.width, cut.height) + 2 * shrink;
     cv::Rect area(int(cut.middle.x - reach), int(cut.middle.y - reach), int(2 * reach) + 1,
                   int(2 * reach) + 1);
-    area &= cv::Rect(0, 0, picture.width, picture.height);
+    area &= cv::Rect(0, 0, whole.cols, whole.rows);
     const int w = int(std::lround(float(area.width) / shrink));
     const int h = int(std::lround(float(area.height) / shrink));
     if (w >= 1 && h >= 1) {
@@ -43,10 +43,35 @@ NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int r
   const cv::Mat map = (cv::Mat_<double>(2, 3) << u.x, v.x, a.x, u.y, v.y, a.y);
   cv::warpAffine(source, out, map, {columns, rows}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
                  cv::BORDER_REPLICATE);
+  return out;
+}
+
+NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int rows) {
+  return cut_out(picture, {}, cut, columns, rows);
+}
+
+NetworkInput cut_out(const GrayView& picture, const TintView& tint, const Cut& cut, int columns,
+                     int rows) {
+  const cv::Mat whole(picture.height, picture.width, CV_8U, const_cast<uint8_t*>(picture.pixels));
+  const cv::Mat out = cut_of(whole, cut, columns, rows);
   NetworkInput input{columns, rows, std::vector<float>(3 * out.total())};
   for (size_t c = 0; c < 3; c++)
     std::copy(out.ptr(), out.ptr() + out.total(),
               input.planes.begin() + std::ptrdiff_t(c * out.total()));
+  if (!tint.bgr || tint.width < 1) return input;
+  const float smaller = float(tint.width) / float(picture.width);
+  const Cut same{cut.middle * smaller, cut.width * smaller, cut.height * smaller, cut.angle};
+  const cv::Mat colors =
+      cut_of(cv::Mat(tint.height, tint.width, CV_8UC3, const_cast<uint8_t*>(tint.bgr)), same,
+             columns, rows);
+  const uint8_t* pixel = colors.ptr();
+  for (size_t i = 0; i < out.total(); i++, pixel += 3) {
+    const float level = 0.114f * pixel[0] + 0.587f * pixel[1] + 0.299f * pixel[2];
+    for (size_t c = 0; c < 3; c++) {
+      float& value = input.planes[c * out.total() + i];
+      value = std::clamp(value + pixel[2 - c] - level, 0.f, 255.f);
+    }
+  }
   return input;
 }
 

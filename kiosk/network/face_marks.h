@@ -29,6 +29,18 @@ struct Cut {
 // gets smaller. Beyond the picture its rim goes on.
 NetworkInput cut_out(const GrayView& picture, const Cut& cut, int columns, int rows);
 
+// Holds a borrowed picture of the same view in colour, which may be smaller: rows of blue, green
+// and red bytes. Without pixels there is no colour.
+struct TintView {
+  const uint8_t* bgr = nullptr;
+  int width = 0, height = 0;
+};
+
+// Does the same with the colours of `tint`: levels are those of the picture, so that it is as
+// sharp.
+NetworkInput cut_out(const GrayView& picture, const TintView& tint, const Cut& cut, int columns,
+                     int rows);
+
 // Returns a point of the cut (shares 0..1 from its upper left) in pixels of the picture.
 vec2 cut_to_picture(const Cut& cut, vec2 share);
 

@@ -105,6 +105,7 @@ void bench_kiosk_hard(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_screen(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_map(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_gestures(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_hands(BenchReport& report, const BenchOptions& options);
 void bench_kiosk_station(BenchReport& report, const BenchOptions& options);
 
 }  // namespace wellspring::test

@@ -347,6 +347,7 @@ std::vector<ReportPage> declared_pages() {
           kiosk_expression_page(),
           kiosk_hard_page(),
           kiosk_gestures_page(),
+          kiosk_hands_page(),
           kiosk_station_page(),
           kiosk_map_page(),
           cache_display_page(),

@@ -25,6 +25,7 @@ ReportPage kiosk_figures_page();
 ReportPage kiosk_expression_page();
 ReportPage kiosk_hard_page();
 ReportPage kiosk_gestures_page();
+ReportPage kiosk_hands_page();
 ReportPage kiosk_station_page();
 ReportPage kiosk_map_page();
 ReportPage load_visitors_page();

@@ -335,6 +335,39 @@ test('a gesture in the air does what a touch does, once', { skip }, async () => 
   assert.deepEqual(problems, []);
 });
 
+test('a hand that points at something for a second touches it, once', { skip }, async () => {
+  const { page, problems } = await open();
+  let number = 0;
+  kiosk('engaged', { gesture: { name: 'swipe_up', number: ++number } });
+  await view_is(page, 'book');
+  const place = (selector) => page.evaluate((which) => {
+    const box = document.querySelector(which).getBoundingClientRect();
+    return [(box.x + box.width / 2) / innerWidth, (box.y + box.height / 2) / innerHeight];
+  }, selector);
+  const at = () => page.evaluate(() => Number(document.getElementById('book').dataset.page));
+  const gesture = { name: 'swipe_up', number };
+  const [first, corner] = [await at(), await place('.corner.next')];
+  assert.equal(await page.locator('.pointing').count(), 0);
+  kiosk('engaged', { gesture, points_at: corner });
+  await page.locator('.pointing.rests').waitFor();
+  assert.equal(await at(), first);
+  await page.waitForFunction((before) =>
+    Number(document.getElementById('book').dataset.page) > before, first);
+  const second = await at();
+  // It rests there, and touches nothing again; trembling is no leaving.
+  kiosk('engaged', { gesture, points_at: [corner[0] + 0.005, corner[1]] });
+  await sleep(1500);
+  assert.equal(await at(), second);
+  kiosk('engaged', { gesture, points_at: [1.3, 0.5] });
+  await page.locator('.pointing').waitFor({ state: 'hidden' });
+  kiosk('engaged', { gesture, points_at: corner });
+  await page.waitForFunction((before) =>
+    Number(document.getElementById('book').dataset.page) > before, second);
+  kiosk('engaged', { gesture });
+  await page.locator('.pointing').waitFor({ state: 'hidden' });
+  assert.deepEqual(problems, []);
+});
+
 test('without a camera the well is awake, and touches alone are enough', { skip }, async () => {
   const { page } = await open();
   server.send({ type: 'kiosk', kiosk: '', stage: 'sleep', state: 'absent', cameras: 0, people: 0,

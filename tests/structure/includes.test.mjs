@@ -95,7 +95,9 @@ const may_enter = {
     process: [],
     face: ['frame', 'network', 'network/graph'],
     station: ['frame'],
-    '': ['face', 'frame', 'gesture', 'network', 'process', 'station'],
+    body: ['frame', 'network', 'network/graph'],
+    hand: ['frame', 'network', 'network/graph'],
+    '': ['body', 'face', 'frame', 'gesture', 'hand', 'network', 'process', 'station'],
   },
   show: {
     lighting: [],

@@ -16,6 +16,7 @@ import { first_language, language_names, translate_page, word } from '../words.j
 import { make_book } from './book.js';
 import { show_calibration } from './calibration.js';
 import { show_holding } from './holding.js';
+import { make_pointing } from './pointing.js';
 import { make_slides } from './slides.js';
 import { make_take_along } from './take_along.js';
 import { kiosk_token } from './token.js';
@@ -61,6 +62,7 @@ const well = make_well(by_id('well'), {
   fell_up: () => ambience.splash(0.15),
 }, { calm, fixed: Number(asked.get('pixels')) || 0 });
 const take_along = make_take_along(by_id('take-along'));
+const point = make_pointing(() => tell(true));
 /** @type {any} */ (window).well = well;  // for whoever measures it
 const player = make_player({
   tour: (action) => send({ type: 'tour', action }),
@@ -223,18 +225,20 @@ function gesture(name) {
   if (view === 'slides') {
     if (name === 'swipe_left') slides.step(1);
     else if (name === 'swipe_right') slides.step(-1);
-    else if (name === 'swipe_down') show('book');
+    else if (name === 'swipe_down' || name === 'stop') show('book');
   } else if (view === 'book') {
     if (name === 'swipe_left') book.turn(1);
     else if (name === 'swipe_right') book.turn(-1);
     else if (name === 'swipe_down') show('well');
     else if (digit) book.choose(Number(digit));
+    else if (name === 'stop') book.choose(5);  // five fingers, where nothing is to be stopped
   } else if (view === 'well' && name === 'swipe_up') show('book');
 }
 
 function hear_kiosk(message) {
   show_calibration(message.calibration, lang);
   show_holding(message.holding, lang);
+  point(message.points_at);
   server_decides = 'stage' in message;
   const cameras = message.cameras ?? 0;
   sound.stands_behind(Math.max(0, (message.distance ?? viewing_distance) - viewing_distance));

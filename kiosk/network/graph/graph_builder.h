@@ -79,6 +79,11 @@ class GraphBuilder {
   GraphValue mean();
   GraphValue pad();
   GraphValue reshape();
+  GraphValue reshaped_value(const GraphValue& from, const std::vector<int>& shape);
+  GraphValue with_dimension();
+  GraphValue without_dimensions(const std::vector<double>& which);
+  GraphValue cast();
+  GraphValue resized();
   GraphValue concatenated();
   GraphValue softmax();
 

@@ -158,7 +158,7 @@ void read_signature(FieldReader& root, const NamedNodes& all, Graph& graph) {
 
 }  // namespace
 
-Graph load_graph(const std::string& file) {
+Graph load_graph(const std::string& file, const std::vector<std::string>& cut) {
   const nlohmann::json json = parse_json_file(file, read_json_text(file));
   Faults faults(file);
   FieldReader root(json, faults);
@@ -175,6 +175,9 @@ Graph load_graph(const std::string& file) {
       is_read[inputs[i].back()] = true;
     }
   read_signature(root, all, graph);
+  if (!cut.empty()) graph.outputs.clear();
+  for (const std::string& name : cut)
+    graph.outputs[name] = all.find(name, file, "/modelTopology/node");
   if (graph.outputs.empty())
     for (size_t i = 0; i < all.nodes.size(); i++)
       if (!is_read[i] && all.nodes[i].operation != "Const") graph.outputs[all.nodes[i].name] = i;

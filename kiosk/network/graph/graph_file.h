@@ -35,10 +35,11 @@ struct Graph {
   std::map<std::string, size_t> outputs;
 };
 
-// Loads FILE and its weights, which lie in the same folder. Throws LoadError naming file and node
-// or tensor: no JSON, a node without name or operation, a name twice, an input that is no node or
-// no first output of one, a circle, a constant without weights. Bounds: 32 MiB of JSON, 10,000
-// nodes, 64 MiB of weights.
-Graph load_graph(const std::string& file);
+// Loads FILE and its weights, which lie in the same folder. `cut` names nodes that are the outputs
+// instead of those of the signature, so that what comes after them is left out. Throws LoadError
+// naming file and node or tensor: no JSON, a node without name or operation, a name twice, an input
+// that is no node or no first output of one, a circle, a constant without weights. Bounds: 32 MiB
+// of JSON, 10,000 nodes, 64 MiB of weights.
+Graph load_graph(const std::string& file, const std::vector<std::string>& cut = {});
 
 }  // namespace wellspring::kiosk

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs any graph of known operations in OpenCV's module dnn. Outputs equal those of TensorFlow.js
 // within 1e-3 (tests/unit/kiosk/network/graph). Known operations, all of 32-bit floats:
-//   Placeholder (one picture), Const, Identity, Reshape, Pad (with zeros), ConcatV2
+//   Placeholder (one picture; of whole numbers, too), Const, Identity, Cast to floats, Pad (with
+//   zeros), ConcatV2, Reshape, ExpandDims, Squeeze, Unpack of one value
 //   Conv2D, DepthwiseConv2dNative, MatMul, by constants; their forms that begin with _Fused or
 //   Fused add a bias and end in Relu, Relu6 or Prelu
-//   Add, AddV2, AddN, Mul: two values of one shape, or one and a constant for each channel
+//   Add, AddV2, AddN, Mul: two values of one shape, or one and a constant for each channel; Sub: a
+//   value less such a constant
 //   Relu, Relu6, Prelu, Sigmoid, Softmax (over the last dimension)
-//   MaxPool; Mean over rows and columns
+//   MaxPool; Mean over rows and columns; ResizeBilinear with half_pixel_centers
 #pragma once
 #include <memory>
 #include <span>

@@ -52,6 +52,7 @@ void GraphBuilder::add_node(const GraphNode& node) {
       {"AddV2", [&] { return joined("sum"); }},
       {"AddN", [&] { return joined("sum"); }},
       {"Mul", [&] { return joined("prod"); }},
+      {"Sub", [&] { return joined("difference"); }},
       {"Relu", [&] { return plain("ReLU"); }},
       {"Relu6", [&] { return plain("ReLU6"); }},
       {"Sigmoid", [&] { return plain("Sigmoid"); }},
@@ -60,7 +61,20 @@ void GraphBuilder::add_node(const GraphNode& node) {
       {"MaxPool", [&] { return max_pool(); }},
       {"Mean", [&] { return mean(); }},
       {"Pad", [&] { return pad(); }},
+      {"Cast", [&] { return cast(); }},
       {"Reshape", [&] { return reshape(); }},
+      {"ExpandDims", [&] { return with_dimension(); }},
+      {"Squeeze",
+       [&] {
+         const GraphAttribute* which = attribute("squeeze_dims");
+         return without_dimensions(which ? which->numbers : std::vector<double>{});
+       }},
+      {"Unpack",
+       [&] {
+         const GraphAttribute* axis = attribute("axis");
+         return without_dimensions(axis ? axis->numbers : std::vector<double>{0});
+       }},
+      {"ResizeBilinear", [&] { return resized(); }},
       {"ConcatV2", [&] { return concatenated(); }},
   };
   const auto* found = std::ranges::find(operations, name, [](const auto& o) { return o.first; });
@@ -71,7 +85,9 @@ void GraphBuilder::add_node(const GraphNode& node) {
 GraphValue GraphBuilder::placeholder() {
   if (!input_shape.empty()) refuse("is a second input");
   const GraphAttribute* type = attribute("dtype");
-  if (type && type->words != std::vector<std::string>{"DT_FLOAT"}) refuse("is no float");
+  if (type && type->words != std::vector<std::string>{"DT_FLOAT"} &&
+      type->words != std::vector<std::string>{"DT_INT32"})
+    refuse("is neither float nor int32");
   std::vector<int> shape;
   if (const GraphAttribute* sizes = attribute("shape"))
     for (double size : sizes->numbers) shape.push_back(int(size));
@@ -173,21 +189,29 @@ GraphValue GraphBuilder::multiplied(bool fused) {
   return fused_end(add(std::move(layer), from, shape), ends);
 }
 
-// Adds or multiplies values of one shape, or one value and a constant for each channel.
+// Adds or multiplies values of one shape, or one value and a constant for each channel. A
+// difference is known of a value and a constant behind it.
 GraphValue GraphBuilder::joined(const char* operation) {
   const bool two = node_->operation != "AddN";
+  const std::string word = operation;
+  const bool less = word == "difference";
   count_inputs(2, two ? 2 : 64);
   const bool first_constant = values[node_->inputs[0]].constant != nullptr;
   if (two && (first_constant || values[node_->inputs[1]].constant)) {
     const GraphValue& from = computed(first_constant ? 1 : 0);
     if (from.shape.size() == 3) refuse("with a constant is known for 2 or 4 dimensions only");
     const int channels = from.shape.back();
-    const bool sum = std::string(operation) == "sum";
+    const bool sum = word == "sum" || less;
+    if (less && first_constant) refuse("is known without a constant in front only");
+    WeightTensor numbers = channel_numbers(constant(first_constant ? 0 : 1), channels);
+    if (less)
+      for (float& number : numbers.values) number = -number;
     GraphLayer layer{"Scale", {{"bias_term", {sum}}}};
     if (sum) layer.blobs = {{{1, channels}, std::vector<float>(size_t(channels), 1.f)}};
-    layer.blobs.push_back(channel_numbers(constant(first_constant ? 0 : 1), channels));
+    layer.blobs.push_back(std::move(numbers));
     return add(std::move(layer), from, from.shape);
   }
+  if (less) refuse("is known with a constant only");
   GraphLayer layer{"Eltwise", {}, {{"operation", operation}}};
   const std::vector<int>& shape = computed(0).shape;
   for (size_t i = 0; i < node_->inputs.size(); i++) {
@@ -265,9 +289,63 @@ GraphValue GraphBuilder::reshape() {
   check_shape(shape);
   if (product(shape) != numbers)
     refuse(shape_text(from.shape) + " cannot become " + shape_text(shape));
+  return reshaped_value(from, shape);
+}
+
+// Gives a value another shape of as many numbers, which keep TensorFlow's order.
+GraphValue GraphBuilder::reshaped_value(const GraphValue& from, const std::vector<int>& shape) {
   int last = reshaped(natural(from), shape);
   if (shape.size() == 4) last = reordered(last, {0, 3, 1, 2});
   return {last, shape, nullptr};
+}
+
+GraphValue GraphBuilder::with_dimension() {
+  count_inputs(2, 2);
+  const GraphValue& from = computed(0);
+  std::vector<int> shape = from.shape;
+  const std::vector<int> axes = whole_numbers(1);
+  const int after = int(shape.size()) + 1;
+  const int axis = axes.size() != 1 ? after : axes[0] < 0 ? axes[0] + after : axes[0];
+  if (axis < 0 || axis >= after || after > 4) refuse("has no axis among at most 4 dimensions");
+  shape.insert(shape.begin() + axis, 1);
+  return reshaped_value(from, shape);
+}
+
+// Leaves out dimensions, which must have the size 1.
+GraphValue GraphBuilder::without_dimensions(const std::vector<double>& which) {
+  count_inputs(1, 1);
+  const GraphValue& from = computed(0);
+  std::vector<int> shape = from.shape;
+  for (double one : which) {
+    const double axis = one < 0 ? one + double(shape.size()) : one;
+    if (!(axis >= 0 && axis < double(shape.size())) || shape[size_t(axis)] != 1)
+      refuse("is known for a dimension of size 1 only");
+    shape[size_t(axis)] = 0;
+  }
+  std::erase(shape, 0);
+  if (shape.size() < 2 || which.empty()) refuse("leaves fewer than 2 dimensions, or names none");
+  return reshaped_value(from, shape);
+}
+
+// Whole numbers of a picture are kept as floats, so that nothing is to be done.
+GraphValue GraphBuilder::cast() {
+  count_inputs(1, 1);
+  const GraphAttribute* to = attribute("DstT");
+  if (to && to->words != std::vector<std::string>{"DT_FLOAT"}) refuse("is known to floats only");
+  return computed(0);
+}
+
+GraphValue GraphBuilder::resized() {
+  count_inputs(2, 2);
+  const GraphValue& from = computed(0, 4);
+  const std::vector<int> size = whole_numbers(1);
+  if (size.size() != 2) refuse("has not two sizes");
+  if (!flag("half_pixel_centers") || flag("align_corners"))
+    refuse("is known with half_pixel_centers and without align_corners only");
+  return add({"Resize",
+              {{"height", {size[0]}}, {"width", {size[1]}}, {"half_pixel_centers", {1}}},
+              {{"interpolation", "bilinear"}}},
+             from, {from.shape[0], size[0], size[1], from.shape[3]});
 }
 
 GraphValue GraphBuilder::concatenated() {

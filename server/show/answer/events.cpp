@@ -412,6 +412,9 @@ std::string kiosk_message(const Show& show, const Kiosk& kiosk) {
     if (!holding->id.empty()) out["id"] = holding->id;
     if (!holding->of_class.empty()) out["class"] = holding->of_class;
   }
+  if (const ScreenSize& screen = kiosk.settings.screen; audience.points_at && screen.known())
+    message["points_at"] = {hundredths(0.5f + audience.points_at->x / screen.width),
+                            hundredths(0.5f - audience.points_at->y / screen.height)};
   if (kiosk.gesture_number > 0 && turns_pages(kiosk.showing))
     message["gesture"] = {{"name", kiosk.gesture}, {"number", kiosk.gesture_number}};
   return message.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -372,6 +372,11 @@ size_t next_story(const ExhibitStage& stage, const KioskVisit& visit, bool again
   return (index + 1) % stories.size();
 }
 
+// Whether there is something that an open palm could stop.
+bool speaks(const ShowCast& cast) {
+  return !cast.teller.voice.story.empty() || !cast.teller.voice.queue.empty();
+}
+
 StorytellerOrder order_of(const ExhibitStage& stage, const ShowCast& cast, const KioskVisit& visit,
                           const std::string& gesture) {
   StorytellerOrder order;
@@ -384,7 +389,7 @@ StorytellerOrder order_of(const ExhibitStage& stage, const ShowCast& cast, const
     const bool back = gesture == "swipe_right";
     if (telling) order.action = back ? "restart" : "skip";
     else if (!stories.empty()) order.story = stories[next_story(stage, visit, back)].id;
-  } else if (gesture == "swipe_down" && telling) {
+  } else if ((gesture == "swipe_down" && telling) || (gesture == "stop" && speaks(cast))) {
     order.action = "stop";
   }
   return order;
@@ -406,8 +411,9 @@ int volume_before(const Exhibit& exhibit, const Viewpoint& eye) {
 
 // Turns the volume that a guest who walks stands before. Returns false: there is none.
 bool turn_volume(const Show& show, const Kiosk& kiosk, const std::string& gesture, Visitor& page) {
-  const bool left = gesture == "swipe_left";
-  if (kiosk.showing != Showing::walk || !(left || gesture == "swipe_right")) return false;
+  const bool left = gesture == "swipe_left" || gesture == "turn_left";
+  const bool right = gesture == "swipe_right" || gesture == "turn_right";
+  if (kiosk.showing != Showing::walk || !(left || right)) return false;
   const Exhibit& exhibit = show.stage.exhibit;
   const int piece = volume_before(exhibit, page.place.view);
   if (piece < 0) return false;
@@ -429,7 +435,8 @@ void follow_gestures(Show& show, Kiosk& kiosk) {
   if (!page) return;
   for (const auto& one : kiosk.gestures) {
     if (std::find(before.begin(), before.end(), one) != before.end()) continue;  // still told
-    if (turns_pages(kiosk.showing)) {
+    const bool stops = one.second == "stop" && speaks(show.cast);
+    if (turns_pages(kiosk.showing) && !stops) {
       kiosk.gesture = one.second;
       kiosk.gesture_number++;
       show.totals.gestures++;

@@ -102,6 +102,7 @@ std::string describe_api() {
               "volume": "0..1", "heard": "[ids of the stories told to these guests]",
               "calibration": "as the kiosk's observation has it; left out: there is none",
               "holding": "{id?, class?, title, hint}: what a guest holds to the camera, texts by language; left out: nothing",
+              "points_at": "[right, down]: where a guest points, shares of the screen from its upper left corner; left out: nobody does, or the screen's size is unknown",
               "gesture": "{name, number: grows with each} while the page shows book, topics, partners or slides"},
     "house": {"open": "to a kiosk's page: boolean; closed, nothing is shown", "quiet": "boolean",
               "headphones": "boolean: they are to be offered", "volume": "0..1, of a kiosk with no own",

@@ -2,6 +2,7 @@
 #include "show/storyteller/audience.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace wellspring::show {
 
@@ -103,6 +104,7 @@ Audience gather_audience(const std::vector<Eye>& eyes, const std::string& kiosk,
   std::erase_if(audience.known,
                 [&](const KnownPerson& one) { return now - one.seen > remembered_for; });
   std::vector<SeenPerson> seen;
+  float pointing_from = std::numeric_limits<float>::max();  // metres of who points
   for (size_t i = 0; i < eyes.size(); i++) {
     const Eye& eye = eyes[i];
     if (eye.kiosk != kiosk || now - eye.received > observation_lifetime) continue;
@@ -119,6 +121,12 @@ Audience gather_audience(const std::vector<Eye>& eyes, const std::string& kiosk,
       Guest guest = place_person(person, kiosk_view, eye.number, away);
       KnownPerson& known = find_known(audience.known, guest.id, now);
       known.seen = now;
+      for (const Hand& hand : person.hands) {
+        const float far = glm::length(person.position);
+        if (!hand.points_at || far >= pointing_from) continue;
+        audience.points_at = hand.points_at;
+        pointing_from = far;
+      }
       seen.push_back({guest, person.confidence, i, size_t(&known - audience.known.data())});
     }
   }

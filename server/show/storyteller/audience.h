@@ -41,6 +41,9 @@ struct Audience {
   float aside = 0;    // metres right of the screen's middle, of that one
   std::optional<CalibrationStep> calibration;  // step of a camera that is being set up
   std::optional<Holding> holding;              // object held to a camera
+  // Place on the screen that the nearest who points is pointing at, metres right of and above its
+  // middle.
+  std::optional<vec2> points_at;
 };
 
 // Distance from the screen at which the picture's camera is where the visitor's eyes are, where

@@ -50,6 +50,42 @@ TEST_F(GuestGestures, ADigitChoosesAStory) {
   EXPECT_EQ(told(), "");
 }
 
+TEST_F(GuestGestures, AnOpenPalmStopsTheStory) {
+  join(32, 32, "en", "kiosk");
+  steps(3);
+  make("stop");
+  EXPECT_EQ(show->totals.gestures, 0u) << "there is nothing to stop";
+  make("1");
+  EXPECT_EQ(told(), "tale");
+  make("stop");
+  EXPECT_EQ(told(), "");
+  EXPECT_EQ(show->totals.gestures, 2u);
+}
+
+TEST_F(GuestGestures, ThePageIsToldWhereTheNearestPoints) {
+  join(32, 32, "en", "kiosk");
+  steps(3);
+  auto told = [&] { return nlohmann::json::parse(show->kiosks.all[0].message); };
+  auto point = [&](std::optional<vec2> at, vec3 from) {
+    Eye& eye = show->kiosks.eyes.front();
+    eye.seen.state = Presence::person;
+    eye.seen.people.assign(1, Person{});
+    eye.seen.people[0].id = 1;
+    eye.seen.people[0].position = from;
+    eye.seen.people[0].hands.resize(1);
+    eye.seen.people[0].hands[0].points_at = at;
+    eye.received = show->time;
+    step();
+  };
+  point(vec2(0.1f, 0.2f), {0, 0, 1});
+  EXPECT_FALSE(told().contains("points_at")) << "the screen's size is unknown";
+  show->kiosks.all[0].settings.screen = {0.8f, 0.5f};
+  point(vec2(0.2f, 0.125f), {0, 0, 1});
+  EXPECT_EQ(told()["points_at"], (nlohmann::json{0.75, 0.25}));
+  point({}, {0, 0, 1});
+  EXPECT_FALSE(told().contains("points_at"));
+}
+
 TEST_F(GuestGestures, SwipesTurnThePages) {
   join(32, 32, "en", "kiosk");
   steps(3);

@@ -249,6 +249,69 @@ TEST_F(GraphRun, Concatenation) {
   expect_refused(graph(4), "out", "no dimension");
 }
 
+TEST_F(GraphRun, Differences) {
+  auto graph = [](const std::vector<std::string>& inputs) {
+    MadeGraph made;
+    made.picture(1, 2, 2).constant("channels", {1, 1, 1, 2}, {3, -1}).constant("one", {}, {2});
+    return made.node("out", "Sub", inputs);
+  };
+  EXPECT_EQ(run(graph({"in", "channels"}), {1, 2, 10, 20}), (Numbers{-2, 11, -1, 21}));
+  EXPECT_EQ(run(graph({"in", "one"}), {1, 2, 10, 20}), (Numbers{-1, 8, 0, 18}));
+  expect_refused(graph({"one", "in"}), "out", "without a constant in front");
+  expect_refused(graph({"in", "in"}), "out", "with a constant only");
+}
+
+TEST_F(GraphRun, WholeNumbersAndDimensionsOfOne) {
+  auto graph = [](const char* type, int axis) {
+    MadeGraph made;
+    made.picture(1, 2, 2).whole_constant("axis", {}, {axis});
+    made.nodes[0]["attr"]["dtype"]["type"] = type;
+    made.node("floats", "Cast", {"in"}, {{"DstT", {{"type", "DT_FLOAT"}}}})
+        .node("first", "Unpack", {"floats"}, {{"axis", {{"i", "0"}}}, {"num", {{"i", "1"}}}})
+        .node("again", "ExpandDims", {"first", "axis"});
+    return made.node("out", "Squeeze", {"again"}, {{"squeeze_dims", MadeGraph::whole({axis})}});
+  };
+  EXPECT_EQ(run(graph("DT_INT32", 0), {1, 2, 10, 20}), (Numbers{1, 10, 2, 20}));
+  EXPECT_EQ(shape, (std::vector<int>{1, 2, 2}));
+  EXPECT_EQ(run(graph("DT_FLOAT", -1), {1, 2, 10, 20}), (Numbers{1, 10, 2, 20}));
+  expect_refused(graph("DT_STRING", 0), "in", "neither float nor int32");
+  expect_refused(graph("DT_FLOAT", 7), "again", "no axis");
+  MadeGraph wide;
+  wide.picture(2, 2, 1).node("out", "Squeeze", {"in"}, {{"squeeze_dims", MadeGraph::whole({1})}});
+  expect_refused(wide, "out", "of size 1 only");
+  MadeGraph cut;
+  cut.picture(2, 2, 1).node("out", "Cast", {"in"}, {{"DstT", {{"type", "DT_INT32"}}}});
+  expect_refused(cut, "out", "to floats only");
+}
+
+TEST_F(GraphRun, Resizing) {
+  auto graph = [](std::vector<int> size, bool half) {
+    MadeGraph made;
+    made.picture(1, 2, 1).whole_constant("size", {int(size.size())}, size);
+    return made.node("out", "ResizeBilinear", {"in", "size"},
+                     {{"half_pixel_centers", {{"b", half}}}, {"align_corners", {{"b", false}}}});
+  };
+  // Centres of pixels lie at halves: those of the four are at 0.25, 0.75, 1.25, 1.75 of two.
+  EXPECT_EQ(run(graph({1, 4}, true), {0, 4}), (Numbers{0, 1, 3, 4}));
+  EXPECT_EQ(shape, (std::vector<int>{1, 1, 4, 1}));
+  expect_refused(graph({1, 4}, false), "out", "half_pixel_centers");
+  expect_refused(graph({4}, true), "out", "two sizes");
+  expect_refused(graph({0, 4}, true), "out", "from 1 to");
+}
+
+TEST_F(GraphRun, CutGraphsEndWhereTheyAreCut) {
+  MadeGraph graph = small_graph();
+  graph.node("after", "NobodyKnows", {"out"});
+  graph.signature["outputs"]["result:0"]["name"] = "after";
+  const std::string file = graph.write(folder);
+  GraphNetwork network(load_graph(file, {"conv", "mean"}));
+  const Tensors outputs = network.run(Numbers(32, 1.f));
+  ASSERT_EQ(outputs.size(), 2u);
+  EXPECT_EQ(outputs.at("conv").shape, (std::vector<int>{1, 2, 2, 3}));
+  EXPECT_EQ(outputs.at("mean").shape, (std::vector<int>{1, 3}));
+  EXPECT_THROW(load_graph(file, {"nobody"}), LoadError);
+}
+
 TEST_F(GraphRun, WholeNetwork) {
   const Numbers planes(32, 1);
   GraphNetwork network = open_graph(small_graph().write(folder));
@@ -311,8 +374,8 @@ TEST_F(GraphRun, WhatIsNotKnownIsNamed) {
   two.nodes[1]["name"] = "second";
   expect_refused(two.node("n", "Add", {"in", "second"}), "second", "second input");
   MadeGraph whole = picture();
-  whole.nodes[0]["attr"]["dtype"]["type"] = "DT_INT32";
-  expect_refused(whole.node("n", "Relu", {"in"}), "in", "no float");
+  whole.nodes[0]["attr"]["dtype"]["type"] = "DT_BOOL";
+  expect_refused(whole.node("n", "Relu", {"in"}), "in", "neither float nor int32");
   MadeGraph none;
   none.constant("c", {2, 2}, {1, 2, 3, 4}).node("n", "Identity", {"c"});
   expect_refused(none, "n", "an output is a constant");
