@@ -11,7 +11,7 @@
 #include "kiosk/station/code.h"
 #include "kiosk/station/learn.h"
 #include "wire/limits.h"
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 namespace wellspring::kiosk {
 namespace {

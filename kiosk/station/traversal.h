@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "kiosk/station/context.h"
-#include "kiosk/station/tree.h"
+#include "kiosk/tree/tree.h"
 
 namespace wellspring::kiosk {
 

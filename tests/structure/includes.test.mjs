@@ -94,8 +94,9 @@ const may_enter = {
     'network/graph': ['network'],
     process: [],
     face: ['frame', 'network', 'network/graph'],
-    station: ['frame'],
-    '': ['face', 'frame', 'gesture', 'network', 'process', 'station'],
+    tree: [],
+    station: ['frame', 'tree'],
+    '': ['face', 'frame', 'gesture', 'network', 'process', 'station', 'tree'],
   },
   show: {
     lighting: [],

@@ -7,7 +7,7 @@
 #include "benchmark/kiosk/made_objects.h"
 #include "kiosk/station/learn.h"
 #include "kiosk/station/pattern.h"
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 namespace wellspring::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 #include <algorithm>
 #include <cmath>

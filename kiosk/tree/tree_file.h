@@ -12,7 +12,7 @@
 #pragma once
 #include <string>
 
-#include "kiosk/station/tree.h"
+#include "kiosk/tree/tree.h"
 
 namespace wellspring::kiosk {
 
