@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "kiosk/station/code.h"
+#include "kiosk/station/glance.h"
 #include "kiosk/station/outline.h"
 #include "kiosk/station/pattern.h"
 #include "kiosk/station/sight.h"
@@ -24,6 +25,7 @@ struct Station::Impl {
   CodeSolver code;
   AlwaysSolver always;
   Traversal walk;
+  Glance glance;
   bool mirrored = false;
   GrayFrame turned;  // the frame, turned back
   double looked_at = -1e9, seen_at = -1e9, undecided_since = -1e9;
@@ -119,9 +121,11 @@ struct Station::Impl {
   std::optional<Holding> step(const GrayFrame& given) {
     const double time = given.time;
     if (time < looked_at) forget();
-    if (last < 0 && time - looked_at < settings.look_every && agreed == 0) return keep(time);
+    glance.step(given);
+    if (last < 0 && time - looked_at < pause() && agreed == 0) return keep(time);
     looked_at = time;
     const Recognition found = look(given);
+    if (found.node < 0) glance.note_vain();
     if (found.node != last || found.node < 0) agreed = 0;
     last = found.node;
     if (found.node < 0) return keep(time);
@@ -132,6 +136,11 @@ struct Station::Impl {
     seen_at = time;
     told = describe(found);
     return told;
+  }
+
+  double pause() const {
+    if (!glance.changed()) return settings.look_rarely;
+    return glance.rests() ? settings.look_every : settings.look_moving;
   }
 
   std::optional<Holding> keep(double time) {

@@ -140,7 +140,7 @@ const most_files_a_folder = 30;
 // Heavy headers appear in .cpp files of these layers only.
 const heavy = [
   [/^(boost\/(beast|asio)|boost\/)/, ['store', 'stream', 'kiosk']],
-  [/^opencv2?\//, ['kiosk']],
+  [/^(opencv2?|ZXing)\//, ['kiosk']],
   [/^embree[34]?\//, ['world']],
   [/^pugixml/, ['avatar', 'scan', 'store']],
   [/^sndfile/, ['avatar']],
