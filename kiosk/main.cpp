@@ -89,8 +89,9 @@ class ToldStation {
       if (take(*link) || known_) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    log::warn("the server does not say whether objects are to be recognised: none are until it "
-              "does");
+    log::warn(
+        "the server does not say whether objects are to be recognised: none are until it "
+        "does");
   }
   // Takes what has come. True: an eye that runs has another tree.
   bool take(ServerLink& link) {
@@ -322,13 +323,14 @@ int calibrate(const KioskOptions& options, const std::vector<std::string>& argum
     if (link) link->send(write_observation(last));
   };
   bool done = false;
-  int status = supervise(arguments, 0, camera.name, nullptr, false, [&](const Observation& seen, auto&) {
-    done = calibration.step(seen);
-    if (std::string now = calibration.advice(); now != advice) print(advice = now);
-    last = seen;
-    if (!done) tell_screen(calibration.now());
-    return !done;
-  });
+  int status =
+      supervise(arguments, 0, camera.name, nullptr, false, [&](const Observation& seen, auto&) {
+        done = calibration.step(seen);
+        if (std::string now = calibration.advice(); now != advice) print(advice = now);
+        last = seen;
+        if (!done) tell_screen(calibration.now());
+        return !done;
+      });
   if (!done) return std::max(status, 1);
   try {
     const Mount mount =

@@ -22,8 +22,8 @@ std::vector<std::string> read_codes(int width, int height, const uint8_t* gray) 
   options.setFormats(ZXing::BarcodeFormat::QRCode);
   options.setMaxNumberOfSymbols(most);
   std::vector<std::string> texts;
-  for (const auto& found : ZXing::ReadBarcodes(
-           ZXing::ImageView(gray, width, height, ZXing::ImageFormat::Lum), options))
+  for (const auto& found :
+       ZXing::ReadBarcodes(ZXing::ImageView(gray, width, height, ZXing::ImageFormat::Lum), options))
     if (found.isValid()) texts.push_back(found.text());
   return texts;
 }

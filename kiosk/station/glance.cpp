@@ -8,11 +8,11 @@
 namespace wellspring::kiosk {
 namespace {
 
-constexpr int cells_across = 64;
-constexpr int stride = 2;        // pixels between those that count
-constexpr float differ = 10;     // brightness, 0..255
-constexpr int most_alike = 2;    // cells of a block of 3 by 3 that may be as they were
-constexpr double apart = 0.15;   // seconds between pictures whose difference is motion
+constexpr int glance_across = 64;
+constexpr int pixel_stride = 2;        // pixels between those that count
+constexpr float cell_differs = 10;     // brightness, 0..255
+constexpr int most_alike = 2;          // cells of a block of 3 by 3 that may be as they were
+constexpr double motion_apart = 0.15;  // seconds between pictures whose difference is motion
 constexpr int moving_blocks = 6;
 
 // Returns the mean brightness of each cell.
@@ -21,9 +21,10 @@ std::vector<float> cell_means(const GrayFrame& frame, int across, int down) {
   for (int row = 0; row < down; row++)
     for (int column = 0; column < across; column++) {
       int sum = 0, count = 0;
-      for (int y = row * frame.height / down; y < (row + 1) * frame.height / down; y += stride)
+      for (int y = row * frame.height / down; y < (row + 1) * frame.height / down;
+           y += pixel_stride)
         for (int x = column * frame.width / across; x < (column + 1) * frame.width / across;
-             x += stride)
+             x += pixel_stride)
           sum += frame.pixels[size_t(y) * size_t(frame.width) + size_t(x)], count++;
       out.push_back(float(sum) / float(std::max(count, 1)));
     }
@@ -45,7 +46,8 @@ bool Glance::differs(const std::vector<float>& from, int least_blocks) const {
     for (int column = 0; column + 3 <= across_; column++) {
       int alike = 0;
       for (int i = 0; i < 9 && alike <= most_alike; i++)
-        alike += std::abs(off[size_t((row + i / 3) * across_ + column + i % 3)] - light) < differ;
+        alike +=
+            std::abs(off[size_t((row + i / 3) * across_ + column + i % 3)] - light) < cell_differs;
       blocks += alike <= most_alike;
     }
   return blocks >= least_blocks;
@@ -54,12 +56,12 @@ bool Glance::differs(const std::vector<float>& from, int least_blocks) const {
 void Glance::step(const GrayFrame& frame) {
   if (frame.width != width_ || frame.height != height_) {
     width_ = frame.width, height_ = frame.height;
-    across_ = std::min(cells_across, width_), down_ = std::max(1, across_ * height_ / width_);
+    across_ = std::min(glance_across, width_), down_ = std::max(1, across_ * height_ / width_);
     before_.clear(), vain_.clear();
   }
   now_ = cell_means(frame, across_, down_);
   changed_ = differs(vain_, 1);
-  if (frame.time >= before_at_ && frame.time - before_at_ < apart) return;
+  if (frame.time >= before_at_ && frame.time - before_at_ < motion_apart) return;
   rests_ = !before_.empty() && !differs(before_, moving_blocks);
   before_ = now_, before_at_ = frame.time;
 }

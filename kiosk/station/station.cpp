@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "kiosk/station/box.h"
 #include "kiosk/station/code.h"
 #include "kiosk/station/glance.h"
 #include "kiosk/station/outline.h"
@@ -22,6 +23,7 @@ struct Station::Impl {
   PatternSolver pattern;
   TwinSolver twins, colors;
   OutlineSolver outline;
+  BoxSolver box;
   CodeSolver code;
   AlwaysSolver always;
   Traversal walk;
@@ -39,11 +41,13 @@ struct Station::Impl {
         twins(tree, sight, MarkKind::edges),
         colors(tree, sight, MarkKind::colors),
         outline(tree, sight),
+        box(tree, sight),
         code(tree, sight),
         walk(tree, {{"pattern", &pattern},
                     {"twins", &twins},
                     {"colors", &colors},
                     {"outline", &outline},
+                    {"box", &box},
                     {"code", &code},
                     {"always", &always}}) {
     settings.mount.mirrored = false;  // frames are turned back

@@ -84,6 +84,7 @@ struct Mark {
 struct NodeData {
   std::vector<View> views;
   std::vector<Mark> marks;  // the children of a search have as many, of the same places
+  vec3 box{0};              // width, height, depth in metres of a box; 0: it is none
   std::string code;         // text of the QR code on it; empty: it has none
 };
 

@@ -122,6 +122,9 @@ NodeData read_data(FieldReader& fields) {
   fields.parts("marks", most_marks, "",
                [&](FieldReader& one) { data.marks.push_back(read_mark(one)); });
   fields.text("code", data.code, "", Need::optional, most_code_bytes);
+  if (fields.vector("box", 10, data.box, "metres") &&
+      !(std::min({data.box.x, data.box.y, data.box.z}) > 0))
+    fields.fail("box", "has a side that is not above 0");
   return data;
 }
 
@@ -289,6 +292,7 @@ ordered_json to_json(const NodeData& data) {
                             {"height", mark.height},
                             {"picture", to_base64(mark.bgr)}});
   if (!data.code.empty()) out["code"] = data.code;
+  if (data.box.x > 0) out["box"] = {data.box.x, data.box.y, data.box.z};
   return out;
 }
 

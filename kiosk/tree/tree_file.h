@@ -8,8 +8,8 @@
 //     switch   cases [{when, child}]; the first whose conditions hold is taken
 //     model    the object `id`
 //     when     [{value, least?, most?, is?, quality?}], of the context store
-//   metadata  {NAME: {views, marks, code}}; features, pictures and marks are base64, code is the
-//             text of a QR code
+//   metadata  {NAME: {views, marks, code, box}}; features, pictures and marks are base64, code is
+//             the text of a QR code, box the width, height and depth of a box in metres
 #pragma once
 #include <string>
 
@@ -23,8 +23,8 @@ inline constexpr int most_view_side = 1024;                          // pixels
 inline constexpr size_t most_features = 2000, most_views = 16, most_marks = 64;
 inline constexpr size_t most_code_bytes = 2000;
 // Name the solvers that a tree may ask for (kiosk/station/station.cpp).
-inline constexpr const char* solver_names[] = {"pattern", "twins", "colors", "outline", "code",
-                                               "always"};
+inline constexpr const char* solver_names[] = {"pattern", "twins", "colors", "outline",
+                                               "box",     "code",  "always"};
 
 // Throws LoadError that names the first fault and its place.
 RecognitionTree load_tree(const std::string& file);

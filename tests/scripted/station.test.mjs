@@ -7,7 +7,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { crc32, deflateSync } from 'node:zlib';
+import { deflateSync } from 'node:zlib';
 import { Visitor, run, start_server, until } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
@@ -15,15 +15,15 @@ const folder = mkdtempSync(join(tmpdir(), 'wellspring-station-'));
 const content = join(folder, 'content'), frames = join(folder, 'frames');
 let server;
 
-// The checksum of a PNG's chunk, where Node's own is not there yet (before 22.2).
-const checksum = crc32 ?? ((bytes) => {
+// The checksum of a PNG's chunk.
+function checksum(bytes) {
   let value = ~0;
   for (const byte of bytes) {
     value ^= byte;
     for (let bit = 0; bit < 8; bit++) value = (value >>> 1) ^ (value & 1 ? 0xedb88320 : 0);
   }
   return ~value >>> 0;
-});
+}
 function write_png(file, { width, height, pixels }) {
   const chunk = (type, bytes) => {
     const body = Buffer.concat([Buffer.from(type), bytes]), out = Buffer.alloc(body.length + 8);

@@ -130,10 +130,10 @@ bool add_served_file(Exhibit& exhibit, FieldReader& fields, const char* field,
   }
   if (count != file.bytes) return refuse("cannot be read");
   if (file.type.empty())
-    return refuse(medium == Medium::station
-                      ? fmt::format("is no {} as {} writes it", rules.what, rules.understood)
-                      : fmt::format("is no {} that all browsers show: {}", rules.what,
-                                    rules.understood));
+    return refuse(
+        medium == Medium::station
+            ? fmt::format("is no {} as {} writes it", rules.what, rules.understood)
+            : fmt::format("is no {} that all browsers show: {}", rules.what, rules.understood));
   if (medium == Medium::image)
     if (std::string problem = image_problem(file.path, rules.most_bytes); !problem.empty())
       return refuse("cannot be shown: " + problem);

@@ -73,7 +73,7 @@ namespace {
 
 constexpr float follow_seconds = 0.12f;  // in which it comes two thirds of the way
 constexpr float grow_seconds = 0.3f;
-constexpr float nearest = 0.1f, farthest = 1.2f;  // metres from the screen
+constexpr float least_away = 0.1f, most_away = 1.2f;  // metres from the screen
 
 // A rotation as the camera tells it (a head's, wire/messages.h) as the mirror shows it: right and
 // left change places for the object's place and turn, but not on the object itself.
@@ -98,7 +98,7 @@ void follow_held(HeldObject& held, int model, const std::optional<Holding>& hold
   if (seen && !other) {
     const quat turn = mirror_turn(*holding->rotation);
     vec3 place = *holding->position;
-    place.z = std::clamp(place.z, nearest, farthest);
+    place.z = std::clamp(place.z, least_away, most_away);
     const bool begins = held.size <= 0;
     const float share = begins ? 1 : 1 - std::exp(-dt / follow_seconds);
     held.model = model;

@@ -45,11 +45,11 @@ HoldingWords choose_words(HoldingTalk& talk, const std::optional<Holding>& holdi
 
 // The object as the screen shows it.
 struct HeldObject {
-  int model = -1;          // index into ShowCast::held; -1: nothing is shown
-  float size = 0;          // 0..1: it grows when it is seen, and shrinks when it is gone
-  vec3 place{0};           // before the screen, as Holding::position
-  quat turn{1, 0, 0, 0};   // from its own axes (+x right, +y up, +z its front) to the mirror's
-  double time = -1e9;      // of the last step
+  int model = -1;         // index into ShowCast::held; -1: nothing is shown
+  float size = 0;         // 0..1: it grows when it is seen, and shrinks when it is gone
+  vec3 place{0};          // before the screen, as Holding::position
+  quat turn{1, 0, 0, 0};  // from its own axes (+x right, +y up, +z its front) to the mirror's
+  double time = -1e9;     // of the last step
   bool operator==(const HeldObject&) const = default;
 };
 

@@ -120,7 +120,7 @@ struct Kiosk {
   bool changed = false;             // its stage did, in the last step
   Showing showing = Showing::well;  // shown by its page
   KioskVisit visit;
-  HeldObject held;                  // shown on its pages
+  HeldObject held;  // shown on its pages
   std::vector<std::pair<uint64_t, std::string>>
       gestures;                 // last tick's gestures of its guests, by their ids
   std::string gesture;          // the last that was handed to its page

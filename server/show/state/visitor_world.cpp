@@ -95,8 +95,8 @@ void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& 
     moved |=
         pose_prop(*stage.world, cast.props[i], pose_of(stage.exhibit, teller.held, int(i), time));
   for (size_t i = 0; i < cast.held.size(); i++)
-    moved |= pose_prop(*stage.world, cast.held[i].second,
-                       int(i) == held.model ? held.pose : PropPose{});
+    moved |=
+        pose_prop(*stage.world, cast.held[i].second, int(i) == held.model ? held.pose : PropPose{});
   if (cast.figures.empty() && !moved) return;
   if (teller.visible && !cast.figures.empty())
     pose_figure(*stage.world, cast.figures[teller.index],

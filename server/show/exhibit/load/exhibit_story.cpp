@@ -267,7 +267,8 @@ void read_times(KioskTimes& times, FieldReader& fields) {
 // read by `wellspring check` and by kiosks (kiosk/tree/tree_file.h).
 void read_station(Exhibit& exhibit, FieldReader& fields, KioskSettings& kiosk) {
   std::string name;
-  if (!fields.text("station", name, "file of ./wellspring station: what guests may hold up")) return;
+  if (!fields.text("station", name, "file of ./wellspring station: what guests may hold up"))
+    return;
   kiosk.station.clear(), kiosk.held.clear();
   if (!add_served_file(exhibit, fields, "station", name, Medium::station)) return;
   kiosk.station = name;

@@ -131,7 +131,8 @@ TEST(TreeFile, bytes_that_are_no_tree_are_refused) {
 TEST(TreeFile, long_chain_of_nodes_is_refused) {
   std::string nodes;
   for (int i = 0; i < 200; i++)
-    nodes += "\"n" + std::to_string(i) + R"(": {"kind": "search", "solvers": [{"solver": "pattern"}],
+    nodes += "\"n" + std::to_string(i) +
+             R"(": {"kind": "search", "solvers": [{"solver": "pattern"}],
       "children": ["n)" +
              std::to_string(i + 1) + "\"]},";
   const std::string text =

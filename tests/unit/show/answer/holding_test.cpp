@@ -39,9 +39,7 @@ struct HoldingHouse : KioskHouse {
     holding.position = vec3(0, 0, 0.4f);
     holding.rotation = vec3(0);
   }
-  long count(size_t page, const std::string& text) {
-    return std::ranges::count(read(page), text);
-  }
+  long count(size_t page, const std::string& text) { return std::ranges::count(read(page), text); }
 };
 
 TEST_F(HoldingHouse, HintsAndNamesAreSpokenAfterTheGreeting) {

@@ -72,8 +72,9 @@ TEST(ExhibitKiosks, TheStationIsAFileOfThePackage) {
   EXPECT_EQ(exhibit.kiosks[0].station, "tree.json");
   EXPECT_EQ(exhibit.kiosks[0].held, std::vector<std::string>{"as"});
   EXPECT_EQ(exhibit.files.at("tree.json").type, "application/json");
-  for (const auto& [tree, word] : {std::pair("[]", "recognition tree"), std::pair("{\"a\": ", "tree"),
-                                   std::pair("{\"nodes\": 3}", "nodes"), std::pair("", "tree")}) {
+  for (const auto& [tree, word] :
+       {std::pair("[]", "recognition tree"), std::pair("{\"a\": ", "tree"),
+        std::pair("{\"nodes\": 3}", "nodes"), std::pair("", "tree")}) {
     const std::string problem = read_tree(tree);
     EXPECT_NE(problem.find("/kiosks/0/station"), std::string::npos) << problem;
     EXPECT_NE(problem.find(word), std::string::npos) << problem;

@@ -38,7 +38,8 @@ struct Talk : testing::Test {
       const HoldingWords words =
           choose_words(talk, holding, exhibit, heard, busy || now < silent, now);
       if (!words.text.empty()) out.push_back(words.text.at("en")[0].text), silent = now + 2;
-      if (!words.story.empty()) out.push_back("[" + words.story + "]"), heard.push_back(words.story);
+      if (!words.story.empty())
+        out.push_back("[" + words.story + "]"), heard.push_back(words.story);
     }
     return out;
   }
@@ -47,7 +48,8 @@ using Said = std::vector<std::string>;
 
 TEST_F(Talk, a_hint_is_asked_for_once_and_again_only_after_a_pause) {
   EXPECT_EQ(hear(undecided("Turn it over, please."), hint_settles - 0.2), Said{});
-  EXPECT_EQ(hear(undecided("Turn it over, please."), repeat_pause - 2), Said{"Turn it over, please."});
+  EXPECT_EQ(hear(undecided("Turn it over, please."), repeat_pause - 2),
+            Said{"Turn it over, please."});
   EXPECT_EQ(hear(undecided("Turn it over, please."), 4), Said{"Turn it over, please."});
 }
 
