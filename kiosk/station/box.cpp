@@ -12,7 +12,7 @@ namespace wellspring::kiosk {
 namespace {
 
 constexpr int smaller = 2;            // edges are sought in a picture so much smaller
-constexpr float least_length = 14;    // of an edge, pixels of that picture, as what follows
+constexpr float least_length = 14;    // length of an edge, pixels of that picture, as what follows
 constexpr float near_end = 10;        // how far an edge may end from the corner
 constexpr float off_line = 3;         // how far it may pass it by
 constexpr float least_angle = 0.26f;  // between edges of a corner, radians
@@ -54,7 +54,7 @@ std::vector<Segment> find_segments(const cv::Mat& picture) {
   return out;
 }
 
-// Where two edges meet, each turned so that `a` is its end there; nothing if they do not.
+// Finds where two edges meet, and turns each so that `a` is its end there; nothing if they do not.
 std::optional<vec2> meet(Segment& one, Segment& other) {
   float least = 1e9f;
   Segment p, q;
@@ -116,7 +116,7 @@ std::vector<Junction> find_junctions(const GrayFrame& frame) {
 std::vector<SpacePose> solve_corner(const Junction& corner, vec3 size, float focal, int width,
                                     int height) {
   // Looked at straight, each edge lies in a plane through the line of sight: only its slope is
-  // unknown. That edges are square to one another gives the three slopes, but for their signs.
+  // unknown. The edges are square to one another, which gives the slopes but for their signs.
   const vec3 ray = ray_of(corner.at, focal, width, height);
   const mat3 turn = turn_to_sight(ray);
   std::array<vec3, 3> ends;
@@ -164,7 +164,7 @@ std::vector<SpacePose> solve_corner(const Junction& corner, vec3 size, float foc
   return out;
 }
 
-// The picture's edges, and across which they lead.
+// Holds the picture's edges, and the brightness's slope across them.
 struct BoxSolver::EdgePicture {
   cv::Mat edges, across, down;
 

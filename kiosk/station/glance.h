@@ -24,7 +24,7 @@ class Glance {
  private:
   bool differs(const std::vector<float>& from, int least_blocks) const;
 
-  int width_ = 0, height_ = 0;              // of the picture; another begins anew
+  int width_ = 0, height_ = 0;              // size of the picture; another begins anew
   int across_ = 0, down_ = 0;               // cells
   double before_at_ = -1e9;                 // time of `before_`
   std::vector<float> now_, before_, vain_;  // mean brightness of each cell; empty: none yet

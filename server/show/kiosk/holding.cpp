@@ -93,7 +93,7 @@ void follow_held(HeldObject& held, int model, const std::optional<Holding>& hold
   const float dt = float(std::clamp(now - held.time, 0.0, 1.0));
   held.time = now;
   const bool seen = model >= 0 && holding && holding->position && holding->rotation;
-  const bool other = seen && held.size > 0 && held.model != model;  // that one goes first
+  const bool other = seen && held.size > 0 && held.model != model;  // the other goes first
   const float wanted = seen && !other ? 1.0f : 0.0f;
   if (seen && !other) {
     const quat turn = mirror_turn(*holding->rotation);

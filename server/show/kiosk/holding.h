@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a guest holds to a kiosk's camera: what the storyteller says to it, and where the kiosk's
-// screen shows the object (Eissele, Sanftmann, Ertl: Interactively Refining Object-Recognition
-// System, sections 4.2 and 5: messages to the user, models in pose). Plain values; times are show
-// times in seconds, places are metres.
+// Answers what a guest holds to a kiosk's camera: what the storyteller says to it, and where the
+// kiosk's screen shows the object (Eissele, Sanftmann, Ertl: Interactively Refining
+// Object-Recognition System, sections 4.2 and 5: messages to the user, models in pose). Plain
+// values; times are show times in seconds, places are metres.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,7 +16,7 @@ namespace wellspring::show {
 
 // Holds what was said about it to the guests of one visit.
 struct HoldingTalk {
-  std::string seen;         // what the camera says: a hint or an object's id
+  std::string seen;         // a hint or an object's id, as the camera says it
   double seen_since = 0;    // since when it says that
   std::string said;         // the last that was said, as `seen`
   double said_at = -1e9;    // when its sentence was begun
@@ -25,7 +25,7 @@ struct HoldingTalk {
   bool operator==(const HoldingTalk&) const = default;
 };
 
-// What the storyteller is to do now; both empty: nothing.
+// Says what the storyteller is to do now; both empty: nothing.
 struct HoldingWords {
   LocalScript text;   // to be said
   std::string story;  // to be told: its id
@@ -43,13 +43,13 @@ HoldingWords choose_words(HoldingTalk& talk, const std::optional<Holding>& holdi
                           const Exhibit& exhibit, const std::vector<std::string>& heard, bool talks,
                           double now);
 
-// The object as the screen shows it.
+// Holds the object as the screen shows it.
 struct HeldObject {
   int model = -1;         // index into ShowCast::held; -1: nothing is shown
   float size = 0;         // 0..1: it grows when it is seen, and shrinks when it is gone
   vec3 place{0};          // before the screen, as Holding::position
   quat turn{1, 0, 0, 0};  // from its own axes (+x right, +y up, +z its front) to the mirror's
-  double time = -1e9;     // of the last step
+  double time = -1e9;     // time of the last step
   bool operator==(const HeldObject&) const = default;
 };
 

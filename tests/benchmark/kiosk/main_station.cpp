@@ -56,10 +56,10 @@ GrayFrame show(const cv::Mat& face, const Held& held, unsigned seed, double time
   return to_frame(picture, time, 0.8, 4, unsigned(time * 1000) + seed);
 }
 
-// What a station did while people without objects were before the camera.
+// Sums up a station while people without objects were before the camera.
 struct Watched {
-  double seconds = 0, ms = 0;  // of recordings, of the processor
-  int names = 0;               // that it told
+  double seconds = 0, ms = 0;  // seconds of recordings; time of the processor
+  int names = 0;               // names told
 };
 
 // Plays recordings at their own rates, one after the other, until they have lasted `seconds`.

@@ -28,8 +28,8 @@ struct Talk : testing::Test {
   HoldingTalk talk;
   std::vector<std::string> heard;
   double now = 0;
-  // What she says in so many seconds, each sentence once, and stories in brackets. A sentence takes
-  // two seconds.
+  // Lists what she says in so many seconds, each sentence once, and stories in brackets. A sentence
+  // takes two seconds.
   std::vector<std::string> hear(const std::optional<Holding>& holding, double seconds,
                                 bool busy = false) {
     std::vector<std::string> out;
