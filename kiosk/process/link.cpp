@@ -238,9 +238,19 @@ struct ServerLink::Impl {
     co_return "";
   }
 
+  // Asks until the document is there: a server that loads says that it has nothing yet.
   asio::awaitable<void> fetch_document() {
-    const std::string why = co_await ask_document();
-    if (!why.empty()) log::warn("{} does not come: {}", settings.document, why);
+    const uint64_t connection = connections;
+    std::string told;
+    while (connected && !leaving && connections == connection) {
+      const std::string why = co_await ask_document();
+      if (why.empty()) co_return;
+      if (why != told) log::warn("{} does not come ({}); trying again", settings.document, why);
+      told = why;
+      asio::steady_timer pause(io, seconds(settings.longest_pause));
+      error_code ignored;
+      co_await pause.async_wait(into(ignored));
+    }
   }
 
   std::string host() const {
