@@ -130,8 +130,7 @@ TEST(Traversal, what_is_held_up_most_is_found_soonest) {
   };
   EXPECT_EQ(matches(31), 10);
   EXPECT_EQ(matches(31), 5) << "one match a level";
-  EXPECT_EQ(matches(0), 6) << "the other half was tried first";
-  EXPECT_EQ(matches(0), 6) << "as often found: in the order that they have";
+  for (int i = 0; i < 3; i++) EXPECT_EQ(matches(0), 6) << "the other half is tried first";
   EXPECT_EQ(matches(0), 5);
   for (int i = 0; i < 1000; i++) matches(31);
   for (int i = 0; i < 300; i++) matches(0);
