@@ -15,6 +15,10 @@
 
 namespace wellspring::kiosk {
 
+namespace {
+constexpr double glance_every = 0.09;  // seconds
+}  // namespace
+
 struct Station::Impl {
   RecognitionTree tree;
   StationSettings settings;
@@ -30,7 +34,7 @@ struct Station::Impl {
   Glance glance;
   bool mirrored = false;
   GrayFrame turned;  // the frame, turned back
-  double looked_at = -1e9, seen_at = -1e9, undecided_since = -1e9;
+  double glanced_at = -1e9, looked_at = -1e9, seen_at = -1e9, undecided_since = -1e9;
   int last = -1, agreed = 0;
   std::optional<Holding> told;
 
@@ -125,8 +129,12 @@ struct Station::Impl {
   std::optional<Holding> step(const GrayFrame& given) {
     const double time = given.time;
     if (time < looked_at) forget();
-    glance.step(given);
-    if (last < 0 && time - looked_at < pause() && agreed == 0) return keep(time);
+    if (last < 0 && agreed == 0) {
+      if (std::abs(time - glanced_at) < glance_every) return keep(time);
+      glanced_at = time;
+      glance.step(given);
+      if (time - looked_at < pause()) return keep(time);
+    }
     looked_at = time;
     const Recognition found = look(given);
     if (found.node < 0) glance.note_vain();
