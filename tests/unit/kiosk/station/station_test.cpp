@@ -134,8 +134,8 @@ TEST_F(Cards, name_needs_two_looks_and_stays_a_moment) {
   };
   const GrayFrame held = show(faces[3], {}, 2);
   EXPECT_FALSE(at(room, 0));
-  EXPECT_FALSE(at(held, 0.3));
-  const auto told = at(held, 0.33);
+  EXPECT_FALSE(at(held, 0.7));
+  const auto told = at(held, 0.73);
   ASSERT_TRUE(told);
   EXPECT_EQ(told->id, "card3");
   EXPECT_EQ(told->title.at("en"), "The card3");
@@ -144,8 +144,8 @@ TEST_F(Cards, name_needs_two_looks_and_stays_a_moment) {
   // 0.12 m across 260 pixels, in the middle of the picture.
   EXPECT_NEAR(told->position->z, 0.12f * made_focal / 260, 0.01f);
   EXPECT_NEAR(told->position->x, 0, 0.005f);
-  EXPECT_TRUE(at(room, 0.6));
-  EXPECT_FALSE(at(room, 1.2));
+  EXPECT_TRUE(at(room, 1.0));
+  EXPECT_FALSE(at(room, 1.6));
 }
 
 TEST_F(Cards, mirrored_camera_names_them_as_well) {
