@@ -17,6 +17,17 @@ namespace wellspring::kiosk {
 
 namespace {
 constexpr double glance_every = 0.09;  // seconds
+
+// Returns an object's right, down and away in those of one of its sides, as that is seen.
+mat3 axes_of_side(const std::string& side) {
+  const vec3 right(1, 0, 0), down(0, 1, 0), away(0, 0, 1);
+  if (side == "back") return {-right, down, -away};
+  if (side == "left") return {away, down, -right};
+  if (side == "right") return {-away, down, right};
+  if (side == "top") return {right, away, -down};
+  if (side == "bottom") return {right, -away, down};
+  return mat3(1);
+}
 }  // namespace
 
 struct Station::Impl {
@@ -104,7 +115,7 @@ struct Station::Impl {
     if (!found || found->error > 0.05f * std::sqrt(std::abs(area_of(corners_of(*pose, *view)))))
       return;
     out.position = camera_to_screen(settings.mount, found->position);
-    out.rotation = rotation_on_screen(settings.mount, found->rotation);
+    out.rotation = rotation_on_screen(settings.mount, found->rotation * axes_of_side(view->side));
   }
 
   Holding describe(const Recognition& found) const {

@@ -265,6 +265,27 @@ TEST_F(TwinObjects, front_and_back_of_one_kind_are_never_asked_for_in_turn) {
   EXPECT_LE(std::ranges::count(hints, "Turn it over, please."), 1);
 }
 
+// Turns are those of the object, whichever side is seen; its front faces the screen at 0.
+TEST(Sides, turn_with_the_object) {
+  std::vector<LearnObject> objects;
+  Sides sides;
+  for (const char* side : {"front", "back", "left"})
+    sides.emplace_back(make_face(unsigned(40 + sides.size())), side);
+  objects.push_back(make_object("casket", sides));
+  objects.back().sizes[""] = {0.12f, 0.09f};
+  Station station(learn(std::move(objects)));
+  auto yaw = [&](size_t side) {
+    station.forget();
+    std::optional<Holding> told;
+    for (int i = 0; i < 4; i++)
+      told = station.step(show(sides[side].first, {}, 3, 10 * double(side) + i));
+    return told && told->rotation ? told->rotation->x : -9.f;
+  };
+  EXPECT_NEAR(yaw(0), 0, 0.1f);
+  EXPECT_NEAR(std::abs(yaw(1)), pi, 0.1f);
+  EXPECT_NEAR(std::abs(yaw(2)), pi / 2, 0.1f);
+}
+
 TEST(PlainObjects, are_told_by_outline_and_colours) {
   auto plain = [](cv::Scalar a, cv::Scalar b) {
     cv::Mat out(300, 400, CV_8UC3, a);
