@@ -7,12 +7,14 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <fmt/core.h>
 #include <functional>
 #include <iostream>
 #include <mutex>
 #include <opencv2/core/utility.hpp>
 #include <sys/prctl.h>
 #include <thread>
+#include <utility>
 
 #include "about/version.h"
 #include "base/clock.h"
@@ -28,7 +30,7 @@
 #include "kiosk/process/eye_process.h"
 #include "kiosk/process/link.h"
 #include "kiosk/process/recording.h"
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 #include "wire/json.h"
 
 namespace {
@@ -68,12 +70,62 @@ class Readers {
   std::unique_ptr<Recorder> recorder_;
 };
 
+// Returns where the server has the recognition tree of a kiosk.
+std::string station_path(const std::string& kiosk) {
+  std::string path = "/api/v1/station";
+  if (kiosk.empty()) return path;
+  path += "?kiosk=";
+  for (const char c : kiosk) path += fmt::format("%{:02X}", uint8_t(c));
+  return path;
+}
+
+// Keeps the tree that the exhibit names for this kiosk, as the server told it last.
+class ToldStation {
+ public:
+  // Waits for it until the first eye begins, up to two seconds. `link`: may be null.
+  void wait(ServerLink* link) {
+    if (!link) return;
+    for (const double until = seconds_now() + 2; !stop_asked && seconds_now() < until;) {
+      if (take(*link) || known_) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    log::warn(
+        "the server does not say whether objects are to be recognised: none are until it "
+        "does");
+  }
+  // Takes what has come. True: an eye that runs has another tree.
+  bool take(ServerLink& link) {
+    auto text = link.take_document();
+    if (!text) return false;
+    const bool first = !std::exchange(known_, true);
+    if (*text == text_) return false;
+    text_ = std::move(*text);
+    file_.reset();
+    try {
+      if (!text_.empty()) parse_tree("the station of this kiosk's exhibit", text_);
+      if (!text_.empty()) file_.emplace(text_);
+      log::info("{}", file_ ? "objects are recognised by the exhibit's tree"
+                            : "objects are no longer recognised: the exhibit has no tree");
+    } catch (const std::exception& error) {
+      log::error("no objects are recognised: {}", error.what());
+    }
+    return !first || file_;
+  }
+  const HandedText* file() const { return file_ ? &*file_ : nullptr; }
+
+ private:
+  std::string text_;
+  std::optional<HandedText> file_;
+  bool known_ = false;
+};
+
 // Makes the link to the server; null: observations go to stdout alone.
 std::unique_ptr<ServerLink> make_link(const KioskOptions& options) {
   if (!options.server_given && options.print) return nullptr;
   ServerLinkSettings settings;
   settings.token = options.token;
   settings.ca_file = options.ca_file;
+  if (options.station.empty()) settings.document = station_path(options.name);
   return std::make_unique<ServerLink>(*parse_address(options.server), settings);
 }
 
@@ -190,19 +242,25 @@ int replay(const KioskOptions& options) {
 using Tell = std::function<bool(const Observation& seen, const std::string& text)>;
 
 // Runs a camera's eye in a process of its own, and starts it again when it dies: a codec crashes, a
-// driver takes it along. `link` says what is needed of the eye; may be null. Returns its exit
-// status.
+// driver takes it along, the exhibit has another recognition tree. `link` says what is needed of
+// the eye; may be null. `asks`: also for that tree. Returns its exit status.
 int supervise(const std::vector<std::string>& arguments, size_t which, const std::string& name,
-              ServerLink* link, const Tell& tell) {
+              ServerLink* link, bool asks, const Tell& tell) {
   constexpr double longest_pause = 30;  // seconds
   std::string order;                    // the server's last order
+  ToldStation station;
+  if (asks) station.wait(link);
   for (int deaths = 0; !stop_asked;) {
-    EyeProcess eye(arguments, which);
+    std::vector<std::string> words = arguments;
+    if (station.file()) words.insert(words.end(), {"--station", handed_file});
+    EyeProcess eye(std::move(words), which, station.file());
     if (!order.empty()) eye.tell(order);
     const double began = seconds_now();
     std::string text;
+    bool again = false;
     for (;;) {
       const EyeProcess::Heard heard = eye.take(text, 0.1);
+      if (again = asks && link && station.take(*link); again) break;
       if (const auto said = link ? link->take_order() : std::nullopt)
         eye.tell(order = write_eye_order(*said));
       if (stop_asked) return 0;
@@ -213,6 +271,7 @@ int supervise(const std::vector<std::string>& arguments, size_t which, const std
       const Observation* seen = std::get_if<Observation>(&read);
       if (seen && !tell(*seen, text)) return 0;
     }
+    if (again) continue;
     const int status = eye.status();
     if (status >= 0) return status;
     if (seconds_now() - began > longest_pause) deaths = 0;
@@ -234,7 +293,7 @@ int watch_all(const KioskOptions& options, const std::vector<std::string>& argum
     const std::string& name = options.cameras[which].name;
     try {
       const auto link = make_link(options);
-      const int status = supervise(arguments, which, name, link.get(),
+      const int status = supervise(arguments, which, name, link.get(), options.station.empty(),
                                    [&](const Observation&, const std::string& text) {
                                      if (link) link->send(text);
                                      if (readers.tell(text)) return true;
@@ -264,13 +323,14 @@ int calibrate(const KioskOptions& options, const std::vector<std::string>& argum
     if (link) link->send(write_observation(last));
   };
   bool done = false;
-  int status = supervise(arguments, 0, camera.name, nullptr, [&](const Observation& seen, auto&) {
-    done = calibration.step(seen);
-    if (std::string now = calibration.advice(); now != advice) print(advice = now);
-    last = seen;
-    if (!done) tell_screen(calibration.now());
-    return !done;
-  });
+  int status =
+      supervise(arguments, 0, camera.name, nullptr, false, [&](const Observation& seen, auto&) {
+        done = calibration.step(seen);
+        if (std::string now = calibration.advice(); now != advice) print(advice = now);
+        last = seen;
+        if (!done) tell_screen(calibration.now());
+        return !done;
+      });
   if (!done) return std::max(status, 1);
   try {
     const Mount mount =

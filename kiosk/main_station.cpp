@@ -8,7 +8,7 @@
 #include "about/version.h"
 #include "base/log.h"
 #include "kiosk/station/learn.h"
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 int main(int argc, char** argv) {
   using namespace wellspring;

@@ -12,7 +12,7 @@
 #include "kiosk/frame/head.h"
 #include "kiosk/gesture/gesture_model.h"
 #include "kiosk/people.h"
-#include "kiosk/station/tree.h"
+#include "kiosk/tree/tree.h"
 #include "wire/messages.h"
 
 namespace wellspring::kiosk {

@@ -194,7 +194,6 @@ struct MotionWatch::Impl {
   cv::Mat reference;   // float: slow mean of the corrected pictures, to which brightness is matched
   cv::Mat previous;    // the last corrected picture
   cv::Mat changed_at;  // double: time at which each pixel last changed
-  cv::Mat changed_now;  // 8 bit
   double last_time = 0;
   float scale = 1;  // working pixels per frame pixel
   int frame_width = 0, frame_height = 0;
@@ -206,7 +205,6 @@ struct MotionWatch::Impl {
     small.convertTo(reference, CV_32F);
     previous = small.clone();
     changed_at = cv::Mat(small.size(), CV_64F, cv::Scalar(-1e9));
-    changed_now = cv::Mat::zeros(small.size(), CV_8U);
     last_time = time;
   }
 
@@ -256,9 +254,10 @@ Motion MotionWatch::step(const GrayFrame& frame) {
 
   cv::Mat difference;
   cv::absdiff(corrected, m.previous, difference);
-  cv::threshold(difference, m.changed_now, changed_levels, 255, cv::THRESH_BINARY);
+  cv::Mat changed_now;
+  cv::threshold(difference, changed_now, changed_levels, 255, cv::THRESH_BINARY);
   m.previous = corrected;
-  m.changed_at.setTo(frame.time, m.changed_now);
+  m.changed_at.setTo(frame.time, changed_now);
 
   const float total = float(small.total());
   if (float(cv::countNonZero(foreground)) > m.settings.light_share * total) {
@@ -291,15 +290,6 @@ Motion MotionWatch::step(const GrayFrame& frame) {
   for (size_t i = 0; i < regions.size() && i < 4; i++) result.zones.push_back(regions[i].second);
   result.moving = result.share >= m.settings.moving_share;
   return result;
-}
-
-float MotionWatch::changed(const Box& box) const {
-  const Impl& m = *impl_;
-  if (m.changed_now.empty()) return 0;
-  cv::Rect area(int(box.x * m.scale), int(box.y * m.scale), int(std::ceil(box.width * m.scale)),
-                int(std::ceil(box.height * m.scale)));
-  area &= cv::Rect(0, 0, m.changed_now.cols, m.changed_now.rows);
-  return area.empty() ? 0 : float(cv::countNonZero(m.changed_now(area))) / float(area.area());
 }
 
 }  // namespace wellspring::kiosk

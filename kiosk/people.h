@@ -38,9 +38,6 @@ class MotionWatch {
   ~MotionWatch();
   // Takes a frame, about 1 ms. Frames may change size; the background then starts anew.
   Motion step(const GrayFrame& frame);
-  // Returns the share of `box` (in the frame last seen) that changed from one frame to the next, 0
-  // to 1.
-  float changed(const Box& box) const;
 
  private:
   struct Impl;

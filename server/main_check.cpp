@@ -6,7 +6,9 @@
 #include <iostream>
 
 #include "about/version.h"
+#include "base/load_error.h"
 #include "base/log.h"
+#include "kiosk/tree/tree_file.h"
 #include "show/check/check_scene.h"
 #include "show/exhibit/exhibit_lights.h"
 #include "show/exhibit/load/exhibit_load.h"
@@ -17,9 +19,26 @@
 #include "show/visit/tour.h"
 #include "show/visit/walk_map.h"
 
+namespace {
+
+using namespace wellspring;
+using namespace wellspring::program;
+
+// Reads the recognition trees of kiosks as kiosks do.
+void check_stations(const Exhibit& exhibit, std::vector<Problem>& problems) {
+  for (const KioskSettings& kiosk : exhibit.kiosks) {
+    if (kiosk.station.empty()) continue;
+    try {
+      load_tree(exhibit.files.at(kiosk.station).path);
+    } catch (const LoadError& error) {
+      problems.push_back({error.file, error.where, error.what_});
+    }
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  using namespace wellspring;
-  using namespace wellspring::program;
   if (answer_version(argc, argv)) return 0;
   log::start("check");
   CLI::App app{"Validates an exhibit package and lists every problem with file and place."};
@@ -53,6 +72,7 @@ int main(int argc, char** argv) {
     Exhibit exhibit = read_exhibit(folder, problems);
     read_recordings(exhibit, recordings, problems);
     if (!house.empty()) read_house(house, exhibit, problems);
+    check_stations(exhibit, problems);
     bool usable =
         std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
     if (usable) {

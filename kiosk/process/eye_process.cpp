@@ -11,6 +11,7 @@
 #include <seccomp.h>
 #include <stdexcept>
 #include <string>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -62,12 +63,36 @@ std::optional<EyeOrder> Orders::take() {
   return newest;
 }
 
+HandedText::HandedText(const std::string& text) {
+  // Its number is beyond those that an eye gives to other files.
+  constexpr int least = 16;
+  const int made = memfd_create("wellspring", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  fd_ = fcntl(made, F_DUPFD_CLOEXEC, least);
+  close(made);
+  size_t done = 0;
+  while (fd_ >= 0 && done < text.size()) {
+    const ssize_t wrote = write(fd_, text.data() + done, text.size() - done);
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote <= 0) break;
+    done += size_t(wrote);
+  }
+  constexpr int never_changes = F_SEAL_WRITE | F_SEAL_GROW | F_SEAL_SHRINK | F_SEAL_SEAL;
+  if (fd_ >= 0 && done == text.size() && fcntl(fd_, F_ADD_SEALS, never_changes) == 0) return;
+  const int error = errno;
+  if (fd_ >= 0) close(fd_);
+  throw std::runtime_error(std::string("memory for a file: ") + std::strerror(error));
+}
+
+HandedText::~HandedText() { close(fd_); }
+
 // The eye has no other open file: the way to the server is closed to it.
-EyeProcess::EyeProcess(std::vector<std::string> arguments, size_t eye)
+EyeProcess::EyeProcess(std::vector<std::string> arguments, size_t eye, const HandedText* handed)
     : process_({.words = words_of(std::move(arguments), eye),
                 .program = "/proc/self/exe",
                 .reads = STDIN_FILENO,
                 .writes = observe_fd,
+                .files = handed ? std::vector{std::pair(handed->fd(), handed_fd)}
+                                : std::vector<std::pair<int, int>>{},
                 .patience = 2}) {
   fcntl(process_.to(), F_SETFL, O_NONBLOCK);
 }

@@ -30,11 +30,26 @@ class Orders {
   std::string text_;  // text of a line that has not ended
 };
 
+// Is a text in memory that an eye opens as a file, read only. Throws std::runtime_error.
+class HandedText {
+ public:
+  explicit HandedText(const std::string& text);
+  ~HandedText();
+  HandedText(const HandedText&) = delete;
+  HandedText& operator=(const HandedText&) = delete;
+  int fd() const { return fd_; }
+
+ private:
+  int fd_ = -1;
+};
+inline constexpr int handed_fd = 4;
+inline constexpr const char* handed_file = "/proc/self/fd/4";  // as the eye opens it
+
 class EyeProcess {
  public:
   // Starts eye 0, 1, ... Throws std::runtime_error if it cannot be started. An eye is asked to end
-  // with this value, and killed after two seconds.
-  EyeProcess(std::vector<std::string> arguments, size_t eye);
+  // with this value, and killed after two seconds. `handed`: its handed_file; may be null.
+  EyeProcess(std::vector<std::string> arguments, size_t eye, const HandedText* handed = nullptr);
 
   enum class Heard { line, nothing, ended };
   // Sends a line for its Orders. Never waits: an eye that hangs does not receive it.

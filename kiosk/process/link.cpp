@@ -15,6 +15,7 @@
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
@@ -76,6 +77,7 @@ using boost::system::error_code;
 namespace {
 
 constexpr size_t largest_answer = 64 * 1024;  // bytes of a server's message to a kiosk
+constexpr uint64_t largest_document = 32 << 20;
 
 std::chrono::steady_clock::duration seconds(double s) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -98,6 +100,7 @@ struct ServerLink::Impl {
   asio::steady_timer wake{io};  // cancelled when there is something to send or it is time to go
   Latest<std::string> newest;
   Latest<EyeOrder> order;
+  Latest<std::string> document;
   std::atomic<bool> connected{false}, leaving{false};
   std::atomic<uint64_t> sent{0}, connections{0};
   std::thread thread;
@@ -179,6 +182,15 @@ struct ServerLink::Impl {
     co_return ec;
   }
 
+  // Begins TLS. Returns why it does not; empty: it does.
+  asio::awaitable<std::string> begin_tls(beast::ssl_stream<beast::tcp_stream>& socket) {
+    SSL* tls = socket.native_handle();
+    error_code ec;
+    expect_host(tls);
+    co_await socket.async_handshake(asio::ssl::stream_base::client, into(ec));
+    co_return ec ? distrust(ec, tls) : "";
+  }
+
   // Runs one connection from its start to its end. Returns why it ended.
   asio::awaitable<std::string> talk() {
     if (!address.tls) {
@@ -188,12 +200,62 @@ struct ServerLink::Impl {
     }
     auto socket = std::make_shared<TlsSocket>(io, trust);
     if (error_code ec = co_await connect(beast::get_lowest_layer(*socket))) co_return ec.message();
-    SSL* tls = socket->next_layer().native_handle();
-    error_code ec;
-    expect_host(tls);
-    co_await socket->next_layer().async_handshake(asio::ssl::stream_base::client, into(ec));
-    if (ec) co_return distrust(ec, tls);
+    const std::string why = co_await begin_tls(socket->next_layer());
+    if (!why.empty()) co_return why;
     co_return co_await talk_over(socket);
+  }
+
+  // Asks for the document, on a connection of its own. Returns why it did not come.
+  asio::awaitable<std::string> ask_document() {
+    beast::ssl_stream<beast::tcp_stream> socket(io, trust);
+    if (error_code ec = co_await connect(socket.next_layer())) co_return ec.message();
+    if (!address.tls) co_return co_await ask_document_over(socket.next_layer());
+    const std::string why = co_await begin_tls(socket);
+    if (!why.empty()) co_return why;
+    co_return co_await ask_document_over(socket);
+  }
+
+  template <class Socket>
+  asio::awaitable<std::string> ask_document_over(Socket& socket) {
+    namespace http = beast::http;
+    http::request<http::empty_body> question(http::verb::get, settings.document, 11);
+    question.set(http::field::host, host());
+    question.set(http::field::user_agent, "wellspring-kiosk");
+    if (!settings.token.empty())
+      question.set(http::field::authorization, "Bearer " + settings.token);
+    error_code ec;
+    co_await http::async_write(socket, question, into(ec));
+    if (ec) co_return ec.message();
+    beast::flat_buffer buffer;
+    http::response_parser<http::string_body> answer;
+    answer.body_limit(largest_document);
+    beast::get_lowest_layer(socket).expires_after(seconds(4 * settings.patience));
+    co_await http::async_read(socket, buffer, answer, into(ec));
+    if (ec) co_return ec.message();
+    const unsigned status = answer.get().result_int();
+    if (status != 200 && status != 404) co_return "HTTP status " + std::to_string(status);
+    document.put(status == 200 ? std::move(answer.get().body()) : std::string());
+    co_return "";
+  }
+
+  // Asks until the document is there: a server that loads says that it has nothing yet.
+  asio::awaitable<void> fetch_document() {
+    const uint64_t connection = connections;
+    std::string told;
+    while (connected && !leaving && connections == connection) {
+      const std::string why = co_await ask_document();
+      if (why.empty()) co_return;
+      if (why != told) log::warn("{} does not come ({}); trying again", settings.document, why);
+      told = why;
+      asio::steady_timer pause(io, seconds(settings.longest_pause));
+      error_code ignored;
+      co_await pause.async_wait(into(ignored));
+    }
+  }
+
+  std::string host() const {
+    const bool six = address.host.find(':') != std::string::npos;
+    return (six ? "[" + address.host + "]" : address.host) + ":" + address.port;
   }
 
   template <class Socket>
@@ -205,10 +267,8 @@ struct ServerLink::Impl {
       if (!settings.token.empty())
         request.set(beast::http::field::authorization, "Bearer " + settings.token);
     }));
-    const std::string host =
-        address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
     websocket::response_type response;
-    co_await socket->async_handshake(response, host + ":" + address.port, address.path, into(ec));
+    co_await socket->async_handshake(response, host(), address.path, into(ec));
     if (ec) co_return refusal(ec, response.result_int());
     beast::get_lowest_layer(*socket).expires_never();
     // A server that vanished without a word is noticed by its missing answer to a ping.
@@ -219,8 +279,8 @@ struct ServerLink::Impl {
 
     connections++;
     connected = true;
-    log::info("connected to {}://{}:{}{}", address.tls ? "wss" : "ws", host, address.port,
-              address.path);
+    log::info("connected to {}://{}{}", address.tls ? "wss" : "ws", host(), address.path);
+    if (!settings.document.empty()) asio::co_spawn(io, fetch_document(), asio::detached);
     auto open = std::make_shared<bool>(true);
     asio::co_spawn(io, listen(socket, open), asio::detached);
     while (*open && !ec) {
@@ -292,6 +352,7 @@ void ServerLink::send(std::string text) {
   impl_->nudge();
 }
 std::optional<EyeOrder> ServerLink::take_order() { return impl_->order.take(); }
+std::optional<std::string> ServerLink::take_document() { return impl_->document.take(); }
 bool ServerLink::connected() const { return impl_->connected; }
 uint64_t ServerLink::sent() const { return impl_->sent; }
 uint64_t ServerLink::connections() const { return impl_->connections; }

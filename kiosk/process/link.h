@@ -32,6 +32,9 @@ struct ServerLinkSettings {
   std::string token{};                           // shown to the server; empty: none
   // PEM file of who must have signed the server's certificate; empty: the system's
   std::string ca_file{};
+  // Path of a document of the server's that is asked for whenever the server is there (again);
+  // empty: none
+  std::string document{};
 };
 
 class ServerLink {
@@ -42,6 +45,9 @@ class ServerLink {
   void send(std::string text);
   // Returns the newest order of the server not taken yet; its other messages are dropped.
   std::optional<EyeOrder> take_order();
+  // Returns the document, as it came with the last connection and was not taken yet; empty text:
+  // the server has none. Documents have at most 32 MiB.
+  std::optional<std::string> take_document();
   bool connected() const;
   uint64_t sent() const;         // texts written
   uint64_t connections() const;  // handshakes that succeeded

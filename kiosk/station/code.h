@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recognises objects by the QR code on them. Codes are found by OpenCV and compared module by
-// module with those of the tree; Debian's OpenCV reads no text from them, and none is needed.
+// Recognises objects by the text of the QR code on them, read by ZXing-C++. It reads codes of 60
+// pixels and more in about 1 ms.
 #pragma once
 #include <string>
 
@@ -9,9 +9,8 @@
 
 namespace wellspring::kiosk {
 
-// Returns the modules of the code in a grey picture, as NodeData::code has them; empty: there is
-// none that can be read whole.
-std::string read_code(int width, int height, const uint8_t* gray);
+// Returns the texts of the codes in a grey picture, at most four.
+std::vector<std::string> read_codes(int width, int height, const uint8_t* gray);
 
 class CodeSolver : public Solver {
  public:
@@ -26,8 +25,8 @@ class CodeSolver : public Solver {
 
   const RecognitionTree& tree_;
   Sight& sight_;
-  uint64_t number_ = 0;  // Sight::number in which corners_ were sought
-  std::vector<vec2> corners_;
+  uint64_t number_ = 0;  // Sight::number in which texts_ were read
+  std::vector<std::string> texts_;
 };
 
 }  // namespace wellspring::kiosk

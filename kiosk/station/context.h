@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "kiosk/station/tree.h"
+#include "kiosk/tree/tree.h"
 
 namespace wellspring::kiosk {
 

@@ -77,16 +77,18 @@ class Learner {
       for (const Photo& photo : object.photos) views_[i].push_back(make_view(object, photo));
       if (!object.code.empty()) codes.push_back(code_leaf(i));
       else if (is_textured(i)) textured_.push_back(i);
+      else if (box_of(object).x > 0) boxes_.push_back(i);
       else plain_.push_back(i);
     }
     find_classes();
     if (!items_.empty()) tops.push_back(divide(items_));
     if (!codes.empty()) tops.push_back(search("codes", "code", codes));
+    if (!boxes_.empty()) tops.push_back(boxes());
     if (!plain_.empty()) tops.push_back(outlines());
     if (tops.size() == 1 && tree().nodes[size_t(tops[0])].kind == NodeKind::search &&
         tree().nodes[size_t(tops[0])].id.empty())
       tree().root = tops[0];
-    else if (tops.size() == 1 && codes.empty() && plain_.empty())
+    else if (tops.size() == 1 && codes.empty() && plain_.empty() && boxes_.empty())
       tree().root = search("all", "pattern", tops);
     else tree().root = search("all", "always", tops);
     // The way back from a group that only divides leads to the root at once.
@@ -312,6 +314,38 @@ class Learner {
     return search(std::to_string(tree().nodes.size()), "pattern", {a, b});
   }
 
+  // Returns width, height and depth of a box, if the sizes of two of its sides that meet say them;
+  // else 0.
+  static vec3 box_of(const LearnObject& object) {
+    auto size = [&](const char* side) {
+      const auto found = object.sizes.find(side);
+      return found == object.sizes.end() ? vec2(0) : found->second;
+    };
+    const vec2 front = size("front").x > 0 ? size("front") : size("back");
+    const float depth =
+        std::max({size("left").x, size("right").x, size("top").y, size("bottom").y});
+    return front.x > 0 && depth > 0 ? vec3(front, depth) : vec3(0);
+  }
+  // Makes a search for boxes without texture: one for each size, then by colours.
+  int boxes() {
+    std::vector<int> shapes;
+    std::vector<char> done(boxes_.size(), 0);
+    for (size_t a = 0; a < boxes_.size(); a++) {
+      if (done[a]) continue;
+      const vec3 box = box_of(objects_[boxes_[a]]);
+      std::vector<size_t> members;
+      for (size_t b = a; b < boxes_.size(); b++) {
+        const vec3 ratio = glm::abs(box_of(objects_[boxes_[b]]) / box - vec3(1));
+        if (done[b] || max_component(ratio) > 0.06f) continue;
+        done[b] = 1;
+        members.push_back(boxes_[b]);
+      }
+      shapes.push_back(members.size() == 1 ? leaf(members[0]) : shape(members));
+      tree().data[size_t(shapes.back())].box = box;
+    }
+    return search("boxes", "box", shapes);
+  }
+
   // Makes searches for objects without texture: one for each size, then by colours.
   int outlines() {
     std::vector<int> shapes;
@@ -373,9 +407,9 @@ class Learner {
 
   std::vector<LearnObject> objects_;
   std::string folder_;
-  std::vector<std::vector<View>> views_;  // by object and photograph
-  std::vector<size_t> textured_, plain_;  // objects
-  std::vector<int> items_;                // nodes that pattern solvers divide
+  std::vector<std::vector<View>> views_;          // by object and photograph
+  std::vector<size_t> textured_, boxes_, plain_;  // objects
+  std::vector<int> items_;                        // nodes that pattern solvers divide
   Learnt out_;
 };
 

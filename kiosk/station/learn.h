@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learns a recognition tree from photographs: one folder for each object with PNG or JPEG files of
 // its sides, each seen squarely and on its own; the part of a name before '-', '_', ' ' or a digit
-// says the side. A background that is transparent or all of one
-// colour is left out. An optional object.json has
+// says the side. A background that is transparent or all of one colour is left out. An optional
+// object.json has
 //   title, text  {LANGUAGE: text}
 //   class        {LANGUAGE: text}: what objects that are nearly equal to it are called together
 //   size         {SIDE: [width, height]} in metres; or [width, height] for all sides
 //   hints        {NAME: {LANGUAGE: text}} in place of the usual ones
 //
 // Objects with sides that are nearly equal become a class, told apart by the marks in which they
-// differ. Objects without texture need a size and several colours. The rest is divided by
-// likeness into groups of two, so that the way to an object is as long as the logarithm of their
-// number.
+// differ. Objects without texture need a size and several colours, or, as boxes, the sizes of two
+// sides that meet. The rest is divided by likeness into groups of two, so that the way to an object
+// is as long as the logarithm of their number.
 #pragma once
 #include <string>
 #include <vector>

@@ -11,7 +11,7 @@
 #include "kiosk/station/code.h"
 #include "kiosk/station/learn.h"
 #include "wire/limits.h"
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 namespace wellspring::kiosk {
 namespace {
@@ -179,7 +179,13 @@ std::vector<LearnObject> load_objects(const std::string& folder) {
           cv::Mat(photo.height, photo.width, CV_8UC3, const_cast<uint8_t*>(photo.bgr.data())), gray,
           cv::COLOR_BGR2GRAY);
       cv::copyMakeBorder(gray, gray, 30, 30, 30, 30, cv::BORDER_CONSTANT, 255);
-      if (object.code.empty()) object.code = read_code(gray.cols, gray.rows, gray.data);
+      if (!object.code.empty()) continue;
+      const auto codes = read_codes(gray.cols, gray.rows, gray.data);
+      if (codes.empty()) continue;
+      object.code = codes[0];
+      const bool plain = std::ranges::none_of(object.code, [](char c) { return uint8_t(c) < 32; });
+      if (!plain || object.code.size() > most_code_bytes)
+        throw LoadError(photo.file, "", "has a code that is no text, or too long a one");
     }
     if (object.photos.empty())
       throw LoadError(place.string(), "", "has no photograph (.png, .jpg, .jpeg)");

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kiosk/station/tree.h"
+#include "kiosk/tree/tree.h"
 
 namespace wellspring::kiosk {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kiosk/frame/head.h"
-#include "kiosk/station/tree.h"
+#include "kiosk/tree/tree.h"
 
 namespace wellspring::kiosk {
 

@@ -5,13 +5,30 @@
 #include <cmath>
 #include <numeric>
 
+#include "kiosk/station/box.h"
 #include "kiosk/station/code.h"
+#include "kiosk/station/glance.h"
 #include "kiosk/station/outline.h"
 #include "kiosk/station/pattern.h"
 #include "kiosk/station/sight.h"
 #include "kiosk/station/twins.h"
 
 namespace wellspring::kiosk {
+
+namespace {
+constexpr double glance_every = 0.09;  // seconds
+
+// Returns an object's right, down and away in those of one of its sides, as that is seen.
+mat3 axes_of_side(const std::string& side) {
+  const vec3 right(1, 0, 0), down(0, 1, 0), away(0, 0, 1);
+  if (side == "back") return {-right, down, -away};
+  if (side == "left") return {away, down, -right};
+  if (side == "right") return {-away, down, right};
+  if (side == "top") return {right, away, -down};
+  if (side == "bottom") return {right, -away, down};
+  return mat3(1);
+}
+}  // namespace
 
 struct Station::Impl {
   RecognitionTree tree;
@@ -21,12 +38,14 @@ struct Station::Impl {
   PatternSolver pattern;
   TwinSolver twins, colors;
   OutlineSolver outline;
+  BoxSolver box;
   CodeSolver code;
   AlwaysSolver always;
   Traversal walk;
+  Glance glance;
   bool mirrored = false;
   GrayFrame turned;  // the frame, turned back
-  double looked_at = -1e9, seen_at = -1e9, undecided_since = -1e9;
+  double glanced_at = -1e9, looked_at = -1e9, seen_at = -1e9, undecided_since = -1e9;
   int last = -1, agreed = 0;
   std::optional<Holding> told;
 
@@ -37,11 +56,13 @@ struct Station::Impl {
         twins(tree, sight, MarkKind::edges),
         colors(tree, sight, MarkKind::colors),
         outline(tree, sight),
+        box(tree, sight),
         code(tree, sight),
         walk(tree, {{"pattern", &pattern},
                     {"twins", &twins},
                     {"colors", &colors},
                     {"outline", &outline},
+                    {"box", &box},
                     {"code", &code},
                     {"always", &always}}) {
     settings.mount.mirrored = false;  // frames are turned back
@@ -94,7 +115,7 @@ struct Station::Impl {
     if (!found || found->error > 0.05f * std::sqrt(std::abs(area_of(corners_of(*pose, *view)))))
       return;
     out.position = camera_to_screen(settings.mount, found->position);
-    out.rotation = rotation_on_screen(settings.mount, found->rotation);
+    out.rotation = rotation_on_screen(settings.mount, found->rotation * axes_of_side(view->side));
   }
 
   Holding describe(const Recognition& found) const {
@@ -119,9 +140,15 @@ struct Station::Impl {
   std::optional<Holding> step(const GrayFrame& given) {
     const double time = given.time;
     if (time < looked_at) forget();
-    if (last < 0 && time - looked_at < settings.look_every && agreed == 0) return keep(time);
+    if (last < 0 && agreed == 0) {
+      if (std::abs(time - glanced_at) < glance_every) return keep(time);
+      glanced_at = time;
+      glance.step(given);
+      if (time - looked_at < pause()) return keep(time);
+    }
     looked_at = time;
     const Recognition found = look(given);
+    if (found.node < 0) glance.note_vain();
     if (found.node != last || found.node < 0) agreed = 0;
     last = found.node;
     if (found.node < 0) return keep(time);
@@ -132,6 +159,11 @@ struct Station::Impl {
     seen_at = time;
     told = describe(found);
     return told;
+  }
+
+  double pause() const {
+    if (!glance.changed()) return settings.look_rarely;
+    return glance.rests() ? settings.look_every : settings.look_moving;
   }
 
   std::optional<Holding> keep(double time) {

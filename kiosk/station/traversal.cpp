@@ -11,6 +11,8 @@ namespace {
 
 // A child is tried if its score is at least this share of the best one's.
 constexpr double worth_trying = 0.4;
+// So many finds at a node halve its counts, so that last month's visitors count little.
+constexpr int halved_after = 200;
 
 }  // namespace
 
@@ -22,6 +24,26 @@ Traversal::Traversal(const RecognitionTree& tree, Solvers solvers)
         throw std::invalid_argument("node '" + node.name + "' names no solver that there is: '" +
                                     choice.solver + "'");
   find_dependencies();
+  for (const RecognitionNode& node : tree.nodes) {
+    order_.push_back(node.children);
+    found_.emplace_back(node.children.size(), 0);
+  }
+}
+
+// Counts the way to what was found. Children as often found stay in the order that they have.
+void Traversal::learn_order() {
+  for (size_t i = 1; i < path_.size(); i++) {
+    const size_t from = size_t(path_[i].from);
+    if (follows_switch(i)) continue;
+    const std::vector<int>& children = tree_.nodes[from].children;
+    std::vector<int>& counts = found_[from];
+    auto count = [&](int child) -> int& {
+      return counts[size_t(std::ranges::find(children, child) - children.begin())];
+    };
+    if (++count(path_[i].node) > halved_after)
+      for (int& one : counts) one /= 2;
+    std::ranges::stable_sort(order_[from], std::ranges::greater(), count);
+  }
 }
 
 void Traversal::find_dependencies() {
@@ -109,7 +131,7 @@ bool Traversal::descend(ContextStore& context, Recognition& out, bool may_stay) 
   std::string hint = node.hint;
   bool hinted = false;
   for (size_t i = 0; can && i < node.children.size(); i++) {
-    const int child = node.children[i];
+    const int child = order_[size_t(at)][i];
     const Answer answer = solver.match(at, child, context);
     out.matches++;
     if (answer.verdict == Verdict::sure && enter(child, at, &solver, context, out)) return true;
@@ -177,12 +199,14 @@ Recognition Traversal::step(ContextStore& context) {
     while (path_.size() > 1) {
       go_back();
       out.back++;
-      if (descend(context, out, false)) return out;
+      if (!descend(context, out, false)) continue;
+      learn_order();
+      return out;
     }
     return out;
   }
   path_ = {{tree_.root, -1, nullptr}};
-  descend(context, out, false);
+  if (descend(context, out, false)) learn_order();
   return out;
 }
 

@@ -7,13 +7,16 @@
 // from each node on the way. A search descends into the first child that surely matches; children
 // that may match are tried afterwards, the best first. A search that has a class and cannot tell
 // its children apart is the result, with a hint for the visitor.
+//
+// Children are tried in the order of how often the way to what was found led through them, lately:
+// what visitors hold up most is found soonest.
 #pragma once
 #include <map>
 #include <string>
 #include <vector>
 
 #include "kiosk/station/context.h"
-#include "kiosk/station/tree.h"
+#include "kiosk/tree/tree.h"
 
 namespace wellspring::kiosk {
 
@@ -80,10 +83,13 @@ class Traversal {
   bool enter(int child, int from, Solver* by, ContextStore& context, Recognition& out);
   void go_back();
   void find_dependencies();
+  void learn_order();
 
   const RecognitionTree& tree_;
   Solvers solvers_;
   std::vector<std::vector<int>> refresh_;  // for each node
+  // For each node: its children as they are tried, and how often each was on the way.
+  std::vector<std::vector<int>> order_, found_;
   std::vector<Step> path_;
   std::vector<char> failed_;  // nodes from which no way down was found in this iteration
 };

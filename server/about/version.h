@@ -106,6 +106,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libyaml-cpp.", "yaml-cpp", "MIT", "dispersion of glass and gems"},
     {"libz.", "zlib", "Zlib", "compression"},
     {"libzstd.", "Zstandard", "BSD-3-Clause", "light that packages carry"},
+    {"libZXing.", "ZXing-C++", "Apache-2.0", "codes on what visitors hold, in the kiosk's program"},
     // The rest are headers that are compiled in.
     {"Boost", "Boost (Asio, Beast)", "BSL-1.0", "HTTP and WebSocket"},
     {"CLI11", "CLI11", "BSD-3-Clause", "options"},

@@ -56,10 +56,11 @@ int spawn(const ChildSettings& settings, const std::vector<std::pair<int, int>>&
 
 Child::Child(const ChildSettings& settings) : apart_(settings.apart), patience_(settings.patience) {
   int in[2] = {-1, -1}, out[2] = {-1, -1}, error = 0;
-  auto files = settings.files;
+  std::vector<std::pair<int, int>> files;  // pipes first: other files may take their numbers
   if (settings.reads >= 0) error = pipe2(in, O_CLOEXEC), files.emplace_back(in[0], settings.reads);
   if (settings.writes >= 0 && error == 0)
     error = pipe2(out, O_CLOEXEC), files.emplace_back(out[1], settings.writes);
+  files.insert(files.end(), settings.files.begin(), settings.files.end());
   error = error == 0 ? spawn(settings, files, id_) : errno;
   to_ = in[1], from_ = out[0];
   for (int end : {in[0], out[1]}) close(end);

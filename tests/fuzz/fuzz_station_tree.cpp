@@ -2,7 +2,7 @@
 // What a kiosk has learned of the objects that visitors may hold.
 #include "fuzz/fuzz.h"
 #include "kiosk/station/station.h"
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 namespace wellspring::fuzz {
 

@@ -94,10 +94,11 @@ const may_enter = {
     'network/graph': ['network'],
     process: [],
     face: ['frame', 'network', 'network/graph'],
-    station: ['frame'],
+    tree: [],
+    station: ['frame', 'tree'],
     body: ['frame', 'network', 'network/graph'],
     hand: ['frame', 'network', 'network/graph'],
-    '': ['body', 'face', 'frame', 'gesture', 'hand', 'network', 'process', 'station'],
+    '': ['body', 'face', 'frame', 'gesture', 'hand', 'network', 'process', 'station', 'tree'],
   },
   show: {
     lighting: [],
@@ -141,7 +142,7 @@ const most_files_a_folder = 30;
 // Heavy headers appear in .cpp files of these layers only.
 const heavy = [
   [/^(boost\/(beast|asio)|boost\/)/, ['store', 'stream', 'kiosk']],
-  [/^opencv2?\//, ['kiosk']],
+  [/^(opencv2?|ZXing)\//, ['kiosk']],
   [/^embree[34]?\//, ['world']],
   [/^pugixml/, ['avatar', 'scan', 'store']],
   [/^sndfile/, ['avatar']],

@@ -13,6 +13,7 @@
 #include "show/answer/commands.h"
 #include "show/answer/events.h"
 #include "show/answer/groups.h"
+#include "show/answer/holding.h"
 #include "show/state/visitor_world.h"
 #include "wire/json.h"
 
@@ -322,6 +323,7 @@ void follow_kiosks(Show& show) {
   find_her_kiosk(show);
   for (Kiosk& kiosk : show.kiosks.all) {
     follow_gestures(show, kiosk);
+    follow_holding(show, kiosk, her_kiosk(show.kiosks) == &kiosk);
     note_story(show, kiosk);
   }
   tell_pages(show);

@@ -51,6 +51,9 @@ struct KioskSettings {
   std::string teller;     // a storyteller's id: who comes there; empty: whoever is there
   float volume = 1;       // 0 to 1
   ScreenSize screen;      // known: its picture follows the head of its guest
+  // Recognition tree of what may be held to its camera, one of Exhibit::files; empty: none.
+  std::string station;
+  std::vector<std::string> held;  // ids of the objects that this tree names
   KioskTimes times;
 };
 

@@ -33,6 +33,8 @@ MediumRules rules_of(Medium medium) {
   switch (medium) {
     case Medium::image: return {most_image_bytes, "picture", "image/", "JPEG or PNG"};
     case Medium::video: return {most_video_bytes, "film", "video/", "WebM or MP4"};
+    case Medium::station:
+      return {most_station_bytes, "recognition tree", "application/", "./wellspring station"};
     default: return {most_sound_bytes, "sound", "audio/", "Ogg, MP3, WAV or FLAC"};
   }
 }
@@ -86,6 +88,8 @@ std::string media_type(Medium medium, std::string_view bytes) {
   } else if (medium == Medium::video) {
     if (is_webm(bytes)) return "video/webm";
     if (is_mp4(bytes)) return "video/mp4";
+  } else if (medium == Medium::station) {
+    if (bytes.starts_with('{')) return "application/json";
   } else {
     if (bytes.starts_with("OggS"sv)) return "audio/ogg";
     if (bytes.starts_with("fLaC"sv)) return "audio/flac";
@@ -126,7 +130,10 @@ bool add_served_file(Exhibit& exhibit, FieldReader& fields, const char* field,
   }
   if (count != file.bytes) return refuse("cannot be read");
   if (file.type.empty())
-    return refuse(fmt::format("is no {} that all browsers show: {}", rules.what, rules.understood));
+    return refuse(
+        medium == Medium::station
+            ? fmt::format("is no {} as {} writes it", rules.what, rules.understood)
+            : fmt::format("is no {} that all browsers show: {}", rules.what, rules.understood));
   if (medium == Medium::image)
     if (std::string problem = image_problem(file.path, rules.most_bytes); !problem.empty())
       return refuse("cannot be shown: " + problem);

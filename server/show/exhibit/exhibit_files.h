@@ -9,15 +9,15 @@ namespace wellspring::show {
 // Pictures, films and sounds of a package that browsers will be given: whether they can show them,
 // by the bytes, not by the name.
 
-enum class Medium { image, video, sound };
+enum class Medium { image, video, sound, station };
 
 inline constexpr uint64_t most_image_bytes = 8 << 20, most_video_bytes = 60 << 20,
-                          most_sound_bytes = 8 << 20;
+                          most_sound_bytes = 8 << 20, most_station_bytes = 32 << 20;
 inline constexpr int longest_image_side =
     4096;  // pixels; screens show no more, and memory is finite
 
-// The media type of a file by its first bytes: JPEG and PNG; WebM and MP4; Ogg, MP3, WAV, FLAC.
-// Empty: none that all browsers show.
+// The media type of a file by its first bytes: JPEG and PNG; WebM and MP4; Ogg, MP3, WAV, FLAC;
+// JSON. Empty: none that all browsers, or kiosks, understand.
 std::string media_type(Medium medium, std::string_view first_bytes);
 
 // Adds the file `name` of the package to exhibit.files. False with a problem noted at `field` when

@@ -190,6 +190,19 @@ HttpReply answer_exhibit(const AnswerSources& sources, const HttpQuestion& quest
   return error_reply(404, "not_found", "there is no '" + tail + "' in an exhibit");
 }
 
+// The recognition tree of the kiosk of that name; without a name, of the only one that has a tree.
+HttpReply answer_station(const AnswerSources& sources, const HttpQuestion& question) {
+  const auto asked = question.query.find("kiosk");
+  const std::string name = asked == question.query.end() ? "" : asked->second;
+  std::vector<const ServedFile*> found;
+  for (const ServedExhibit& one : sources.exhibits)
+    for (const KioskSettings& kiosk : one.exhibit->kiosks)
+      if (!kiosk.station.empty() && (name.empty() || kiosk.name == name))
+        found.push_back(&one.exhibit->files.at(kiosk.station));
+  if (found.size() == 1 || (!found.empty() && !name.empty())) return answer_file(*found.front());
+  return error_reply(404, "no_station", "no kiosk of that name has a recognition tree");
+}
+
 // Lists the exhibits. Only a technician learns why some failed, since the reasons name files.
 HttpReply answer_exhibits(const AnswerSources& sources, const Access& access) {
   json all = {{"exhibits", json::array()}, {"failed", json::array()}};
@@ -312,6 +325,7 @@ HttpReply answer(const AnswerSources& sources, const HttpQuestion& question) {
     return reply;
   }
   if (path == "/api/v1/admin/announce") return answer_announce(sources.desk, access, question);
+  if (path == "/api/v1/station") return answer_station(sources, question);
   const std::string exhibits = "/api/v1/exhibits";
   if (path == exhibits || path == exhibits + "/") return answer_exhibits(sources, access);
   if (path.starts_with(exhibits + "/"))

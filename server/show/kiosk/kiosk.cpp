@@ -194,7 +194,8 @@ void step_kiosk(Kiosk& kiosk, const KioskInput& input, const std::vector<Eye>& e
     return eye.kiosk == kiosk.settings.name && sees(eye, now);
   });
   stage.motion = kiosk.audience.state != Presence::absent;
-  stage.head = kiosk.audience.state == Presence::person;
+  // Who holds something up may hide their face with it.
+  stage.head = kiosk.audience.state == Presence::person || kiosk.audience.holding;
   stage.touched = input.touched;
   stage.busy = input.busy;
   stage.playing = input.playing;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "show/exhibit/exhibit.h"
+#include "show/kiosk/holding.h"
 #include "show/storyteller/audience.h"
 #include "world/view.h"
 
@@ -108,6 +109,7 @@ struct KioskVisit {
   bool greeted = false;
   std::vector<std::string> heard;  // ids of the stories told to them
   std::string gestured_story;      // id of the last that was asked for by a gesture
+  HoldingTalk talk;                // about what they hold up
   bool operator==(const KioskVisit&) const = default;
 };
 
@@ -118,6 +120,7 @@ struct Kiosk {
   bool changed = false;             // its stage did, in the last step
   Showing showing = Showing::well;  // shown by its page
   KioskVisit visit;
+  HeldObject held;  // shown on its pages
   std::vector<std::pair<uint64_t, std::string>>
       gestures;                 // last tick's gestures of its guests, by their ids
   std::string gesture;          // the last that was handed to its page

@@ -31,6 +31,13 @@ struct PropPose {
 Prop make_prop(const ExhibitProp& prop, Scene& scene, std::vector<Mesh>& moving,
                std::vector<uint32_t>& moving_object);
 
+// The same of a thing that guests hold to a kiosk's camera: the exhibit's prop of that id, else its
+// object. In its own frame its middle is at 0 and +z is its front, as in its file, or by its node's
+// axes. It is at most 0.3 m long. No parts: there is no such thing, or it has more than 20,000
+// triangles.
+Prop make_held_model(const Exhibit& exhibit, const std::string& id, Scene& scene,
+                     std::vector<Mesh>& moving, std::vector<uint32_t>& moving_object);
+
 // Moves, shows and hides it. True: something changed; call World::commit() afterwards.
 bool pose_prop(World& world, Prop& prop, const PropPose& pose);
 

@@ -4,6 +4,8 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "avatar/mind/storyteller.h"
@@ -37,6 +39,8 @@ struct Teller {
 struct ShowCast {
   std::vector<Figure> figures;  // figures of all the exhibit's storytellers; hidden but for one
   std::vector<Prop> props;      // one for each of Exhibit::props; hidden but for what is held
+  // models of what may be held to kiosks' cameras, by their ids; hidden but for what is held
+  std::vector<std::pair<std::string, Prop>> held;
   // the house's storyteller: for kiosks, and for visitors who have none of their own
   Teller teller;
   Movers movers;            // meshes that the exhibit's animations move
@@ -52,6 +56,8 @@ struct ShowCast {
   uint64_t posed_as = ~uint64_t(0);
   // Link::id of the visitor whose own animations the world shows; 0: nobody's
   uint64_t posed_for = 0;
+  // Link::id of the kiosk's page whose held object the world shows; 0: none is shown
+  uint64_t posed_held = 0;
 };
 
 }  // namespace wellspring::show

@@ -145,14 +145,14 @@ bool is_on(const Show& show, const Visitor& visitor, size_t animation) {
 
 bool sees_moving(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor,
                  const View& view) {
-  return !visitor.dynamic.empty() || visitor.lawns.sways ||
+  return !visitor.dynamic.empty() || visitor.lawns.sways || visitor.held.size > 0 ||
          sees_figure(cast, teller_of(cast, visits, visitor), view) ||
          std::ranges::any_of(cast.movers.reach,
                              [&](const Reach& reach) { return in_reach(view, reach); });
 }
 
 bool sees_others_move(const Show& show, const Visitor& visitor, const View& view) {
-  if (!visitor.dynamic.empty() ||
+  if (!visitor.dynamic.empty() || visitor.held.size > 0 ||
       sees_figure(show.cast, teller_of(show.cast, show.visits, visitor), view))
     return true;
   for (size_t i = 0; i < show.stage.exhibit.animations.size(); i++)

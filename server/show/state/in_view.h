@@ -45,7 +45,8 @@ std::vector<double> animation_times(const Show& show, const Visitor& visitor);
 // its index.
 bool is_on(const Show& show, const Visitor& visitor, size_t animation);
 // Returns whether that picture may show anything that can move: a dynamic light, the visitor's
-// storyteller, a lawn that moves, or what an animation moves, at rest or not.
+// storyteller, a lawn that moves, what a kiosk's guest holds up, or what an animation moves, at
+// rest or not.
 bool sees_moving(const ShowCast& cast, const ShowVisits& visits, const Visitor& visitor,
                  const View& view);
 // Return whether any of these moves now, with lawns or without; the storyteller always does.

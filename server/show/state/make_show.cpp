@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/make_show.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "base/log.h"
@@ -124,6 +125,13 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
     show->cast.figures.push_back(make_figure(place.character, scene, moving, moving_object));
   for (const ExhibitProp& prop : show->stage.exhibit.props)
     show->cast.props.push_back(make_prop(prop, scene, moving, moving_object));
+  for (const KioskSettings& kiosk : show->stage.exhibit.kiosks)
+    for (const std::string& id : kiosk.held) {
+      auto is_it = [&](const auto& one) { return one.first == id; };
+      if (std::ranges::any_of(show->cast.held, is_it)) continue;
+      Prop model = make_held_model(show->stage.exhibit, id, scene, moving, moving_object);
+      if (!model.parts.empty()) show->cast.held.emplace_back(id, std::move(model));
+    }
   show->cast.movers = make_movers(show->stage.exhibit, moving, moving_object);
   show->cast.plays.resize(show->stage.exhibit.animations.size());
   show->stage.world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
@@ -132,7 +140,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   show->stage.lawns.begin(show->stage.exhibit, *show->stage.world);
   show->stage.skin = make_skin_light(*show->stage.world);
   if (!show->cast.figures.empty()) enter(show->stage, show->cast.teller);
-  if (!show->cast.figures.empty() || !show->cast.props.empty())
+  if (!show->cast.figures.empty() || !show->cast.props.empty() || !show->cast.held.empty())
     pose_world(show->stage, show->cast, show->time, show->cast.teller, show->cast.movers.posed);
   std::vector<Problem> problems;
   show->stage.roads = make_tour_roads(show->stage.exhibit, *show->stage.world, problems);

@@ -178,6 +178,7 @@ struct Visitor {
   VisitorPlace place;  // show/visit
   VisitorLawns lawns;
   WindowEye window;  // eye before a kiosk's screen
+  HeldObject held;   // shown on a kiosk's page; Kiosk::held
   PictureWishes wants;
   VisitorAttention looks;                   // show/draw/steer.h
   std::unique_ptr<VisitorPicture> picture;  // show/draw; never null

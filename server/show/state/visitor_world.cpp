@@ -16,6 +16,19 @@ uint64_t number_who_touched(const ShowVisits& visits, const Visitor& visitor) {
   return who ? who->link->id : 0;
 }
 
+uint64_t number_who_holds(const Visitor& visitor) {
+  return visitor.held.size > 0 ? visitor.link->id : 0;
+}
+
+// Places what the guest of a kiosk's page holds up before that page's camera.
+ShownHeld held_before(const Show& show, const Visitor& visitor) {
+  const Kiosk* kiosk = kiosk_of(show, visitor);
+  if (!kiosk || visitor.held.size <= 0) return {};
+  const View view = rest_view(show.stage, visitor);
+  const float away = rest_distance(kiosk->settings.screen, view);
+  return {visitor.held.model, {place_held(visitor.held, view, away), visitor.held.size, 1}};
+}
+
 // Returns what the visitor sees of pieces by now: on the way to the wish, after a story's mark.
 PieceChoices pieces_now(const Show& show, const Visitor& visitor) {
   const Visitor* leader = leader_of(show.visits, visitor);
@@ -73,7 +86,7 @@ void light_lawns(Show& show, const Visitor& visitor) {
 }  // namespace
 
 void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& teller,
-                const std::vector<double>& times) {
+                const std::vector<double>& times, const ShownHeld& held) {
   bool moved = pose_movers(stage.exhibit, times, cast.movers, *stage.world);
   cast.posed_as = teller.number;
   for (size_t i = 0; i < cast.figures.size(); i++)
@@ -81,6 +94,9 @@ void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& 
   for (size_t i = 0; i < cast.props.size(); i++)
     moved |=
         pose_prop(*stage.world, cast.props[i], pose_of(stage.exhibit, teller.held, int(i), time));
+  for (size_t i = 0; i < cast.held.size(); i++)
+    moved |=
+        pose_prop(*stage.world, cast.held[i].second, int(i) == held.model ? held.pose : PropPose{});
   if (cast.figures.empty() && !moved) return;
   if (teller.visible && !cast.figures.empty())
     pose_figure(*stage.world, cast.figures[teller.index],
@@ -126,17 +142,19 @@ void begin_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
   show_pieces_of(show.stage, visitor.pieces.shown);
   pose_world(show.stage, show.cast, show.time, teller_of(show.cast, show.visits, visitor),
-             animation_times(show, visitor));
+             animation_times(show, visitor), held_before(show, visitor));
   step_lawns(show);
   light_lawns(show, visitor);
   show.cast.posed_for = number_who_touched(show.visits, visitor);
+  show.cast.posed_held = number_who_holds(visitor);
 }
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
   light_world(show.stage, visitor.lamps.lit);
   show_pieces_of(show.stage, visitor.pieces.shown);
   if (show.cast.posed_as == teller_of(show.cast, show.visits, visitor).number &&
-      show.cast.posed_for == number_who_touched(show.visits, visitor))
+      show.cast.posed_for == number_who_touched(show.visits, visitor) &&
+      show.cast.posed_held == number_who_holds(visitor))
     return light_lawns(show, visitor);
   begin_world_of(show, visitor);
 }
@@ -145,7 +163,8 @@ bool see_the_same(const ShowCast& cast, const ShowVisits& visits, const Visitor&
                   const Visitor& b) {
   return &teller_of(cast, visits, a) == &teller_of(cast, visits, b) && a.lamps.lit == b.lamps.lit &&
          a.lamps.lit_hour == b.lamps.lit_hour && a.pieces.shown == b.pieces.shown &&
-         who_touched(visits, a) == who_touched(visits, b);
+         who_touched(visits, a) == who_touched(visits, b) &&
+         number_who_holds(a) == number_who_holds(b);
 }
 
 }  // namespace wellspring::show

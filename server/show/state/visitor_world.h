@@ -8,9 +8,15 @@
 
 namespace wellspring::show {
 
-// Shows that storyteller alone, as it is now, and animations at these times, seconds of each.
+// Holds where the world shows the object that a kiosk's guest holds up; size 0: none.
+struct ShownHeld {
+  int model = -1;  // index into ShowCast::held
+  PropPose pose;
+};
+// Shows that storyteller alone, as it is now, animations at these times, seconds of each, and what
+// is held up.
 void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& teller,
-                const std::vector<double>& times);
+                const std::vector<double>& times, const ShownHeld& held = {});
 // Returns the visitor's wish of what pieces show; the leader's, if there is one.
 const PieceChoices& pieces_of(const ShowVisits& visits, const Visitor& visitor);
 // Makes the visitor's pictures follow that wish and the visitor's language from the next one on, if

@@ -132,6 +132,40 @@ inline void put_fingers(cv::Mat& picture, const Held& held) {
                 cv::LINE_AA);
 }
 
+// Draws a box of that size whose middle and axes (right, down, away; in the camera's frame) are
+// these, each face in one colour.
+inline void put_box(cv::Mat& picture, vec3 middle, const mat3& axes, vec3 size, unsigned seed) {
+  MadeRandom random(seed + 300);
+  const double hue = random.real(60, 200);
+  for (int axis = 0; axis < 3; axis++)
+    for (const float side : {-1.f, 1.f}) {
+      const cv::Scalar color = cv::Scalar(0.8, 0.9, 1) * (hue - 25 * axis + 4 * double(side));
+      const vec3 normal = axes[axis] * side, at = middle + normal * (0.5f * size[axis]);
+      if (glm::dot(normal, at) >= 0) continue;  // it looks away
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      std::vector<cv::Point> corners;
+      constexpr float finer = 16;  // parts of a pixel
+      for (const auto& [a, b] :
+           {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
+        const vec3 p =
+            at + axes[u] * (0.5f * float(a) * size[u]) + axes[v] * (0.5f * float(b) * size[v]);
+        corners.emplace_back(int(finer * (p.x / p.z * made_focal + made_width / 2.f)),
+                             int(finer * (p.y / p.z * made_focal + made_height / 2.f)));
+      }
+      cv::fillConvexPoly(picture, corners, color, cv::LINE_AA, 4);
+    }
+}
+// How a box may be held: three faces are seen.
+inline mat3 random_axes(unsigned seed) {
+  MadeRandom random(seed + 40);
+  const auto about = [](double angle, vec3 axis) {
+    return mat3(glm::rotate(mat4(1), float(angle), axis));
+  };
+  const double aside = random.real(0.35, 1.1) * (random.whole(0, 1) ? 1 : -1);
+  return about(random.real(-0.3, 0.3), {0, 0, 1}) * about(random.real(0.3, 0.8), {1, 0, 0}) *
+         about(aside, {0, 1, 0});
+}
+
 // Makes the picture what a camera gives.
 inline GrayFrame to_frame(const cv::Mat& picture, double time, double blur = 0.7, double noise = 4,
                           unsigned seed = 1, double gain = 1) {

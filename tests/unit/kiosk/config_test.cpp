@@ -34,7 +34,8 @@ struct ConfigFile : testing::Test {
 TEST_F(ConfigFile, SaysWhatDiffers) {
   load(R"({"camera": {"width": 320, "fov": 90, "mirrored": true},
            "mount": {"offset": [0.1, 0.2, 0.3], "pitch": -10},
-           "presence": {"hold_person": 4}, "hands": false, "name": "hall"})");
+           "presence": {"hold_person": 4}, "hands": false, "name": "hall", "station": "objects.json"})");
+  EXPECT_EQ(config.station, "objects.json");
   EXPECT_EQ(config.name, "hall");
   EXPECT_EQ(config.camera.width, 320);
   EXPECT_EQ(config.camera.rate, 30);
@@ -47,6 +48,7 @@ TEST_F(ConfigFile, SaysWhatDiffers) {
   EXPECT_FALSE(config.hands);
   load("{}");
   EXPECT_TRUE(config.hands);
+  EXPECT_EQ(config.station, "");
 }
 
 TEST_F(ConfigFile, NamesWhatIsWrong) {
@@ -62,6 +64,7 @@ TEST_F(ConfigFile, NamesWhatIsWrong) {
             "line 1, /camera/mirrored: is not true or false");
   EXPECT_EQ(problem(R"({"mount": {"offset": [1, 2]}})"),
             "line 1, /mount/offset: is not a list of three numbers");
+  EXPECT_EQ(problem(R"({"station": 3})"), "line 1, /station: is not a text");
   EXPECT_EQ(problem(R"({"mount": []})"), "line 1, /mount: is not an object");
   EXPECT_EQ(problem(R"({"presence": {"hold_person": null}})"),
             "line 1, /presence/hold_person: is not a number from 0 to 600");

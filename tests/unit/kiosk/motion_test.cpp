@@ -24,7 +24,6 @@ TEST(Motion, noise_alone_is_not_motion) {
     for (int i = 0; i < 60; i++) {
       Motion m = watch.step(room(i / rate, 1, noise));
       EXPECT_FALSE(m.moving) << "frame " << i << " noise " << noise << " share " << m.share;
-      EXPECT_LT(watch.changed({100, 80, 80, 80}), 0.01f);
     }
   }
 }
@@ -51,7 +50,6 @@ TEST(Motion, somebody_walking_is_motion_and_the_zone_is_where_they_are) {
     const float u = 160 - x / 0.9f * focal_length({}, 320);
     EXPECT_LT(m.zones[0].x, u);
     EXPECT_GT(m.zones[0].x + m.zones[0].width, u);
-    EXPECT_GT(watch.changed({0, 60, 320, 180}), 0.01f);
   }
   EXPECT_GE(moving, 14);
 }

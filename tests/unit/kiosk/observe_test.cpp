@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "base/load_error.h"
+#include "benchmark/kiosk/made_objects.h"
 #include "kiosk/camera.h"
 #include "kiosk/face/face_finder.h"
 #include "kiosk/figure.h"
+#include "kiosk/station/learn.h"
 
 namespace wellspring::test {
 namespace {
@@ -210,6 +212,47 @@ TEST(Observe, a_missing_cascade_is_named_with_its_package) {
     EXPECT_EQ(error.file.rfind("/nowhere/", 0), 0u) << error.file;
     EXPECT_NE(std::string(error.what()).find("opencv-data"), std::string::npos);
   }
+}
+
+// A card is held up for two seconds, and taken away.
+TEST(Observe, what_is_held_is_told_while_something_moves) {
+  const cv::Mat card = make_face(1), room = make_room(5);
+  std::vector<LearnObject> objects;
+  objects.push_back(make_object("card", {{card, "front"}}));
+  objects.push_back(make_object("other", {{make_face(2), "front"}}));
+  objects[0].sizes[""] = {0.12f, 0.09f};
+  ObserverSettings settings;
+  settings.face.weights = "/nowhere";
+  settings.station = learn_tree(std::move(objects), "made").tree;
+  Observer observer(settings);
+  int told = 0, early = 0;
+  std::optional<Holding> last;
+  for (int i = 0; i < 150; i++) {
+    cv::Mat picture = room.clone();
+    Held held;
+    held.size = 260, held.x = 260 + 2 * float(i % 30), held.roll = 0.01f * float(i % 30);
+    if (i >= 30 && i < 90) put_face(picture, card, held);
+    const Observation seen = observer.step(to_frame(picture, i / 30.0, 0.7, 4, unsigned(i)));
+    EXPECT_EQ(seen.parts.objects, true);
+    early += seen.holding && i < 30;
+    last = seen.holding;
+    if (!seen.holding) continue;
+    EXPECT_EQ(seen.holding->id, "card");
+    EXPECT_TRUE(seen.holding->position.has_value());
+    told++;
+  }
+  EXPECT_EQ(early, 0);
+  EXPECT_GT(told, 20);
+  EXPECT_FALSE(last) << "it was taken away two seconds ago";
+}
+
+TEST(Observe, without_a_tree_nothing_is_told_of_objects) {
+  ObserverSettings settings;
+  settings.face.weights = "/nowhere";
+  Observer observer(settings);
+  const Observation seen = observer.step(to_frame(make_room(5), 0, 0.7, 4));
+  EXPECT_FALSE(seen.parts.objects.has_value());
+  EXPECT_FALSE(seen.holding);
 }
 
 }  // namespace

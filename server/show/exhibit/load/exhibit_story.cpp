@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "avatar/body/gesture.h"
@@ -10,6 +11,7 @@
 #include "avatar/story/story_speech.h"
 #include "base/load_error.h"
 #include "base/unicode.h"
+#include "json/text.h"
 #include "show/exhibit/exhibit_files.h"
 #include "show/exhibit/pieces/piece_choices.h"
 
@@ -261,6 +263,30 @@ void read_times(KioskTimes& times, FieldReader& fields) {
   read("sleep_latest", times.sleep_latest, "seconds from its beginning, where nothing moves");
 }
 
+// Reads which tree its cameras tell objects by, and which objects that names. Solvers' own data is
+// read by `wellspring check` and by kiosks (kiosk/tree/tree_file.h).
+void read_station(Exhibit& exhibit, FieldReader& fields, KioskSettings& kiosk) {
+  std::string name;
+  if (!fields.text("station", name, "file of ./wellspring station: what guests may hold up"))
+    return;
+  kiosk.station.clear(), kiosk.held.clear();
+  if (!add_served_file(exhibit, fields, "station", name, Medium::station)) return;
+  kiosk.station = name;
+  try {
+    const std::string& path = exhibit.files.at(name).path;
+    const json tree = parse_json_file(path, read_json_text(path));
+    const auto nodes = tree.find("nodes");
+    if (nodes == tree.end() || !nodes->is_object())
+      return fields.fail("station", "'" + name + "' has no nodes");
+    for (const json& node : *nodes) {
+      if (!node.is_object() || node.value("kind", json()) != "model") continue;
+      if (const json id = node.value("id", json()); id.is_string()) kiosk.held.push_back(id);
+    }
+  } catch (const LoadError& error) {
+    fields.fail("station", "'" + name + "' " + error.what_);
+  }
+}
+
 }  // namespace
 
 void read_kiosks(Exhibit& exhibit, FieldReader& root) {
@@ -288,6 +314,7 @@ void read_kiosks(Exhibit& exhibit, FieldReader& root) {
                   screen.number("height", smallest_screen, largest_screen, kiosk->screen.height,
                                 "metres", Need::required);
                 });
+    read_station(exhibit, fields, *kiosk);
     fields.part("times", "how long it waits",
                 [&](FieldReader& times) { read_times(kiosk->times, times); });
   });

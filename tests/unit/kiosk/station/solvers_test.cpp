@@ -5,6 +5,7 @@
 #include <opencv2/objdetect.hpp>
 
 #include "benchmark/kiosk/made_objects.h"
+#include "kiosk/station/box.h"
 #include "kiosk/station/code.h"
 #include "kiosk/station/learn.h"
 #include "kiosk/station/outline.h"
@@ -187,6 +188,82 @@ TEST(OutlineSolver, another_shape_does_not_match) {
   EXPECT_EQ(solver.match(tree.root, 1, context).verdict, Verdict::no);
 }
 
+constexpr vec3 made_box(0.12f, 0.08f, 0.05f);
+
+GrayFrame show_box(unsigned seed, vec3 middle, const mat3& axes, vec3 size = made_box) {
+  cv::Mat picture = make_room(seed);
+  put_box(picture, middle, axes, size, seed);
+  return to_frame(picture, 0, 0.7, 4, seed);
+}
+
+TEST(BoxSolver, corner_gives_the_pose_it_was_drawn_with) {
+  for (unsigned seed = 0; seed < 30; seed++) {
+    const mat3 axes = random_axes(seed);
+    const vec3 middle(0.02f, -0.01f, 0.45f);
+    auto project = [&](vec3 p) { return vec2(p) / p.z * made_focal + vec2(320, 240); };
+    // The corner nearest to the camera.
+    vec3 corner(0), signs(0);
+    for (int axis = 0; axis < 3; axis++) signs[axis] = axes[axis].z < 0 ? 1.f : -1.f;
+    corner = middle + axes * (0.5f * signs * made_box);
+    Junction seen{project(corner), {}};
+    for (int axis = 0; axis < 3; axis++)
+      seen.ends[size_t(axis)] = project(corner - axes[axis] * (signs[axis] * made_box[axis]));
+    float best = 1;
+    for (const SpacePose& pose : solve_corner(seen, made_box, made_focal, 640, 480))
+      best = std::min(best, glm::distance(pose.position, middle));
+    EXPECT_LT(best, 1e-3f) << seed;
+  }
+}
+
+TEST(BoxSolver, box_without_texture_is_found_with_its_pose_and_followed) {
+  std::vector<NodeData> data(2);
+  data[0].box = made_box;
+  data[1].box = vec3(0.1f, 0.1f, 0.03f);
+  const RecognitionTree tree = one_search(data, "box");
+  int found = 0, wrong = 0, kept = 0;
+  for (unsigned seed = 0; seed < 20; seed++) {
+    Sight sight;
+    BoxSolver solver(tree, sight);
+    ContextStore context;
+    mat3 axes = random_axes(seed);
+    vec3 middle(0.03f, -0.02f, 0.4f);
+    const GrayFrame frame = show_box(seed, middle, axes);
+    look_at(sight, frame, made_focal);
+    wrong += solver.match(tree.root, 1, context).verdict == Verdict::sure;
+    if (solver.match(tree.root, 0, context).verdict != Verdict::sure) continue;
+    found++;
+    ASSERT_TRUE(solver.pose());
+    EXPECT_LT(glm::distance(solver.pose()->position, middle), 0.012f) << seed;
+    for (int axis = 0; axis < 3; axis++)
+      EXPECT_GT(std::abs(glm::dot(solver.pose()->rotation[axis], axes[axis])), 0.99f) << seed;
+    middle += vec3(0.004f, 0, 0.004f);
+    const GrayFrame next = show_box(seed, middle, axes);
+    look_at(sight, next, made_focal);
+    kept += solver.verify(0, context);
+  }
+  EXPECT_GE(found, 14);
+  EXPECT_GE(kept, found - 2);
+  EXPECT_LE(wrong, 1);
+}
+
+TEST(BoxSolver, rooms_and_cards_are_no_boxes) {
+  std::vector<NodeData> data(1);
+  data[0].box = made_box;
+  const RecognitionTree tree = one_search(data, "box");
+  int wrong = 0;
+  for (unsigned seed = 0; seed < 40; seed++) {
+    Sight sight;
+    BoxSolver solver(tree, sight);
+    ContextStore context;
+    cv::Mat picture = make_room(seed);
+    if (seed % 2) put_face(picture, make_face(seed), random_held(seed));
+    const GrayFrame frame = to_frame(picture, 0);
+    look_at(sight, frame, made_focal);
+    wrong += solver.match(tree.root, 0, context).verdict == Verdict::sure;
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
 cv::Mat make_code(const std::string& text) {
   cv::Mat code, large;
   cv::QRCodeEncoder::create()->encode(text, code);
@@ -202,8 +279,9 @@ TEST(CodeSolver, tells_codes_apart) {
     cv::Mat gray;
     cv::cvtColor(i ? two : one, gray, cv::COLOR_BGR2GRAY);
     cv::copyMakeBorder(gray, gray, 30, 30, 30, 30, cv::BORDER_CONSTANT, 255);
-    data[i].code = read_code(gray.cols, gray.rows, gray.data);
-    ASSERT_FALSE(data[i].code.empty());
+    const auto codes = read_codes(gray.cols, gray.rows, gray.data);
+    ASSERT_EQ(codes.size(), 1u);
+    data[i].code = codes[0];
   }
   EXPECT_NE(data[0].code, data[1].code);
   const RecognitionTree tree = one_search(data, "code");

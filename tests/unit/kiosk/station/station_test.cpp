@@ -7,7 +7,7 @@
 #include "benchmark/kiosk/made_objects.h"
 #include "kiosk/station/learn.h"
 #include "kiosk/station/pattern.h"
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 namespace wellspring::test {
 namespace {
@@ -134,8 +134,8 @@ TEST_F(Cards, name_needs_two_looks_and_stays_a_moment) {
   };
   const GrayFrame held = show(faces[3], {}, 2);
   EXPECT_FALSE(at(room, 0));
-  EXPECT_FALSE(at(held, 0.3));
-  const auto told = at(held, 0.33);
+  EXPECT_FALSE(at(held, 0.7));
+  const auto told = at(held, 0.73);
   ASSERT_TRUE(told);
   EXPECT_EQ(told->id, "card3");
   EXPECT_EQ(told->title.at("en"), "The card3");
@@ -144,8 +144,8 @@ TEST_F(Cards, name_needs_two_looks_and_stays_a_moment) {
   // 0.12 m across 260 pixels, in the middle of the picture.
   EXPECT_NEAR(told->position->z, 0.12f * made_focal / 260, 0.01f);
   EXPECT_NEAR(told->position->x, 0, 0.005f);
-  EXPECT_TRUE(at(room, 0.6));
-  EXPECT_FALSE(at(room, 1.2));
+  EXPECT_TRUE(at(room, 1.0));
+  EXPECT_FALSE(at(room, 1.6));
 }
 
 TEST_F(Cards, mirrored_camera_names_them_as_well) {
@@ -263,6 +263,27 @@ TEST_F(TwinObjects, front_and_back_of_one_kind_are_never_asked_for_in_turn) {
     if (hints.empty() || hints.back() != told->hint.at("en")) hints.push_back(told->hint.at("en"));
   }
   EXPECT_LE(std::ranges::count(hints, "Turn it over, please."), 1);
+}
+
+// Turns are those of the object, whichever side is seen; its front faces the screen at 0.
+TEST(Sides, turn_with_the_object) {
+  std::vector<LearnObject> objects;
+  Sides sides;
+  for (const char* side : {"front", "back", "left"})
+    sides.emplace_back(make_face(unsigned(40 + sides.size())), side);
+  objects.push_back(make_object("casket", sides));
+  objects.back().sizes[""] = {0.12f, 0.09f};
+  Station station(learn(std::move(objects)));
+  auto yaw = [&](size_t side) {
+    station.forget();
+    std::optional<Holding> told;
+    for (int i = 0; i < 4; i++)
+      told = station.step(show(sides[side].first, {}, 3, 10 * double(side) + i));
+    return told && told->rotation ? told->rotation->x : -9.f;
+  };
+  EXPECT_NEAR(yaw(0), 0, 0.1f);
+  EXPECT_NEAR(std::abs(yaw(1)), pi, 0.1f);
+  EXPECT_NEAR(std::abs(yaw(2)), pi / 2, 0.1f);
 }
 
 TEST(PlainObjects, are_told_by_outline_and_colours) {

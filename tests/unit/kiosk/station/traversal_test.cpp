@@ -117,6 +117,26 @@ TEST(Traversal, flat_tree_needs_a_match_a_model) {
   EXPECT_EQ(walk.step(context).matches, 64);
 }
 
+TEST(Traversal, what_is_held_up_most_is_found_soonest) {
+  Balanced b(5);
+  Traversal walk(*b.tree, {{"fake", &b.fake}});
+  ContextStore context;
+  auto matches = [&](int model) {
+    b.seen = b.models[size_t(model)];
+    walk.restart();
+    const Recognition found = walk.step(context);
+    EXPECT_EQ(found.node, b.models[size_t(model)]);
+    return found.matches;
+  };
+  EXPECT_EQ(matches(31), 10);
+  EXPECT_EQ(matches(31), 5) << "one match a level";
+  for (int i = 0; i < 3; i++) EXPECT_EQ(matches(0), 6) << "the other half is tried first";
+  EXPECT_EQ(matches(0), 5);
+  for (int i = 0; i < 1000; i++) matches(31);
+  for (int i = 0; i < 300; i++) matches(0);
+  EXPECT_EQ(matches(0), 5) << "visitors of long ago count little";
+}
+
 TEST(Traversal, second_still_frame_calls_the_verifier_alone) {
   Balanced b(5);
   b.seen = b.models[21];

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "unit/folder.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring::test {
@@ -51,6 +53,34 @@ TEST(ExhibitKiosks, WhatIsWrongIsNamed) {
         "/kiosks/4/screen/width", "/kiosks/4/screen/height", "/kiosks/5/screen/height",
         "/kiosks/5/screen/depth"})
     EXPECT_NE(all.find(place), std::string::npos) << place << " is not in\n" << all;
+}
+
+TEST(ExhibitKiosks, TheStationIsAFileOfThePackage) {
+  Folder folder;
+  Exhibit exhibit = make_tiny_exhibit();
+  exhibit.folder = folder.path.string();
+  auto read_tree = [&](const std::string& tree, const std::string& name = "tree.json") {
+    std::ofstream(folder.file("tree.json")) << tree;
+    exhibit.files.clear(), exhibit.kiosks.clear();
+    const auto problems =
+        read(exhibit, R"({"kiosks": [{"name": "hall", "station": ")" + name + "\"}]}");
+    return problems.empty() ? std::string() : to_string(problems[0]);
+  };
+  EXPECT_EQ(read_tree(R"({"root": "a", "nodes": {"a": {"kind": "search", "id": "coins"},
+      "b": {"kind": "model", "id": "as"}, "c": {"kind": "model"}, "d": 7}})"),
+            "");
+  EXPECT_EQ(exhibit.kiosks[0].station, "tree.json");
+  EXPECT_EQ(exhibit.kiosks[0].held, std::vector<std::string>{"as"});
+  EXPECT_EQ(exhibit.files.at("tree.json").type, "application/json");
+  for (const auto& [tree, word] :
+       {std::pair("[]", "recognition tree"), std::pair("{\"a\": ", "tree"),
+        std::pair("{\"nodes\": 3}", "nodes"), std::pair("", "tree")}) {
+    const std::string problem = read_tree(tree);
+    EXPECT_NE(problem.find("/kiosks/0/station"), std::string::npos) << problem;
+    EXPECT_NE(problem.find(word), std::string::npos) << problem;
+  }
+  EXPECT_NE(read_tree("{}", "other.json").find("/kiosks/0/station"), std::string::npos);
+  EXPECT_NE(read_tree("{}", "../tree.json").find("leaves"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +72,7 @@ TEST(TreeFile, comes_back_as_it_was) {
   view.mean = vec3(1, 2, 3);
   view.features = {{{1.5f, 2.25f}, {1, 2, 3, ~uint64_t(0)}}, {{39, 19}, {}}};
   view.gray.assign(200, 7);
-  tree.data[0].code = std::string(441, '1');
+  tree.data[0].code = "https://museum.example/17";
   const std::string text = write_tree(tree);
   const RecognitionTree again = parse_tree("t.json", text);
   EXPECT_EQ(write_tree(again), text);
@@ -97,6 +97,7 @@ TEST(TreeFile, each_fault_is_named_with_its_place) {
       {"\"AQID\"", "\"AQIDBAUG\"", "/metadata/as/marks/0/picture"},
       {"\"x\": 1", "\"x\": 400", "/metadata/as/marks"},
       {"\"view\": 0", "\"view\": 3", "/metadata/as/marks"},
+      {"\"solver\": \"colors\"", "\"solver\": \"smell\"", "/nodes/fronts/solvers/0/solver"},
       {"\"tile\": {\"kind\"", "\"tile\": {\"colour\": 1, \"kind\"", "/nodes/tile"},
       {"\"metadata\": {", "\"metadata\": {\"nobody\": {},", "/metadata/nobody"},
       {"\"hints\": {\"turn\": {\"en\"", "\"hints\": {\"turn\": {\"\"", "/hints/turn/"},
@@ -130,7 +131,8 @@ TEST(TreeFile, bytes_that_are_no_tree_are_refused) {
 TEST(TreeFile, long_chain_of_nodes_is_refused) {
   std::string nodes;
   for (int i = 0; i < 200; i++)
-    nodes += "\"n" + std::to_string(i) + R"(": {"kind": "search", "solvers": [{"solver": "a"}],
+    nodes += "\"n" + std::to_string(i) +
+             R"(": {"kind": "search", "solvers": [{"solver": "pattern"}],
       "children": ["n)" +
              std::to_string(i + 1) + "\"]},";
   const std::string text =

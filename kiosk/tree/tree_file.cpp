@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kiosk/station/tree_file.h"
+#include "kiosk/tree/tree_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,6 @@ using Names = std::map<std::string, int>;
 constexpr int base64 = sodium_base64_VARIANT_ORIGINAL;
 constexpr size_t feature_bytes = 4 + sizeof(Descriptor);
 constexpr float place_steps = 32;  // places of features are whole steps of a pixel
-constexpr size_t most_code = 177 * 177;
 
 std::string to_base64(const Bytes& bytes) {
   std::string text(sodium_base64_encoded_len(bytes.size(), base64), '\0');
@@ -122,11 +121,10 @@ NodeData read_data(FieldReader& fields) {
                [&](FieldReader& one) { data.views.push_back(read_view(one)); });
   fields.parts("marks", most_marks, "",
                [&](FieldReader& one) { data.marks.push_back(read_mark(one)); });
-  if (!fields.text("code", data.code, "", Need::optional, most_code)) return data;
-  const int side = int(std::lround(std::sqrt(double(data.code.size()))));
-  if (side < 21 || side % 4 != 1 || size_t(side) * size_t(side) != data.code.size() ||
-      data.code.find_first_not_of("01") != std::string::npos)
-    fields.fail("code", "is no square of modules, 0 and 1");
+  fields.text("code", data.code, "", Need::optional, most_code_bytes);
+  if (fields.vector("box", 10, data.box, "metres") &&
+      !(std::min({data.box.x, data.box.y, data.box.z}) > 0))
+    fields.fail("box", "has a side that is not above 0");
   return data;
 }
 
@@ -170,6 +168,8 @@ void read_search(FieldReader& fields, const Names& names, RecognitionNode& node)
     FieldReader::read_object(one, [&](FieldReader& part) {
       SolverChoice& choice = node.solvers.emplace_back();
       part.text("solver", choice.solver, "", Need::required);
+      if (std::ranges::find(solver_names, choice.solver) == std::end(solver_names))
+        part.fail("solver", "names no solver that there is: '" + choice.solver + "'");
       if (const auto when = part.take("when")) choice.when = read_when(*when);
     });
   for (const JsonValue& one : fields.list("children", 1, most_children, "children", Need::required))
@@ -292,6 +292,7 @@ ordered_json to_json(const NodeData& data) {
                             {"height", mark.height},
                             {"picture", to_base64(mark.bgr)}});
   if (!data.code.empty()) out["code"] = data.code;
+  if (data.box.x > 0) out["box"] = {data.box.x, data.box.y, data.box.z};
   return out;
 }
 

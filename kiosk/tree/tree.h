@@ -84,7 +84,8 @@ struct Mark {
 struct NodeData {
   std::vector<View> views;
   std::vector<Mark> marks;  // the children of a search have as many, of the same places
-  std::string code;         // modules of a QR code, row by row: '0' light, '1' dark
+  vec3 box{0};              // width, height, depth in metres of a box; 0: it is none
+  std::string code;         // text of the QR code on it; empty: it has none
 };
 
 struct RecognitionTree {
