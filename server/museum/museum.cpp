@@ -277,6 +277,7 @@ struct Museum::Impl {
       sources.exhibits.push_back({&show.stage.exhibit, &room.board, room.stills.get(),
                                   show.stage.roads.map ? &*show.stage.roads.map : nullptr,
                                   show.settings.house.address});
+      maps.prepare(show.stage.exhibit);
       doors.push_back({show.stage.exhibit.id, kiosks_of(show.stage.exhibit)});
     }
     reception = std::make_unique<Reception>(
