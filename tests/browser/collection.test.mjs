@@ -270,7 +270,8 @@ test("a kiosk's guest opens the map from the book and walks to an object", { ski
   await page.locator('#open-book').click();
   await page.waitForFunction(() => !document.getElementById('book').hidden);
   await page.locator('#book .entry', { hasText: 'All our things' }).click();
-  await page.waitForFunction(() => document.getElementById('book').dataset.chapter === 'collection');
+  await page.waitForFunction(() =>
+    document.getElementById('book').dataset.chapter === 'collection');
   await until(() => page.evaluate(() => {
     const preview = document.querySelector('#book .map-preview canvas');
     return preview?.getContext('2d').getImageData(0, 0, preview.width, preview.height).data

@@ -203,7 +203,8 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
     const mine = ++asked;
     frame.say_state(word('loading'));
     show_trail();
-    const { status, level: answer } = await fetch_level(exhibit, trail.text(), () => mine === asked);
+    const { status, level: answer } =
+        await fetch_level(exhibit, trail.text(), () => mine === asked);
     if (mine !== asked) return;
     if (status === 404 && trail.depth()) {
       say(word('gone'));

@@ -30,7 +30,8 @@ export function make_frame(orders, { details, groups, list }) {
   const hint = element('p.hint'), keys = element('p.unseen', { id: 'collection-keys' });
   canvas.setAttribute('aria-describedby', keys.id);
   const larger = round('larger', () => orders.zoom(1.5));
-  const smaller = round('smaller', () => orders.zoom(1 / 1.5)), whole = round('whole', orders.whole);
+  const smaller = round('smaller', () => orders.zoom(1 / 1.5));
+  const whole = round('whole', orders.whole);
   const slider = element('input', { type: 'range', min: '0', max: '1', step: '0.001',
     oninput: () => orders.radius(Number(slider.value)) });
   const inside = element('output'), dive = element('button.dive', { type: 'button',

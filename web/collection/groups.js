@@ -12,7 +12,7 @@ export function say_years({ from, to }, lang) {
 }
 export const name_of = (group) => group.terms.join(', ');
 
-// orders: {changed(numbers), alone(numbers)}; word(name) -> text.
+// orders: {changed(numbers), alone(numbers)}; word(name, values) -> text.
 export function make_groups(word, orders) {
   const list = element('div.group-list', { role: 'group' });
   const alone = element('button.alone', { type: 'button', hidden: true,
@@ -42,7 +42,7 @@ export function make_groups(word, orders) {
         const button = element('button', { type: 'button', onclick: () => toggle(i) }, dot,
             element('span', {}, element('b', { textContent: name_of(group) || word('mixed') }),
                 element('small', { textContent: [say_years(group, lang),
-                  word('objects_count').replace('{n}', group.count)].filter(Boolean).join(' · ') })));
+                  word('objects_count', { n: group.count })].filter(Boolean).join(' · ') })));
         return button;
       });
       list.replaceChildren(...buttons);

@@ -109,8 +109,8 @@ function draw_circle(context, at, radius, bent) {
 
 // scene: {view, items: [{at, group, stress, colors, object, picture, seen: 0..1, title}], stress:
 // of the map, selected, hovered: indices or -1, circle: {at, radius, inside: Set, bent} or null,
-// lit: Set of groups that are not dimmed, or null, groups: [{at: or null, name}], image(item) or null,
-// ratio: pixels of the canvas for one of the page}.
+// lit: Set of groups that are not dimmed, or null, groups: [{at: or null, name}], image(item) or
+// null, ratio: pixels of the canvas for one of the page}.
 export function draw_plane(context, scene) {
   const { view, items, circle, lit, selected, hovered } = scene;
   context.setTransform(scene.ratio, 0, 0, scene.ratio, 0, 0);

@@ -2,10 +2,12 @@
 // The words of the collection's map, in the languages of the page.
 export const words = {
   en: {
-    map: 'Map of the collection', map_keys: 'Arrow keys go to the nearest object in that direction. '
-      + 'Enter opens it, once more dives into the circle around it. [ and ] change the circle, + '
-      + 'and − enlarge, 0 shows all, numbers choose groups, Backspace goes back.',
-    close: 'Close the map', close_card: 'Close the card', back: 'Back', trail: 'The way to this map',
+    map: 'Map of the collection',
+    map_keys: 'Arrow keys go to the nearest object in that direction. Enter opens it, once '
+      + 'more dives into the circle around it. [ and ] change the circle, + and − '
+      + 'enlarge, 0 shows all, numbers choose groups, Backspace goes back.',
+    close: 'Close the map', close_card: 'Close the card', back: 'Back',
+    trail: 'The way to this map',
     everything: 'Everything', around: 'Around “{title}”', only: 'Only {groups}',
     loading: 'The map is being drawn…', failed: 'There is no map just now.', again: 'Try again',
     gone: 'The way to that map is not known any more. Here is everything.',
@@ -126,8 +128,8 @@ export const words = {
   },
   es: {
     map: 'Mapa de la colección', map_keys: 'Las flechas llevan al objeto más cercano en esa '
-      + 'dirección. Intro lo abre; otra vez se sumerge en el círculo que lo rodea. [ y ] cambian el '
-      + 'círculo, + y − el tamaño, 0 muestra todo, los números eligen grupos, Retroceso vuelve.',
+      + 'dirección. Intro lo abre; otra vez se sumerge en el círculo que lo rodea. [ y ] cambian '
+      + 'el círculo, + y − el tamaño, 0 muestra todo, los números eligen grupos, Retroceso vuelve.',
     close: 'Cerrar el mapa', close_card: 'Cerrar la ficha', back: 'Volver',
     trail: 'El camino a este mapa', everything: 'Todo', around: 'Alrededor de «{title}»',
     only: 'Solo {groups}', loading: 'Se está dibujando el mapa…',
@@ -158,5 +160,6 @@ export const words = {
 
 export function map_word(lang, name, values = {}) {
   const text = (words[lang] ?? words[lang?.split('-')[0]] ?? words.en)[name] ?? words.en[name];
-  return Object.entries(values).reduce((all, [key, value]) => all.replace(`{${key}}`, () => String(value)), text);
+  return Object.entries(values).reduce((all, [key, value]) =>
+    all.replace(`{${key}}`, () => String(value)), text);
 }

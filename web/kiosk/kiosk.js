@@ -156,7 +156,8 @@ function want_pictures() {
 }
 
 const covers_book = (what) => ['museum', 'slides', 'collection'].includes(what);
-// Shows a view. what: well, book, slides, collection or museum; activity: story, tour, walk or call.
+// Shows a view. what: well, book, slides, collection or museum; activity: story, tour, walk or
+// call.
 function show(what, activity = '') {
   const before = view;
   clearTimeout(opening);

@@ -8,6 +8,9 @@
 #include <oneapi/tbb/task_arena.h>
 #include <utility>
 
+#include "show/http/pages.h"
+#include "show/http/picture_desk.h"
+
 namespace wellspring::show {
 
 using nlohmann::json;
@@ -90,7 +93,12 @@ MapDesk::~MapDesk() {
 
 void MapDesk::ask(const Exhibit& exhibit, const MapQuestion& question,
                   const std::shared_ptr<HttpAsker>& asker) {
-  Ticket ticket{exhibit.collection, {}, question, asker};
+  Ticket ticket{exhibit.collection,
+                {},
+                fmt::format("api/v1/exhibits/{}/collection/pictures/", escaped(exhibit.id)),
+                exhibit.allowed_hosts,
+                question,
+                asker};
   ticket.object_ids.resize(exhibit.collection->collection.records.all.size());
   for (const auto& [record, point] : exhibit.collection->points)
     ticket.object_ids[size_t(record)] = exhibit.points[size_t(point)].id;
@@ -101,7 +109,7 @@ void MapDesk::ask(const Exhibit& exhibit, const MapQuestion& question,
 }
 
 void MapDesk::prepare(const Exhibit& exhibit) {
-  if (exhibit.collection) put({exhibit.collection, {}, {}, nullptr});
+  if (exhibit.collection) put({exhibit.collection, {}, {}, {}, {}, nullptr});
 }
 
 bool MapDesk::put(Ticket ticket) {
@@ -180,9 +188,12 @@ HttpReply MapDesk::reply_to(const Ticket& ticket) {
                                                  {"y", rounded(level->layout.places[i].y)},
                                                  {"stress", rounded(level->layout.item_stress[i])},
                                                  {"cluster", level->clusters.of[i]}});
+    const std::string picture = allowed_picture(record, ticket.hosts).empty()
+                                    ? std::string()
+                                    : ticket.pictures + std::to_string(index);
     for (const auto& [name, text] :
          {std::pair("maker", &record.maker), std::pair("date", &record.date),
-          std::pair("link", &record.link), std::pair("picture", &record.picture),
+          std::pair("link", &record.link), std::pair("picture", &picture),
           std::pair("object", &ticket.object_ids[size_t(index)])})
       if (!text->empty()) item[name] = *text;
     if (!record.palette.empty()) item["colors"] = list_colors(record);

@@ -47,6 +47,8 @@ class MapDesk {
   struct Ticket {
     std::shared_ptr<const ExhibitCollection> collection;
     std::vector<std::string> object_ids;  // by record; empty: it stands nowhere
+    std::string pictures;                 // address of the records' pictures, without their number
+    std::vector<std::string> hosts;       // Exhibit::allowed_hosts
     MapQuestion question;
     std::shared_ptr<wire::HttpAsker> asker;  // null: nobody waits for it
   };
