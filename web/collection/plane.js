@@ -4,7 +4,7 @@
 export const group_colors = ['#d9b36a', '#8fb9c9', '#c98f7a', '#98bd8c', '#b59acb', '#d8cdb8'];
 export const color_of = (group) => group_colors[group % group_colors.length];
 
-const least_dot = 3.5, most_dot = 17;     // pixels of a radius
+const least_dot = 3.5, most_dot = 21;     // pixels of a radius
 const pie_from = 7.5;                     // radius from which an object's own colours are seen
 const picture_side = 54;                  // pixels
 const narrow = 520;                       // pixels of a window with smaller words
@@ -66,10 +66,14 @@ function picture(context, [x, y], image, color) {
   context.restore();
 }
 
-// Words that do not lie over others; those that come first are kept.
+const overlap = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+
+// Words that do not lie over others; those that come first are kept. avoid: boxes [left, top,
+// right, bottom] that they do not lie over, either.
 function make_words(context, width, height) {
   const taken = [];
-  return function write(text, [x, y], { size, color, below = 0, italic = false, most = 180 }) {
+  return function write(text, [x, y],
+      { size, color, below = 0, italic = false, most = 180, avoid = [] }) {
     context.font = `${italic ? 'italic ' : ''}400 ${size}px ${serif}`;
     let shown = text;
     while (context.measureText(shown).width > most && shown.length > 4)
@@ -77,8 +81,8 @@ function make_words(context, width, height) {
     const half = context.measureText(shown).width / 2;
     const at = Math.min(width - half - 4, Math.max(half + 4, x)), line = y + below;
     const box = [at - half - 3, line - 0.9 * size, at + half + 3, line + 0.35 * size];
-    if (box[1] < 0 || box[3] > height || taken.some((one) => box[0] < one[2] && one[0] < box[2]
-        && box[1] < one[3] && one[1] < box[3])) return false;
+    if (box[1] < 0 || box[3] > height) return false;
+    if ([...taken, ...avoid].some((one) => overlap(box, one))) return false;
     taken.push(box);
     context.textAlign = 'center';
     context.lineJoin = 'round';
@@ -162,9 +166,12 @@ export function draw_plane(context, scene) {
       [0, 1.6, -1.6].some((lines) => write(name, view.to_screen(at), { size, below: lines * size,
         color: color_of(i), italic: true, most: 13 * size }));
     });
-  if (spread > 90)
-    for (const i of order)
-      if (i !== selected && !is_dim(items[i], i))
-        write(items[i].title, places[i], { size: 13, color: '#d5cab6',
-          below: below + (has_room && scene.image?.(items[i]) ? 20 : 0), most: 150 });
+  if (spread < 90) return;
+  const half = (i) => (has_room && scene.image?.(items[i]) ? picture_side / 2 : radius);
+  const avoid = order.map((i) => [places[i][0] - half(i), places[i][1] - half(i),
+    places[i][0] + half(i), places[i][1] + half(i)]);
+  for (const i of order)
+    if (i !== selected && !is_dim(items[i], i))
+      [half(i) + 17, -half(i) - 8].some((lines) => write(items[i].title, places[i],
+          { size: 13, color: '#d5cab6', below: lines, most: Math.min(220, 1.3 * spread), avoid }));
 }
