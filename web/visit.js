@@ -116,6 +116,7 @@ const map = make_map((to) => go({ to }));
 const collection = make_door({
   there(object) { go({ object }); canvas.focus(); },
   covered: (yes) => send_settings(yes ? { fps: covered_fps } : comfort.wishes()),
+  here: () => connection.send({ type: 'presence', here: true }),
   leave_menu: () => { if (menu.is_open()) menu.toggle(); },
 });
 const watch = make_watch(() => state, notice);
@@ -171,7 +172,7 @@ connection = make_connection({
     screen.joined();
     sound.joined();
     glass.joined();
-    send_settings(comfort.wishes());
+    send_settings({ ...comfort.wishes(), ...(collection.is_open() && { fps: covered_fps }) });
     if (menu.attention() !== null)
       connection.send({ type: 'settings', attention: menu.attention() });
     if (start_place) go_to_place(start_place);

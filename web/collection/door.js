@@ -6,11 +6,13 @@ import { by_id, element } from '../element.js';
 // Parts of the page that stay in reach while the map lies over it.
 const over_all = ['announcement', 'presence'];
 
-// orders: {there(object): walks there, covered(yes): the museum's picture is not seen,
-// leave_menu()}.
+const tell_again = 20000;  // milliseconds after which the server hears again that somebody is there
+
+// orders: {there(object): walks there, covered(yes): the museum's picture is not seen, here():
+// somebody is at the map, leave_menu()}.
 export function make_door(orders) {
   const button = by_id('collection-open');
-  let exhibit = '', lang = 'en', map = null, place = null;
+  let exhibit = '', lang = 'en', map = null, place = null, told_at = 0;
   let behind = /** @type {any[]} */ ([]);
 
   function load_style() {
@@ -33,6 +35,12 @@ export function make_door(orders) {
     by_id('menu-button').focus();
   }
 
+  function touched() {
+    if (performance.now() - told_at < tell_again) return;
+    told_at = performance.now();
+    orders.here();
+  }
+
   async function open() {
     if (place) return;
     const mine = place = element('div.collection-place', { role: 'dialog', ariaModal: 'true' });
@@ -46,7 +54,7 @@ export function make_door(orders) {
       for (const one of behind) one.inert = true;
       orders.covered(true);
       map = make_collection({ exhibit, lang, place,
-        orders: { close, there(object) { close(); orders.there(object); } } });
+        orders: { close, touched, there(object) { close(); orders.there(object); } } });
       map.open();
     } catch (problem) {
       console.warn(`collection: ${problem}`);
@@ -56,6 +64,7 @@ export function make_door(orders) {
   button.addEventListener('click', () => { orders.leave_menu(); open(); });
 
   return {
+    is_open: () => place !== null,
     welcome(message) {
       if (place && (message.exhibit !== exhibit || !message.collection)) close();
       ({ exhibit, lang } = message);
