@@ -7,6 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { little_light, source, start_server, until } from '../server.mjs';
+import { start_screen_server } from '../screen_server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-collection-'));
@@ -290,4 +291,66 @@ test("a kiosk's guest opens the map from the book and walks to an object", { ski
   await page.locator('#to-book').click();
   await page.waitForFunction(() => document.body.dataset.view === 'book');
   await close(page);
+});
+
+// Twenty things in two groups, of which each map has half of the last one's.
+function plain_level(steps) {
+  const many = 20 >> (steps ? steps.split(';').length : 0);
+  return { title: { en: 'All our things' }, objects: 20, region: many, stress: 0.1, too_near: 0,
+    clusters: [0, 1].map((i) => ({ terms: [`kind ${i}`], count: many / 2, from: 1500, to: 1600 })),
+    items: Array.from({ length: many }, (_, i) => ({ index: i, id: `T ${i}`, title: `Thing ${i}`,
+      x: i - many / 2, y: Math.sin(i), stress: 0.1, cluster: i % 2 })) };
+}
+
+test('hands in the air go through the map at a kiosk', { skip }, async () => {
+  const exhibit = { id: 'room', title: { en: 'A room' }, description: { en: 'One room.' },
+    languages: ['en'], stories: [], tours: [], viewpoints: [],
+    collection: { en: 'All our things' }, book: { topics: [], partners: [], presentations: [] } };
+  const played = await start_screen_server(exhibit, {}, plain_level);
+  const page = await (await browser.newContext({ viewport: { width: 1920, height: 1080 } }))
+      .newPage();
+  try {
+    await page.goto(`${played.url}/kiosk?lang=en`);
+    await page.waitForFunction(() => document.querySelectorAll('.tabs button').length > 0);
+    let number = 0;
+    const air = (name) => played.send({ type: 'kiosk', kiosk: '', stage: 'engaged', cameras: 1,
+      state: 'person', people: 1, distance: 0.8, storyteller: 'here', volume: 0.8,
+      gesture: { name, number: ++number } });
+    const view_is = (view) => page.waitForFunction(
+        (wanted) => document.body.dataset.view === wanted, view);
+    air('swipe_up');
+    await view_is('book');
+    await page.waitForFunction(() => !document.getElementById('book').hidden);
+    air('2');  // of the contents: the museum, its map
+    await page.waitForFunction(() => document.getElementById('book').dataset.chapter
+      === 'collection');
+    await shot(page, 'book-wide');
+    air('1');
+    await view_is('collection');
+    await map_is(page);
+    await until(() => played.heard.some((one) => one.type === 'kiosk' && one.showing === 'book'),
+        'gestures are asked for');
+    air('swipe_left');
+    await until(async () => await item(page), 'something is chosen');
+    const first = await item(page);
+    air('swipe_left');
+    await until(async () => await item(page) !== first, 'the next one');
+    air('swipe_up');
+    await page.waitForSelector('.collection .details:not([hidden])');
+    await shot(page, 'kiosk-wide');
+    air('swipe_up');
+    await until(async () => /@/.test(await trail(page)), 'a dive');
+    air('2');
+    await until(async () => /;c1$/.test(await trail(page)), 'the second group alone');
+    air('swipe_down');
+    await until(async () => !/;/.test(await trail(page)), 'a step back');
+    air('swipe_down');
+    await map_is(page);
+    air('swipe_down');
+    await view_is('book');
+    assert.equal(await page.locator('.collection').count(), 0);
+  } finally {
+    await page.context().close();
+    await played.stop();
+  }
 });

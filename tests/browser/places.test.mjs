@@ -36,7 +36,8 @@ test('circles hold what lies in them, at first a share of all', () => {
   const inside = in_circle(places, places[7], radius);
   assert(inside.includes(7));
   assert(Math.abs(inside.length - 0.12 * places.length) <= 2, `${inside.length}`);
-  assert.equal(in_circle([[0, 0], [1, 1]], [0, 0], usual_radius([[0, 0], [1, 1]], [0, 0])).length, 2);
+  const pair = [[0, 0], [1, 1]];
+  assert.equal(in_circle(pair, pair[0], usual_radius(pair, pair[0])).length, 2);
   assert.equal(nearest_place(places, places[3]), 3);
   assert.equal(nearest_place([[9, 9]], [0, 0], 1), -1);
 });

@@ -17,6 +17,7 @@ import { map_word } from './words.js';
 const move_time = 900;          // milliseconds from map to map
 const list_pause = 150;         // milliseconds that the view rests before the list follows
 const bar_height = 76;          // pixels that the circle's slider covers at the lower edge
+const usual_font = 16;          // pixels
 const stress_limits = [0.12, 0.28, 0.45];  // of faithful, mostly faithful and rough maps
 
 // exhibit: its id. place: the element that the map is put in. orders: {there(object): takes the
@@ -28,13 +29,13 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
   const view = make_view(), pictures = make_pictures(() => draw());
   let trail = make_trail(), level = null, items = [], group_at = [];
   let selected = -1, hovered = -1, radius = 0, bent = 0.6, opened = false, began = 0;
-  let asked = 0, drawing = false, list_timer = 0, last = -1;
+  let asked = 0, drawing = false, list_timer = 0, last = -1, unit = 1;
 
   const details = make_details(word, { there: orders.there, close: () => choose(-1) }, outside);
   const groups = make_groups(word, { changed: () => { draw(); follow_list(); },
     alone: (numbers) => go_on(groups_step(numbers),
         word('only', { groups: numbers.map((i) => group_name(i)).join('; ') })) });
-  const list = make_list({ choose: (index) => choose(index_of(index), { from_list: true }),
+  const list = make_list(lang, { choose: (index) => choose(index_of(index), { from_list: true }),
     open: (index) => choose(index_of(index), { open: true }) });
   const frame = make_frame({
     back, close: orders.close, zoom: zoom_middle, whole: show_all, radius: slide, dive,
@@ -69,7 +70,8 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
         item.seen = item.from_seen + (1 - item.from_seen) * t;
       }
       draw_plane(canvas.getContext('2d'), { view, items, selected, hovered,
-        stress: level.stress, circle: circle_now(), lit: lit(), ratio: canvas.width / view.width(),
+        stress: level.stress, circle: circle_now(), lit: lit(), unit,
+        ratio: canvas.width / view.width(),
         groups: group_at.map((at, i) => ({ at, name: name_of(level.clusters[i]) })),
         image: (item) => pictures.of(item.picture) });
       canvas.dataset.settled = String(passed >= 1);
@@ -83,6 +85,7 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
     const { width, height } = canvas.getBoundingClientRect();
     if (!width || !height) return;
     const ratio = Math.min(devicePixelRatio || 1, 2);
+    unit = parseFloat(getComputedStyle(frame.root).fontSize) / usual_font;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
     const first = view.width() <= 1, zoomed = view.zoom() > 1.01;
@@ -274,7 +277,7 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
 
   make_fingers(canvas, {
     find: (at, reach) => nearest_place(items.map((item) => view.to_screen(item.at)), at,
-        Math.max(reach, dot_radius(view, items.length) + 4), may_choose),
+        Math.max(reach, dot_radius(view, items.length, unit) + 4), may_choose),
     circle: () => (selected < 0 ? null : { at: view.to_screen(items[selected].at),
       radius: radius * view.scale(), index: selected }),
     orders: {

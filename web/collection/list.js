@@ -6,8 +6,8 @@ import { color_of } from './plane.js';
 
 const most_rows = 300;
 
-// orders: {choose(index), open(index)}.
-export function make_list(orders) {
+// orders: {choose(index), open(index)}. lang: by which titles are sorted.
+export function make_list(lang, orders) {
   const box = element('div.rows', { role: 'listbox', tabIndex: 0, id: 'collection-list' });
   let rows = [], chosen = -1, told = '';
 
@@ -41,8 +41,8 @@ export function make_list(orders) {
     // items: [{index, title, text, group, dim}], as they are in view. label: name of the list.
     fill(items, label) {
       box.ariaLabel = label;
-      const sorted = items.slice().sort((a, b) => a.title.localeCompare(b.title))
-          .slice(0, most_rows);
+      const { compare } = new Intl.Collator(lang, { numeric: true });
+      const sorted = items.slice().sort((a, b) => compare(a.title, b.title)).slice(0, most_rows);
       const now = sorted.map(({ index }) => index).join();
       if (now !== told) {
         told = now;
