@@ -12,16 +12,20 @@ const types = { '.js': 'text/javascript', '.css': 'text/css', '.html': 'text/htm
   '.svg': 'image/svg+xml', '.jpg': 'image/jpeg', '.json': 'application/json' };
 
 // exhibit: what GET /api/v1/exhibits/ID answers. Resolves to {url, heard, send(message),
-// picture(jpeg), stop()}; heard: the pages' messages, oldest first.
-export function start_screen_server(exhibit, welcome = {}) {
+// picture(jpeg), stop()}; heard: the pages' messages, oldest first. welcome: fields of that message
+// that differ. level(trail): what GET /api/v1/exhibits/ID/collection answers.
+export function start_screen_server(exhibit, welcome = {}, level = null) {
   const heard = [];
   const pages = new Set();
   let frame = 0;
   const server = createServer((question, reply) => {
-    const path = new URL(question.url, 'http://x').pathname;
-    if (path === `/api/v1/exhibits/${exhibit.id}`) {
+    const { pathname: path, searchParams } = new URL(question.url, 'http://x');
+    const about = `/api/v1/exhibits/${exhibit.id}`;
+    const told = path === about ? exhibit
+      : path === `${about}/collection` ? level?.(searchParams.get('trail') ?? '') : null;
+    if (told) {
       reply.setHeader('content-type', types['.json']);
-      return reply.end(JSON.stringify(exhibit));
+      return reply.end(JSON.stringify(told));
     }
     const file = normalize(join(source, 'web', path === '/kiosk' ? 'kiosk.html' : path));
     try {

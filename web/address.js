@@ -8,6 +8,7 @@ const fresh = opening?.type !== 'reload';
 export const asked_exhibit = decodeURIComponent(/\/e\/([^/]+)$/.exec(location.pathname)?.[1] ?? '')
     || (asks.get('exhibit') ?? '');
 export const asked_viewpoint = fresh ? asks.get('viewpoint') : null;
+export const asked_object = fresh ? asks.get('object') : null;
 export const asked_story = fresh ? asks.get('story') : null;
 export const asked_group = fresh ? asks.get('group') : null;
 

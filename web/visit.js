@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The visitor's page: joins connection, picture, controls and menu.
-import { asked_exhibit, asked_place, asked_story, asked_viewpoint, asked_wall, read_place }
-  from './address.js';
+import { asked_exhibit, asked_object, asked_place, asked_story, asked_viewpoint, asked_wall,
+  read_place } from './address.js';
 import { make_ambience } from './ambience.js';
 import { announce } from './announce.js';
 import { make_ask } from './ask.js';
 import { make_card } from './card.js';
+import { make_door } from './collection/door.js';
 import { make_comfort } from './comfort.js';
 import { make_connection } from './connection.js';
 import { make_controls } from './controls.js';
@@ -31,13 +32,15 @@ import { make_watch } from './watch.js';
 import { asked_language, first_language, knows, language_names, translate_page, word }
   from './words.js';
 
+const covered_fps = 1;  // pictures a second while a map of the collection lies over them
 const canvas = by_id('picture');
 let lang = first_language(), seq = 0, state = null, walk_speed = 1.4, full = false;
 let connection = null, place = null;  // place: the viewpoint where the visitor was last
 let exhibit = asked_exhibit, unknown_exhibit = '';
 // These hold what the address asks for, until the visitor has it; null: nothing. told: the story
-// that a kiosk's guest took along.
-let start = asked_viewpoint, start_place = asked_place(), told = asked_story;
+// that a kiosk's guest took along; start_object: that a map of the collection led to.
+let start = asked_viewpoint, start_place = asked_place(), told = asked_story,
+    start_object = asked_object;
 const visit_key = `visit.${exhibit}`;  // key of the sealed visit that goes on
 translate_page(lang);
 by_id('veil-text').textContent = word(lang, 'opening');
@@ -110,6 +113,12 @@ const card = make_card({
   around: (object, around) => order({ type: 'go', object, around }),
 });
 const map = make_map((to) => go({ to }));
+const collection = make_door({
+  there(object) { go({ object }); canvas.focus(); },
+  covered: (yes) => send_settings(yes ? { fps: covered_fps } : comfort.wishes()),
+  here: () => connection.send({ type: 'presence', here: true }),
+  leave_menu: () => { if (menu.is_open()) menu.toggle(); },
+});
 const watch = make_watch(() => state, notice);
 const places = make_places((name) => go_to_viewpoint(name), () => !comfort.saves());
 
@@ -163,12 +172,13 @@ connection = make_connection({
     screen.joined();
     sound.joined();
     glass.joined();
-    send_settings(comfort.wishes());
+    send_settings({ ...comfort.wishes(), ...(collection.is_open() && { fps: covered_fps }) });
     if (menu.attention() !== null)
       connection.send({ type: 'settings', attention: menu.attention() });
     if (start_place) go_to_place(start_place);
     else if (start) order({ type: 'viewpoint', name: start });
-    start = start_place = null;
+    else if (start_object) go({ object: start_object });
+    start = start_place = start_object = null;
     if (told) connection.send({ type: 'storyteller', story: told });
     told = null;
   },
@@ -187,6 +197,7 @@ connection = make_connection({
         pieces.welcome(message);
         ask.welcome(message);
         map.welcome(message);
+        collection.welcome(message);
         group.welcome(message);
         share.welcome(message);
         description.welcome(message);

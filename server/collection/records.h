@@ -26,6 +26,7 @@ struct Term {
 struct Swatch {
   dvec3 lab{0};  // CIE L*, a*, b* beside D65
   double weight = 1;
+  std::string code;  // "#rrggbb", for browsers
 };
 
 struct Record {

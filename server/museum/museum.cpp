@@ -192,6 +192,7 @@ struct Museum::Impl {
   std::list<Room> rooms;               // their rehearsals may use all fields above until they end
   StillDesk stills;                    // is closed before rooms are destroyed
   MapDesk maps;
+  PictureDesk pictures;
   AnswerSources sources;
   std::unique_ptr<Reception> reception;
   std::atomic<bool> stopping = false, changed = false;
@@ -277,6 +278,7 @@ struct Museum::Impl {
       sources.exhibits.push_back({&show.stage.exhibit, &room.board, room.stills.get(),
                                   show.stage.roads.map ? &*show.stage.roads.map : nullptr,
                                   show.settings.house.address});
+      maps.prepare(show.stage.exhibit);
       doors.push_back({show.stage.exhibit.id, kiosks_of(show.stage.exhibit)});
     }
     reception = std::make_unique<Reception>(
@@ -329,6 +331,7 @@ Museum::Museum(const MuseumSettings& settings) : impl_(std::make_unique<Impl>(se
   impl.open_all();
   impl.sources.stills = &impl.stills;
   impl.sources.maps = &impl.maps;
+  impl.sources.pictures = &impl.pictures;
   impl.sources.changes = settings.show.watched;
   impl.sources.desk.put = [&impl](const Announcement& one) {
     uint32_t number = 0;

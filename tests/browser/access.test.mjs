@@ -22,7 +22,8 @@ const sizes = {
 // The pages besides a visit: name, address, and what is there once they are filled.
 const others = [['front', '/', '#exhibits a'], ['read', '/read?exhibit=castle', '#story-well'],
   ['doors', '/read?exhibit=atlantis', '#exhibits a'], ['missing', '/nowhere', 'h1'],
-  ['status', '/status', '#server td'], ['kiosk', '/kiosk', '#title:not(:empty)']];
+  ['status', '/status', '#server td'], ['kiosk', '/kiosk', '#title:not(:empty)'],
+  ['collection', '/collection?exhibit=castle', '.collection [role=option]']];
 
 let server, browser;
 before(async () => {
@@ -98,6 +99,13 @@ for (const [size, options] of Object.entries(sizes)) {
     await page.waitForFunction(() => document.getElementById('map-picture').dataset.at);
     await see('map');
     await click(page, '#map-close');
+    await click(page, '#menu-button');
+    await click(page, '#collection-open');
+    await page.waitForSelector('.collection [role=option]');
+    await page.locator('.collection [role=option]').first().click();
+    await click(page, '.collection .group-list button');
+    await see('collection');
+    await click(page, '.collection .close');
     await click(page, '#menu-button');
     await click(page, '#stories button');
     await shown(page, '#player');

@@ -8,10 +8,12 @@ import { test } from 'node:test';
 const web = join(process.env.WELLSPRING_SOURCE, 'web');
 const { words } = await import(join(web, 'words.js'));
 const { words: kiosk_words } = await import(join(web, 'kiosk/words.js'));
+const { words: map_words } = await import(join(web, 'collection/words.js'));
 const languages = ['de', 'en', 'es', 'fr', 'sk'];
 const blanks = (text) => (text.match(/\{\w+\}/g) ?? []).sort();
 
-for (const [name, all] of [['the page', words], ['the kiosk', kiosk_words]])
+for (const [name, all] of [['the page', words], ['the kiosk', kiosk_words],
+  ["a collection's map", map_words]])
   test(`${name} has all words in all languages`, () => {
     assert.deepEqual(Object.keys(all).sort(), languages);
     const keys = Object.keys(all.en).sort();
@@ -34,4 +36,18 @@ test('the page asks for no word that is not there', () => {
       .map(([, page, code]) => [name, page ?? code]));
   assert.ok(found.length > 60, `${found.length} words`);
   for (const [file, key] of found) assert.ok(key in words.en, `${file}: ${key}`);
+});
+
+test("a collection's map asks for no word that is not there, and has none too many", () => {
+  const folder = join(web, 'collection');
+  const files = readdirSync(folder).filter((name) => name.endsWith('.js') && name !== 'words.js');
+  const code = files.map((name) => readFileSync(join(folder, name), 'utf8')).join('\n');
+  const asked = [...code.matchAll(/\b(?:map_word\(\w[^']*|word\()[^')]*'(\w+)'(?: : '(\w+)')?/g)]
+      .flatMap(([, one, other]) => [one, other]).filter(Boolean);
+  assert.ok(asked.length > 30, `${asked.length} words`);
+  for (const key of asked) assert.ok(key in map_words.en, key);
+  // Some names end with a number.
+  const numbered = /^(?:truth|stress)_\d$/;
+  assert.deepEqual(Object.keys(map_words.en)
+      .filter((key) => !asked.includes(key) && !numbered.test(key)), []);
 });

@@ -4,6 +4,7 @@
 // farewell); this page shows it and tells back what the guest does.
 import { announce } from '../announce.js';
 import { make_ambience } from '../ambience.js';
+import { make_collection } from '../collection/collection.js';
 import { make_connection } from '../connection.js';
 import { make_controls } from '../controls.js';
 import { make_screen } from '../display/screen.js';
@@ -82,10 +83,29 @@ const book = make_book(by_id('book'), {
   story(id) { show('museum', 'story'); send({ type: 'storyteller', story: id }); },
   tour(id) { show('museum', 'tour'); send({ type: 'tour', action: 'play', name: id }); },
   walk() { show('museum', 'walk'); },
+  map: () => show('collection'),
   call() { show('museum', 'call'); go_home(); },
   lang: speak,
   language_name: (tag) => language_names[tag] ?? tag,
 });
+
+// The map of the collection, while it is open.
+let map = null;
+function open_map() {
+  const place = by_id('collection');
+  place.hidden = false;
+  map = make_collection({ exhibit, lang, place, outside: false, orders: {
+    close: () => show('book'),
+    there(object) { show('museum', 'walk'); send({ type: 'go', seq: ++seq, object }); },
+    changed: () => tell(true),
+  } });
+  map.open();
+}
+function close_map() {
+  map.close();
+  map = null;
+  by_id('collection').hidden = true;
+}
 
 const volume = () => Number(by_id('volume').value);
 function set_volume(value) {
@@ -105,6 +125,7 @@ function showing() {
   if (view === 'book')
     return { topic: 'topics', partn: 'partners', museu: 'museum' }[book.chapter().slice(0, 5)]
         ?? 'book';
+  if (view === 'collection') return 'book';
   return view === 'museum' ? (doing === 'call' ? 'museum' : doing) : view;
 }
 // Tells the server what the guest does, when it is new, or when the screen was touched.
@@ -136,12 +157,15 @@ function want_pictures() {
   send({ type: 'settings', fps: fps = wanted });
 }
 
-// Shows a view. what: well, book, slides or museum; activity: story, tour, walk or call.
+const covers_book = (what) => ['museum', 'slides', 'collection'].includes(what);
+// Shows a view. what: well, book, slides, collection or museum; activity: story, tour, walk or
+// call.
 function show(what, activity = '') {
   const before = view;
   clearTimeout(opening);
   if (before === 'museum' && what !== 'museum') leave_museum();
   if (before === 'slides' && what !== 'slides') slides.close();
+  if (map) close_map();
   view = what;
   doing = activity;
   document.body.dataset.view = what;
@@ -159,8 +183,10 @@ function show(what, activity = '') {
     well.raise_book(false);
     book.open(false);
   }
-  by_id('book').classList.toggle('covered', what === 'slides' || what === 'museum');
-  well.hide(closed || what === 'museum' || what === 'slides');
+  if (what === 'collection') open_map();
+  const covered = covers_book(what);
+  by_id('book').classList.toggle('covered', covered);
+  well.hide(closed || covered);
   want_pictures();
   tell();
 }
@@ -226,6 +252,13 @@ function gesture(name) {
     if (name === 'swipe_left') slides.step(1);
     else if (name === 'swipe_right') slides.step(-1);
     else if (name === 'swipe_down' || name === 'stop') show('book');
+  } else if (view === 'collection') {
+    if (name === 'swipe_left') map.next(1);
+    else if (name === 'swipe_right') map.next(-1);
+    else if (name === 'swipe_up') map.dive();
+    else if (name === 'swipe_down' && !map.back()) show('book');
+    else if (name === 'stop') show('book');
+    else if (digit) map.alone(Number(digit) - 1);
   } else if (view === 'book') {
     if (name === 'swipe_left') book.turn(1);
     else if (name === 'swipe_right') book.turn(-1);
@@ -271,7 +304,7 @@ function hear_house(message) {
   quiet = !!message.headphones;
   document.body.classList.toggle('closed', closed);
   if (closed) house_again();
-  well.hide(closed || view === 'museum' || view === 'slides');
+  well.hide(closed || covers_book(view));
   notice();
   want_pictures();
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stands on the pages of the book: made from the exhibit's `book`, its stories and its tours.
 // A page is {chapter, make()}; make() gives its content anew each time.
+import { draw_preview } from '../collection/preview.js';
 import { element } from '../element.js';
 import { kiosk_word, local } from './words.js';
 
 // about: what the server says of the exhibit. can: {tell, tour, walk} whether there is such a
 // thing. wide: two pages lie side by side. heard: ids of the stories that this
-// guest knows. orders: {go(chapter), watch(presentation), story(id), tour(id), walk(), call()}.
+// guest knows. orders: {go(chapter), watch(presentation), story(id), tour(id), walk(),
+// call(), map()}.
 export function make_pages({ about, lang, wide, heard, orders }) {
   const word = (name) => kiosk_word(lang, name), text = (one) => local(one, lang);
   const book = { topics: [], partners: [], presentations: [], ...about.book };
@@ -47,6 +49,8 @@ export function make_pages({ about, lang, wide, heard, orders }) {
       : [])),
     element('h3', { textContent: word('museum') }),
     list([entry(word('museum'), '', () => orders.go('museum')),
+      ...(about.collection
+        ? [entry(text(about.collection), '', () => orders.go('collection'))] : []),
       ...(book.partners.length
         ? [entry(word('partners'), '', () => orders.go('partners'))] : [])])]);
 
@@ -67,6 +71,19 @@ export function make_pages({ about, lang, wide, heard, orders }) {
       list(book.presentations.map((one) => entry(text(one.title),
           kiosk_word(lang, 'pictures', { n: one.slides.length }), () => orders.watch(one),
           one.slides.find((slide) => slide.image)?.image)))]);
+  }
+  if (about.collection) {
+    const preview = () => {
+      const canvas = element('canvas', { role: 'img', ariaLabel: text(about.collection) });
+      draw_preview(canvas, about.id);
+      return element('figure.map-preview', { onclick: orders.map }, canvas);
+    };
+    const open = () => [element('p', { textContent: word('map_about') }),
+      list([entry(word('map_open'), '', orders.map)])];
+    const title = () => heading(text(about.collection));
+    face();
+    if (wide) add('collection', () => [preview()]);
+    add('collection', () => (wide ? [title(), ...open()] : [title(), preview(), ...open()]));
   }
   face();
   add('museum', () => [heading(word('museum')),

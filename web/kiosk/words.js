@@ -2,6 +2,9 @@
 // The kiosk's own words, in the house's languages; the exhibit's words come from the server.
 export const words = {
   en: {
+    map_open: 'Open the map',
+    map_about: 'What the house keeps lies here on a map: things that are alike in age, colour and '
+      + 'kind lie near one another. Choose one, draw a circle around it and dive in.',
     not_trusted: 'This screen is not known to the museum yet. Whoever looks after it opens it '
       + 'once with its token: /kiosk#token=…',
     touch_water: 'Touch the water', touch_twice: 'Touch the water twice: the book of this house '
@@ -21,6 +24,10 @@ export const words = {
       + 'hang beside the screen.',
   },
   de: {
+    map_open: 'Die Karte öffnen',
+    map_about: 'Was das Haus bewahrt, liegt hier auf einer Karte: Was sich in Alter, Farbe und Art '
+      + 'ähnlich ist, liegt nah beieinander. Wählen Sie etwas, ziehen Sie einen Kreis darum '
+      + 'und tauchen Sie ein.',
     not_trusted: 'Das Museum kennt diesen Bildschirm noch nicht. Wer ihn betreut, öffnet ihn '
       + 'einmal mit seinem Schlüssel: /kiosk#token=…',
     touch_water: 'Berühren Sie das Wasser', touch_twice: 'Zweimal das Wasser berühren: Das Buch '
@@ -41,6 +48,9 @@ export const words = {
       + 'dem Bildschirm.',
   },
   sk: {
+    map_open: 'Otvoriť mapu',
+    map_about: 'Čo dom uchováva, leží tu na mape: čo sa podobá vekom, farbou a druhom, leží blízko '
+      + 'seba. Vyberte si niečo, zakreslite okolo toho kruh a vnorte sa.',
     not_trusted: 'Múzeum túto obrazovku ešte nepozná. Kto sa o ňu stará, otvorí ju raz s jej '
       + 'kľúčom: /kiosk#token=…',
     take_along: 'Vezmite si príbeh so sebou',
@@ -59,6 +69,10 @@ export const words = {
     headphones: 'V dome je čas ticha. Slúchadlá visia vedľa obrazovky.',
   },
   fr: {
+    map_open: 'Ouvrir la carte',
+    map_about: 'Ce que la maison conserve est ici sur une carte : ce qui se ressemble par l’âge, '
+      + 'la couleur et le genre est proche. Choisissez un objet, tracez un cercle autour et '
+      + 'plongez.',
     not_trusted: 'Le musée ne connaît pas encore cet écran. La personne qui s’en occupe l’ouvre '
       + 'une fois avec sa clé : /kiosk#token=…',
     touch_water: 'Touchez l’eau', touch_twice: 'Touchez l’eau deux fois : le livre de cette maison '
@@ -78,6 +92,9 @@ export const words = {
     headphones: 'C’est l’heure calme dans cette maison. Des casques pendent à côté de l’écran.',
   },
   es: {
+    map_open: 'Abrir el mapa',
+    map_about: 'Lo que guarda la casa está aquí en un mapa: lo que se parece en edad, color y tipo '
+      + 'está cerca. Elija algo, trace un círculo a su alrededor y sumérjase.',
     not_trusted: 'El museo aún no conoce esta pantalla. Quien la cuida la abre una vez con su '
       + 'clave: /kiosk#token=…',
     touch_water: 'Toque el agua', touch_twice: 'Toque el agua dos veces: subirá el libro de esta '

@@ -99,4 +99,5 @@ export default {
   from_left: 'von links', from_above: 'von oben', from_front: 'von vorn',
   glass_cuts: 'schneidet hinein', glass_depth: 'Wie tief', as_at_first: 'Wie zu Anfang',
   tilt: 'Neigen', scale: 'In {unit}: Blau ist zu dick, Gelb zu dünn. Im Mittel {mean} daneben.',
+  collection: 'Die Sammlung als Karte',
 };

@@ -98,4 +98,5 @@ export default {
   from_left: 'from the left', from_above: 'from above', from_front: 'from the front',
   glass_cuts: 'cuts into it', glass_depth: 'How deep', as_at_first: 'As at first',
   tilt: 'Tilt', scale: 'In {unit}: blue is too thick, yellow too thin. {mean} off on average.',
+  collection: 'The collection as a map',
 };

@@ -102,4 +102,5 @@ export default {
   tilt: 'Inclinar',
   scale: 'En {unit}: azul, demasiado grueso; amarillo, demasiado fino.'
     + ' En promedio {mean} de diferencia.',
+  collection: 'La colección como mapa',
 };

@@ -101,4 +101,5 @@ export default {
   glass_cuts: 'coupe dedans', glass_depth: 'Profondeur', as_at_first: 'Comme au début',
   tilt: 'Incliner',
   scale: 'En {unit} : bleu, trop épais ; jaune, trop mince. En moyenne {mean} d’écart.',
+  collection: 'La collection en carte',
 };

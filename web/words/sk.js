@@ -96,4 +96,5 @@ export default {
   glass_depth: 'Ako hlboko', as_at_first: 'Ako na začiatku',
   tilt: 'Nakloniť',
   scale: 'V {unit}: modrá je príliš hrubá, žltá príliš tenká. V priemere {mean} vedľa.',
+  collection: 'Zbierka ako mapa',
 };

@@ -214,7 +214,8 @@ void Gathering::add(RawRecord&& raw, const std::string& where) {
     const std::optional<dvec3> lab = find_lab(color);
     if (!lab) note(where, "a colour is not written as #rrggbb; it is left out");
     else if (!(weight > 0 && weight <= 1e6)) note(where, "a colour's weight is not above 0");
-    else if (record.palette.size() < most_swatches) record.palette.push_back({*lab, weight});
+    else if (record.palette.size() < most_swatches)
+      record.palette.push_back({*lab, weight, (color[0] == '#' ? "" : "#") + color});
   }
   add_terms(record, TermKind::material, raw.materials);
   add_terms(record, TermKind::subject, raw.subjects);

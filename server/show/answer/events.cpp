@@ -9,6 +9,7 @@
 #include "frame/tonemap.h"
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
+#include "show/exhibit/exhibit_collection.h"
 #include "show/exhibit/pieces/exhibit_scans.h"
 #include "show/exhibit/pieces/exhibit_volumes.h"
 #include "show/state/visitor_world.h"
@@ -136,6 +137,8 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
     if (piece.nebula)
       told["volume"]["tilt"] = std::round(10 * glm::degrees(piece.nebula->tilt)) / 10;
   }
+  message["collection"] =
+      exhibit.collection ? json(text(exhibit.collection->title)) : json(nullptr);
   message["day"] = nullptr;
   if (const std::optional<Day>& day = exhibit.day)
     message["day"] = {{"from", day->settings.from},

@@ -4,14 +4,18 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "base/load_error.h"
 #include "collection/read/read_records.h"
 #include "show/exhibit/exhibit_files.h"
+#include "store/remote/http_get.h"
 
 namespace wellspring::show {
 namespace {
+
+constexpr size_t most_named_hosts = 4;
 
 FieldNames read_names(FieldReader& fields) {
   FieldNames names;
@@ -28,6 +32,17 @@ FieldNames read_names(FieldReader& fields) {
                 one.text("picture", names.picture, "address of a picture");
               });
   return names;
+}
+
+// Returns the first few hosts of pictures that the exhibit does not let in.
+std::set<std::string> hosts_not_allowed(const Exhibit& exhibit, const Records& records) {
+  std::set<std::string> hosts;
+  for (const Record& record : records.all)
+    if (const auto address = store::read_http_address(record.picture);
+        address && hosts.size() < most_named_hosts &&
+        !store::is_allowed(*address, exhibit.allowed_hosts))
+      hosts.insert(store::host_text(*address));
+  return hosts;
 }
 
 // Notes which records stand in the exhibit.
@@ -79,6 +94,10 @@ void read_collection(Exhibit& exhibit, FieldReader& root) {
                   fmt::format("{}: {}", note.where.substr(at == std::string::npos ? 0 : at + 1),
                               note.what));
     }
+    for (const std::string& host : hosts_not_allowed(exhibit, made->collection.records))
+      fields.warn("source", fmt::format("pictures of host '{}' are not shown: add \"{}\" to "
+                                        "\"allowed_hosts\" of this file",
+                                        host, host));
     read_places(exhibit, fields, *made);
     if (!made->collection.records.all.empty()) exhibit.collection = std::move(made);
   });

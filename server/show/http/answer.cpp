@@ -183,6 +183,10 @@ HttpReply answer_exhibit(const AnswerSources& sources, const HttpQuestion& quest
   if (tail.empty() || tail == "/") return json_reply(describe(*served->exhibit));
   if (tail == "/transcript") return json_reply(describe_transcript(*served->exhibit));
   if (tail == "/collection") return answer_collection(*served, question);
+  if (const auto record = read_picture_path(tail)) {
+    if (!collection_picture(*served->exhibit, *record).empty()) return {};
+    return error_reply(404, "no_picture", "there is no picture of such a record");
+  }
   if (tail == "/map") return fresh(answer_map(*served), sources);
   if (tail == "/qr.svg") return answer_qr(*served->exhibit, served->address, question);
   if (tail == "/still.jpg") return fresh(answer_still(*served, question), sources);
@@ -290,6 +294,12 @@ bool answer_later(const AnswerSources& sources, const HttpQuestion& question,
     const MapQuestion asked = read_map_question(question.query);
     if (!asked.problem.empty()) return false;
     sources.maps->ask(*served->exhibit, asked, asker);
+    return true;
+  }
+  if (const auto record = read_picture_path(path.substr(end)); record && sources.pictures) {
+    const std::string picture = collection_picture(*served->exhibit, *record);
+    if (picture.empty()) return false;
+    sources.pictures->ask(picture, served->exhibit->allowed_hosts, asker);
     return true;
   }
   if (path.substr(end) != "/still.jpg" || !sources.stills) return false;

@@ -11,6 +11,7 @@
 #include "show/http/access.h"
 #include "show/http/map_desk.h"
 #include "show/http/pages.h"
+#include "show/http/picture_desk.h"
 #include "show/http/report.h"
 #include "show/http/still_desk.h"
 #include "show/visit/walk_map.h"
@@ -44,6 +45,7 @@ struct AnswerSources {
   AccessRules access;
   StillDesk* stills = nullptr;
   MapDesk* maps = nullptr;
+  PictureDesk* pictures = nullptr;
   AnnouncementDesk desk;
   std::function<HttpReply(const HttpQuestion&)>
       sums;                             // GET /api/v1/sums.csv (show/status/status.h)
@@ -60,8 +62,8 @@ HttpReply answer(const AnswerSources& sources, const HttpQuestion& question);
 HttpReply answer_while_loading(const std::map<std::string, PageFile>& pages,
                                const HttpQuestion& question);
 
-// Takes a question for a finished picture or a collection's map, and answers when that is made;
-// false: it is none, or a wrong one, for answer().
+// Takes a question for a finished picture, a collection's map or a record's picture, and answers
+// when that is made; false: it is none, or a wrong one, for answer().
 bool answer_later(const AnswerSources& sources, const HttpQuestion& question,
                   const std::shared_ptr<HttpAsker>& asker);
 

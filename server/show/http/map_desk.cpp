@@ -5,7 +5,11 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <oneapi/tbb/task_arena.h>
 #include <utility>
+
+#include "show/http/pages.h"
+#include "show/http/picture_desk.h"
 
 namespace wellspring::show {
 
@@ -15,6 +19,7 @@ namespace {
 
 constexpr size_t most_waiting_maps = 32, most_kept_maps = 12;
 constexpr int fewest_shown = 2;
+constexpr size_t most_told_colors = 6;
 
 HttpReply refuse(int status, const char* code, const std::string& message) {
   HttpReply reply;
@@ -35,6 +40,13 @@ std::string name_of(const MapQuestion& question, size_t steps) {
 }
 
 double rounded(double number) { return std::round(number * 1e5) / 1e5; }
+
+json list_colors(const Record& record) {
+  json colors = json::array();
+  for (const Swatch& swatch : record.palette)
+    if (colors.size() < most_told_colors) colors.push_back(swatch.code);
+  return colors;
+}
 
 json describe_clusters(const Records& records, const MapLevel& level) {
   json clusters = json::array();
@@ -76,39 +88,56 @@ MapDesk::~MapDesk() {
   changed_.notify_all();
   if (thread_.joinable()) thread_.join();
   for (const Ticket& ticket : waiting_)
-    ticket.asker->answer(refuse(503, "stopping", "the server stops"));
+    if (ticket.asker) ticket.asker->answer(refuse(503, "stopping", "the server stops"));
 }
 
 void MapDesk::ask(const Exhibit& exhibit, const MapQuestion& question,
                   const std::shared_ptr<HttpAsker>& asker) {
-  Ticket ticket{exhibit.collection, {}, question, asker};
+  Ticket ticket{exhibit.collection,
+                {},
+                fmt::format("api/v1/exhibits/{}/collection/pictures/", escaped(exhibit.id)),
+                exhibit.allowed_hosts,
+                question,
+                asker};
   ticket.object_ids.resize(exhibit.collection->collection.records.all.size());
   for (const auto& [record, point] : exhibit.collection->points)
     ticket.object_ids[size_t(record)] = exhibit.points[size_t(point)].id;
-  {
-    std::lock_guard lock(mutex_);
-    if (waiting_.size() < most_waiting_maps) {
-      waiting_.push_back(std::move(ticket));
-      if (!thread_.joinable()) thread_ = std::thread([this] { live(); });
-      changed_.notify_all();
-      return;
-    }
-  }
+  if (put(std::move(ticket))) return;
   HttpReply busy = refuse(503, "busy", "many ask for maps; please come back in a moment");
   busy.headers["Retry-After"] = "2";
   asker->answer(std::move(busy));
 }
 
+void MapDesk::prepare(const Exhibit& exhibit) {
+  if (exhibit.collection) put({exhibit.collection, {}, {}, {}, {}, nullptr});
+}
+
+bool MapDesk::put(Ticket ticket) {
+  std::lock_guard lock(mutex_);
+  if (waiting_.size() >= most_waiting_maps) return false;
+  // Those that nobody waits for come last.
+  auto at = waiting_.end();
+  while (ticket.asker && at != waiting_.begin() && !std::prev(at)->asker) --at;
+  waiting_.insert(at, std::move(ticket));
+  if (!thread_.joinable()) thread_ = std::thread([this] { live(); });
+  changed_.notify_all();
+  return true;
+}
+
+// Visitors' pictures come first: loops over cores have a lower priority than those of renderers.
 void MapDesk::live() {
+  oneapi::tbb::task_arena arena(oneapi::tbb::task_arena::automatic, 1,
+                                oneapi::tbb::task_arena::priority::low);
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [&] { return end_ || !waiting_.empty(); });
     if (end_) return;
     const Ticket ticket = std::move(waiting_.front());
     waiting_.pop_front();
-    if (ticket.asker->gone()) continue;
+    if (ticket.asker && ticket.asker->gone()) continue;
     lock.unlock();
-    ticket.asker->answer(reply_to(ticket));
+    if (ticket.asker) ticket.asker->answer(arena.execute([&] { return reply_to(ticket); }));
+    else arena.execute([&] { level_of(ticket); });
     lock.lock();
   }
 }
@@ -159,11 +188,15 @@ HttpReply MapDesk::reply_to(const Ticket& ticket) {
                                                  {"y", rounded(level->layout.places[i].y)},
                                                  {"stress", rounded(level->layout.item_stress[i])},
                                                  {"cluster", level->clusters.of[i]}});
+    const std::string picture = allowed_picture(record, ticket.hosts).empty()
+                                    ? std::string()
+                                    : ticket.pictures + std::to_string(index);
     for (const auto& [name, text] :
          {std::pair("maker", &record.maker), std::pair("date", &record.date),
-          std::pair("link", &record.link), std::pair("picture", &record.picture),
+          std::pair("link", &record.link), std::pair("picture", &picture),
           std::pair("object", &ticket.object_ids[size_t(index)])})
       if (!text->empty()) item[name] = *text;
+    if (!record.palette.empty()) item["colors"] = list_colors(record);
   }
   HttpReply reply;
   reply.headers["Cache-Control"] = "public, max-age=60";

@@ -39,13 +39,18 @@ class MapDesk {
   // 503 when too many wait. `exhibit` must have a collection and is read within the call alone.
   void ask(const Exhibit& exhibit, const MapQuestion& question,
            const std::shared_ptr<wire::HttpAsker>& asker);
+  // Makes the map of the whole collection when nobody asks for another, so that whoever asks first
+  // does not wait for it. `exhibit` is as above.
+  void prepare(const Exhibit& exhibit);
 
  private:
   struct Ticket {
     std::shared_ptr<const ExhibitCollection> collection;
     std::vector<std::string> object_ids;  // by record; empty: it stands nowhere
+    std::string pictures;                 // address of the records' pictures, without their number
+    std::vector<std::string> hosts;       // Exhibit::allowed_hosts
     MapQuestion question;
-    std::shared_ptr<wire::HttpAsker> asker;
+    std::shared_ptr<wire::HttpAsker> asker;  // null: nobody waits for it
   };
   struct Kept {
     std::shared_ptr<const ExhibitCollection> collection;
@@ -53,6 +58,7 @@ class MapDesk {
     std::shared_ptr<const MapLevel> level;
   };
   void live();
+  bool put(Ticket ticket);
   std::shared_ptr<const MapLevel> level_of(const Ticket& ticket);
   wire::HttpReply reply_to(const Ticket& ticket);
 

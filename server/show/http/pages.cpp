@@ -83,7 +83,7 @@ std::map<std::string, PageFile> load_pages(const std::string& folder) {
   pages[exhibit_page] = make_page(content_types.at(".html"), std::move(inner));
   if (auto icon = pages.find("/icon.svg"); icon != pages.end())  // asked for without being named
     pages.try_emplace("/favicon.ico", icon->second);
-  for (const char* name : {"/kiosk", "/status", "/read", "/wall"})
+  for (const char* name : {"/kiosk", "/status", "/read", "/wall", "/collection"})
     if (auto page = pages.find(std::string(name) + ".html"); page != pages.end())
       pages[name] = page->second;
   return pages;

@@ -23,6 +23,7 @@ Exhibit make_exhibit() {
     record.id = record.title = std::to_string(i);
     record.year = 1500 + i;
     record.terms = {uint32_t(i % 2), uint32_t(2 + i / 2 % 2)};
+    record.palette = {{dvec3(50, i % 7, 0), 1, "#707070"}};
   }
   auto made = std::make_shared<ExhibitCollection>();
   made->title["en"] = "All";
@@ -58,6 +59,7 @@ TEST(MapDesk, AMapIsToldAndAStepFromIt) {
   EXPECT_EQ(first["region"], 200);
   ASSERT_EQ(first["items"].size(), 50u);
   EXPECT_EQ(first["items"][0]["object"], "chair");
+  EXPECT_EQ(first["items"][0]["colors"], json({"#707070"}));
   EXPECT_GE(first["clusters"].size(), 2u);
   const std::string pivot = std::to_string(first["items"][7]["index"].get<int>());
   const std::map<std::string, std::string> step = {{"shown", "50"}, {"trail", pivot + "@0.8"}};
@@ -66,6 +68,14 @@ TEST(MapDesk, AMapIsToldAndAStepFromIt) {
   EXPECT_EQ(ask(desk, exhibit, step).body, next.body);
   const json chosen = json::parse(ask(desk, exhibit, {{"shown", "50"}, {"trail", "c0"}}).body);
   EXPECT_LT(chosen["region"], 200);
+}
+
+TEST(MapDesk, AMapThatIsMadeBeforeIsTheOneThatIsAskedFor) {
+  const Exhibit exhibit = make_exhibit();
+  MapDesk idle, prepared;
+  prepared.prepare(Exhibit());
+  prepared.prepare(exhibit);
+  EXPECT_EQ(ask(prepared, exhibit, {}).body, ask(idle, exhibit, {}).body);
 }
 
 TEST(MapDesk, WrongQuestionsAreRefused) {
