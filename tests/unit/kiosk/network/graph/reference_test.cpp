@@ -53,8 +53,7 @@ TEST_P(GraphReference, OutputsAreThoseOfThePackage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Human, GraphReference,
-                         testing::Values("antispoof", "blazeface", "emotion", "facemesh",
-                                         "handlandmark-lite", "iris", "liveness"),
+                         testing::Values("emotion", "facemesh", "handlandmark-lite", "iris"),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::ranges::replace(name, '-', '_');
