@@ -41,10 +41,24 @@ void to_color(const cv::Mat& picture, GrayFrame& frame) {
   small.copyTo(cv::Mat(small.rows, small.cols, CV_8UC3, frame.bgr.data()));
 }
 
-// Makes luminance at no more than `width` pixels across. False for data that is no picture.
-bool to_gray(const cv::Mat& picture, int width, GrayFrame& frame) {
-  if (picture.empty() || picture.cols < 16 || picture.rows < 16) return false;
-  if (picture.depth() != CV_8U) return false;
+// Turns the picture of a camera that is mounted on its side, or upside down.
+cv::Mat upright(const cv::Mat& picture, const Mount& mount) {
+  const int turns = quarter_turns(mount) * (mount.mirrored ? -1 : 1);
+  if (turns == 0) return picture;
+  cv::Mat out;
+  cv::rotate(picture, out,
+             turns == 1    ? cv::ROTATE_90_CLOCKWISE
+             : turns == -1 ? cv::ROTATE_90_COUNTERCLOCKWISE
+                           : cv::ROTATE_180);
+  return out;
+}
+
+// Makes luminance of a camera's picture, upright and at no more than settings.width pixels across.
+// False for data that is no picture.
+bool to_gray(const cv::Mat& taken, const CameraSettings& settings, GrayFrame& frame) {
+  if (taken.empty() || taken.cols < 16 || taken.rows < 16 || taken.depth() != CV_8U) return false;
+  const cv::Mat picture = upright(taken, settings.mount);
+  const int width = settings.width;
   cv::Mat gray = picture;
   if (picture.channels() == 3) cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
   else if (picture.channels() == 4) cv::cvtColor(picture, gray, cv::COLOR_BGRA2GRAY);
@@ -113,7 +127,7 @@ class FileCamera : public Camera {
         if (index_ > 0 && std::isfinite(own) && begin_ + own > last_ + 1e-4 &&
             begin_ + own < last_ + 10)
           time = begin_ + own;
-        if (!to_gray(picture_, settings_.width, frame)) continue;
+        if (!to_gray(picture_, settings_, frame)) continue;
         index_++;
         frame.time = last_ = time;
         return true;
@@ -174,7 +188,7 @@ class FolderCamera : public Camera {
         picture = cv::imread(files_[next_], cv::IMREAD_COLOR);
       } catch (const cv::Exception&) {  // damaged, or larger than OpenCV takes
       }
-      if (to_gray(picture, settings_.width, frame)) {
+      if (to_gray(picture, settings_, frame)) {
         next_++;
         frame.time = double(index_++) / settings_.rate;
         return true;
@@ -207,7 +221,7 @@ class DeviceCamera : public Camera {
   Got next(GrayFrame& frame) override {
     try {
       if (!capture_.isOpened() && !open()) return Got::lost;
-      if (!capture_.read(picture_) || !to_gray(picture_, settings_.width, frame)) return lose();
+      if (!capture_.read(picture_) || !to_gray(picture_, settings_, frame)) return lose();
     } catch (const cv::Exception&) {
       return lose();
     }
@@ -252,6 +266,7 @@ class SyntheticCamera : public Camera {
   SyntheticCamera(const CameraSettings& settings, bool live) : settings_(settings), live_(live) {
     room_.width = std::clamp(settings.width, 160, 1280);
     room_.height = room_.width * 3 / 4;
+    if (quarter_turns(settings.mount) % 2 != 0) std::swap(room_.width, room_.height);
   }
   bool live() const override { return live_; }
   Got next(GrayFrame& frame) override {

@@ -39,7 +39,7 @@ struct CameraSettings {
   double rate = 30;
   bool loop = false;            // a file or a folder starts again at its end; times go on
   bool synthetic_ends = false;  // the synthetic camera ends after one round
-  Mount mount;                  // mount of the synthetic camera
+  Mount mount;  // its roll turns pictures upright; the synthetic camera is mounted by all of it
 };
 
 // Opens a camera. A folder's .png, .jpg and .jpeg files are played in the order of their names; one

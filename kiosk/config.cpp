@@ -37,6 +37,7 @@ void read_mount(FieldReader& fields, Mount& mount) {
   fields.part("mount", "how the camera sits", [&](FieldReader& part) {
     part.vector("offset", 10, mount.offset, "[right, up, out] m of the screen's centre");
     part.degrees("pitch", -80, 80, mount.pitch, "degrees, upwards positive");
+    part.degrees("roll", -180, 180, mount.roll, "degrees, clockwise as the camera looks");
   });
 }
 
@@ -121,7 +122,7 @@ std::string config_of(int argc, char** argv) {
 // Holds cameras as people write them; each list has one value for all, or one for each.
 struct Written {
   std::vector<std::string> sources, offsets;
-  std::vector<double> fovs, pitches;
+  std::vector<double> fovs, pitches, rolls;
   std::string expression;
   int width = 640;
   double rate = 30;
@@ -152,6 +153,12 @@ void add_camera(CLI::App& app, KioskOptions& options, Written& written) {
   app.add_option("--mount-pitch", written.pitches, "tilt of the camera, degrees, upwards positive")
       ->allow_extra_args(false)
       ->check(CLI::Range(-80.0, 80.0))
+      ->default_str("0");
+  app.add_option("--mount-roll", written.rolls,
+                 "turn of the camera about the way it looks, degrees, clockwise positive: 90 if it "
+                 "is mounted with its right side down")
+      ->allow_extra_args(false)
+      ->check(CLI::Range(-180.0, 180.0))
       ->default_str("0");
   app.add_flag("--mirrored", written.mirrored, "the camera delivers a mirror image");
   app.add_option("--width", written.width,
@@ -323,6 +330,8 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
            [](CameraSettings& to, double fov) { to.mount.fov = float(fov) * one_degree; });
   put_each(options.cameras, "--mount-pitch", written.pitches,
            [](CameraSettings& to, double pitch) { to.mount.pitch = float(pitch) * one_degree; });
+  put_each(options.cameras, "--mount-roll", written.rolls,
+           [](CameraSettings& to, double roll) { to.mount.roll = float(roll) * one_degree; });
   put_each(options.cameras, "--mount-offset", written.offsets,
            [](CameraSettings& to, const std::string& text) { to.mount.offset = read_place(text); });
   for (CameraSettings& one : options.cameras) {

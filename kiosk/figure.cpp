@@ -77,7 +77,7 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
                       double time) {
   GrayFrame frame{time, room.width, room.height, {}};
   frame.pixels.resize(size_t(room.width) * room.height);
-  const float focal = focal_length(mount, room.width);
+  const float focal = focal_length(mount, room.width, room.height);
   const mat3 head =
       rotation_matrix(pose.rotation);  // head axes in screen axes; z points away from the screen
   // The head's frame is that of figure.h: z out of the face, towards the screen; x stays the

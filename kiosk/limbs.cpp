@@ -65,7 +65,8 @@ struct Limbs::Impl {
     both.told.hands.clear();
     std::string found;
     if (reader && person.depth < far_hands) {
-      const float tenth = 0.1f * focal_length(settings.mount, frame.width) / person.depth;
+      const float tenth =
+          0.1f * focal_length(settings.mount, frame.width, frame.height) / person.depth;
       std::vector<Cut> squares;
       if (both.hands.followed() < 2) {
         if (bodies)

@@ -162,7 +162,7 @@ struct Observer::Impl {
     person.gaze.reset(), person.lids = open_lids(mesh), person.mouth.reset();
     if (!mesh.irises) return;
     person.mouth = open_mouth(mesh);
-    const float focal = focal_length(settings.mount, frame.width);
+    const float focal = focal_length(settings.mount, frame.width, frame.height);
     add_look(head.size, *iris_width(mesh), focal, pose.position.z);
     if (const auto look = look_direction(mesh, pose, focal, frame.width, frame.height))
       person.gaze = seen_place(person.position, *look);
@@ -185,7 +185,7 @@ struct Observer::Impl {
     if (read)
       now = classes->read({frame.pixels.data(), frame.width, frame.height}, cut_of_marks(marks));
     read_classes |= read;
-    const float focal = focal_length(settings.mount, frame.width);
+    const float focal = focal_length(settings.mount, frame.width, frame.height);
     head.person.expression = step_expression(
         head.expression, settings.expressions, frame.time,
         face_plane(marks, pose, focal, frame.width, frame.height), read ? &now : nullptr);
@@ -209,7 +209,7 @@ struct Observer::Impl {
 
   const Person& place(Head& head, const GrayFrame& frame, const Followed& who) {
     const Mount& mount = settings.mount;
-    const float focal = focal_length(mount, frame.width);
+    const float focal = focal_length(mount, frame.width, frame.height);
     std::optional<HeadPose> pose;
     if (who.face.marks) pose = solve_head_pose(*who.face.marks, focal, frame.width, frame.height);
     vec3 raw = pose ? pose->position * size_of(head.size)

@@ -107,7 +107,7 @@ std::optional<BodyLook> BodyTracks::plan(double time, int width, int height,
     looked_ = searched_ = arms_ = -1e9;
   }
   last_time_ = time;
-  view_ = {focal_length(mount_, width), width, height};
+  view_ = {focal_length(mount_, width, height), width, height};
   std::erase_if(tracks_, [&](const Track& t) {
     return time - t.seen > (counts(t) ? settings_.forget : settings_.search_every);
   });

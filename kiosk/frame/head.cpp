@@ -7,10 +7,12 @@ namespace wellspring::kiosk {
 
 namespace {
 
-// Returns the camera's axes in screen axes, as columns.
+// Returns the axes of upright pictures' camera in screen axes, as columns.
 mat3 camera_axes(const Mount& mount) {
-  float s = std::sin(mount.pitch), c = std::cos(mount.pitch);
-  return {vec3(-1, 0, 0), vec3(0, -c, s), vec3(0, s, c)};
+  const float s = std::sin(mount.pitch), c = std::cos(mount.pitch);
+  const mat3 level(vec3(-1, 0, 0), vec3(0, -c, s), vec3(0, s, c));
+  const float left = mount.roll - float(quarter_turns(mount)) * pi / 2;
+  return level * mat3(glm::rotate(mat4(1), left, vec3(0, 0, 1)));
 }
 
 // Returns, as columns, right, up and towards the visitor of somebody at `camera` (screen axes), as
@@ -31,7 +33,15 @@ mat3 lens_axes(const Mount& mount, vec3 camera) {
 
 }  // namespace
 
-float focal_length(const Mount& mount, int width) { return width / (2 * std::tan(mount.fov / 2)); }
+int quarter_turns(const Mount& mount) {
+  const int turns = int(std::lround(mount.roll / (pi / 2)));
+  return turns == -2 ? 2 : turns;
+}
+
+float focal_length(const Mount& mount, int width, int height) {
+  const bool sideways = quarter_turns(mount) % 2 != 0;
+  return float(sideways ? height : width) / (2 * std::tan(mount.fov / 2));
+}
 
 vec3 face_in_camera(const Box& box, float focal, int width, int height) {
   float z = focal * face_box_metres / box.width;

@@ -52,11 +52,17 @@ struct Mount {
   float fov = 60 * pi / 180;  // horizontal, radians
   vec3 offset{0};             // place of the lens, metres from the screen's centre
   float pitch = 0;            // radians, positive: tilted upwards (often negative)
-  bool mirrored = false;      // the source delivers a mirror image
+  // radians by which the camera is turned clockwise about the way it looks, +-pi. Its pictures are
+  // turned upright by quarter turns (make_camera); what is left is taken out of places.
+  float roll = 0;
+  bool mirrored = false;  // the source delivers a mirror image
 };
 
-// Returns the focal length in pixels of a picture `width` pixels wide.
-float focal_length(const Mount& mount, int width);
+// Returns the quarter turns, clockwise, that bring the camera's pictures upright: -1, 0, 1 or 2.
+int quarter_turns(const Mount& mount);
+// Returns the focal length in pixels of an upright picture; a camera that is mounted sideways has
+// its field of view from top to bottom.
+float focal_length(const Mount& mount, int width, int height);
 
 // This is the side in metres of the square that the frontal cascades put around an adult's face:
 // 2.85 times the distance between the pupils (median over cascades and hand-marked faces), 63 mm in

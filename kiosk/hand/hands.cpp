@@ -42,7 +42,7 @@ bool HandTracks::followed_at(vec2 middle, const Track* except) const {
 // Takes what was read; false: this is no hand, or not this person's.
 bool HandTracks::update(Track& track, const HandLook& look, HandMarks marks) {
   if (!is_finite_hand(marks)) return false;
-  const float focal = focal_length(mount_, look.width);
+  const float focal = focal_length(mount_, look.width, look.height);
   const auto place = place_hand(marks, focal, look.width, look.height);
   if (!place) return false;
   const vec3 palm = camera_to_screen(mount_, place->palm);

@@ -72,7 +72,7 @@ struct Station::Impl {
   Recognition look(const GrayFrame& given) {
     if (mirrored) turn_back(given);
     const GrayFrame& frame = mirrored ? turned : given;
-    look_at(sight, frame, focal_length(settings.mount, frame.width));
+    look_at(sight, frame, focal_length(settings.mount, frame.width, frame.height));
     size_t sum = 0, count = 0;
     for (size_t i = 0; i < frame.pixels.size(); i += 16) sum += frame.pixels[i], count++;
     context.set(light_value, double(sum) / double(std::max<size_t>(count, 1)));

@@ -68,8 +68,8 @@ std::vector<Angles> watch_head(FaceFinder& finder, double seconds,
     if (!face)
       if (auto found = finder.search(frame); !found.empty()) face = found[0];
     if (!face || !face->marks) continue;
-    const auto head =
-        solve_head_pose(*face->marks, focal_length({}, frame.width), frame.width, frame.height);
+    const auto head = solve_head_pose(*face->marks, focal_length({}, frame.width, frame.height),
+                                      frame.width, frame.height);
     if (head) all.push_back({time, pose.rotation, rotation_on_screen({}, head->rotation)});
   }
   return all;

@@ -184,8 +184,9 @@ void measure_made(const Options& options) {
       const vec3 off = metres[index_tip_point];
       pointing.palm = camera_to_screen(mount, screen_to_camera(mount, tip) - off);
       const HandMarks marks = marks_of(pointing, mount, millimetres / 1000, ++seed);
-      const auto place = place_hand(marks, focal_length(mount, hand_picture_width),
-                                    hand_picture_width, hand_picture_height);
+      const auto place =
+          place_hand(marks, focal_length(mount, hand_picture_width, hand_picture_width),
+                     hand_picture_width, hand_picture_height);
       if (!place) continue;
       auto error = [&](vec3 from) -> double {
         const auto found = point_on_screen(from, camera_to_screen(mount, place->index_tip));

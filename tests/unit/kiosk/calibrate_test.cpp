@@ -13,7 +13,7 @@ constexpr float degree = pi / 180;
 // Returns where eyes at `place` seem to be if the camera is believed to sit as `believed`.
 vec3 seem(const Mount& truth, const Mount& believed, vec3 place) {
   vec3 camera = screen_to_camera(truth, place);
-  camera.z *= focal_length(believed, 640) / focal_length(truth, 640);
+  camera.z *= focal_length(believed, 640, 480) / focal_length(truth, 640, 480);
   return camera_to_screen(believed, camera);
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
 #include <thread>
 
 #include "base/clock.h"
@@ -82,6 +83,67 @@ TEST_F(PictureFolder, PlaysInTheOrderOfNamesAtTheRateAndPassesOverWhatIsBroken) 
       EXPECT_EQ(camera->next(frame), Got::end);
     }
   }
+}
+
+// A picture whose left half is dark and whose right half is bright; its upper left corner white.
+cv::Mat two_halves() {
+  cv::Mat picture(48, 64, CV_8UC3, cv::Scalar::all(40));
+  picture(cv::Rect(32, 0, 32, 48)) = cv::Scalar::all(180);
+  picture(cv::Rect(0, 0, 16, 16)) = cv::Scalar::all(255);
+  return picture;
+}
+
+int level(const GrayFrame& frame, int x, int y) {
+  return frame.pixels[size_t(y) * size_t(frame.width) + size_t(x)];
+}
+
+TEST_F(PictureFolder, OfACameraThatWasMountedOnItsSideIsTurnedUpright) {
+  cv::imwrite(folder.file("a.png"), two_halves());
+  struct Turn {
+    float roll;
+    bool mirrored;
+    int width, x, y;  // where the white corner is
+  };
+  for (const Turn& turn : {Turn{0, false, 64, 2, 2},
+                           {90, false, 48, 45, 2},
+                           {-90, false, 48, 2, 61},
+                           {180, false, 64, 61, 45},
+                           {80, false, 48, 45, 2},
+                           {90, true, 48, 2, 61}}) {
+    CameraSettings settings{.source = folder.path.string()};
+    settings.mount.roll = turn.roll * pi / 180, settings.mount.mirrored = turn.mirrored;
+    GrayFrame frame;
+    ASSERT_EQ(make_camera(settings)->next(frame), Got::frame);
+    ASSERT_EQ(frame.width, turn.width) << turn.roll;
+    EXPECT_EQ(frame.color_width, turn.width);
+    EXPECT_GT(level(frame, turn.x, turn.y), 240) << turn.roll;
+  }
+}
+
+TEST_F(PictureFolder, AFilmWithAQuarterTurnInItsHeaderIsShownUpright) {
+  const std::string film = folder.file("film.mp4");
+  cv::VideoWriter writer(film, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 10,
+                         {64, 48});
+  ASSERT_TRUE(writer.isOpened());
+  for (int k = 0; k < 5; k++) writer.write(two_halves());
+  writer.release();
+  std::ifstream in(film, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  // The matrix of the track's header (ISO/IEC 14496-12, 8.3.2), a quarter turn clockwise.
+  const size_t header = bytes.find("tkhd");
+  ASSERT_NE(header, std::string::npos);
+  ASSERT_EQ(bytes[header + 4], 0) << "its version";
+  constexpr uint32_t quarter[9] = {0, 0x10000, 0, 0xffff0000, 0, 0, 48 << 16, 0, 0x40000000};
+  for (size_t k = 0; k < 36; k++)
+    bytes[header + 44 + k] = char(quarter[k / 4] >> (8 * (3 - k % 4)));
+  std::ofstream(film, std::ios::binary | std::ios::trunc) << bytes;
+  GrayFrame frame;
+  ASSERT_EQ(open(film)->next(frame), Got::frame);
+  ASSERT_EQ(frame.width, 48);
+  ASSERT_EQ(frame.height, 64);
+  EXPECT_GT(level(frame, 45, 2), 200);
+  EXPECT_LT(level(frame, 24, 10), 100);
+  EXPECT_GT(level(frame, 24, 55), 120);
 }
 
 TEST_F(PictureFolder, WithoutAnyPictureIsAnError) {

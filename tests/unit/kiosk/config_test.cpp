@@ -33,7 +33,7 @@ struct ConfigFile : testing::Test {
 
 TEST_F(ConfigFile, SaysWhatDiffers) {
   load(R"({"camera": {"width": 320, "fov": 90, "mirrored": true},
-           "mount": {"offset": [0.1, 0.2, 0.3], "pitch": -10},
+           "mount": {"offset": [0.1, 0.2, 0.3], "pitch": -10, "roll": 90},
            "presence": {"hold_person": 4}, "hands": false, "name": "hall", "station": "objects.json"})");
   EXPECT_EQ(config.station, "objects.json");
   EXPECT_EQ(config.name, "hall");
@@ -41,6 +41,7 @@ TEST_F(ConfigFile, SaysWhatDiffers) {
   EXPECT_EQ(config.camera.rate, 30);
   EXPECT_NEAR(config.camera.mount.fov, pi / 2, 1e-6f);
   EXPECT_NEAR(config.camera.mount.pitch, -pi / 18, 1e-6f);
+  EXPECT_NEAR(config.camera.mount.roll, pi / 2, 1e-6f);
   EXPECT_TRUE(config.camera.mount.mirrored);
   EXPECT_NEAR(config.camera.mount.offset.z, 0.3f, 1e-6f);
   EXPECT_EQ(config.presence.hold_person, 4);

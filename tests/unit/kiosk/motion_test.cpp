@@ -47,7 +47,7 @@ TEST(Motion, somebody_walking_is_motion_and_the_zone_is_where_they_are) {
     moving += m.moving;
     if (i < 40) continue;
     ASSERT_FALSE(m.zones.empty());
-    const float u = 160 - x / 0.9f * focal_length({}, 320);
+    const float u = 160 - x / 0.9f * focal_length({}, 320, 240);
     EXPECT_LT(m.zones[0].x, u);
     EXPECT_GT(m.zones[0].x + m.zones[0].width, u);
   }

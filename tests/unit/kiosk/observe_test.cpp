@@ -186,7 +186,7 @@ TEST(Observe, a_tilted_head_is_found_when_its_tilt_is_known) {
   for (float roll : {-0.6f, 0.6f}) {
     FigurePose pose{.visible = true, .position = {0.05f, 0, 0.7f}, .rotation = {0, 0, roll}};
     GrayFrame frame = draw_figure({640, 480, 1, 1, 2}, {}, pose, 0);
-    const float focal = focal_length({}, 640), side = focal * face_box_metres / 0.7f;
+    const float focal = focal_length({}, 640, 480), side = focal * face_box_metres / 0.7f;
     const float u = 320 - 0.05f / 0.7f * focal, v = 240;
     const Box last{u - side / 2, v - eyes_in_box * side, side, side};
     Face before;

@@ -12,7 +12,7 @@ namespace {
 const Mount level;
 
 BodyView view_of(const Mount& mount) {
-  return {focal_length(mount, made_width), made_width, made_height};
+  return {focal_length(mount, made_width, made_height), made_width, made_height};
 }
 
 BodyMeasure measured(const MadeBody& body, const KnownDepth& known = {},

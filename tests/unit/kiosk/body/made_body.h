@@ -40,7 +40,7 @@ inline BodyMarks marks_of(const MadeBody& body, const Mount& mount = {}) {
       at(hip, hips),          at(-hip, knee, front),    at(hip, knee, front),
       at(-hip, ankle, front), at(hip, ankle, front)};
   const float c = std::cos(body.turned), s = std::sin(body.turned);
-  const float focal = focal_length(mount, made_width);
+  const float focal = focal_length(mount, made_width, made_height);
   BodyMarks out;
   out.score = 0.9f;
   for (size_t k = 0; k < body_points; k++) {
@@ -59,7 +59,7 @@ inline BodyMarks marks_of(const MadeBody& body, const Mount& mount = {}) {
 
 // The box of the face of such a body, as a finder would put it.
 inline Box face_of(const BodyMarks& marks, float depth, const Mount& mount = {}) {
-  const float side = face_box_metres * focal_length(mount, made_width) / depth;
+  const float side = face_box_metres * focal_length(mount, made_width, made_height) / depth;
   const vec2 nose = marks.at(BodyPoint::nose).pixel;
   return {nose.x - side / 2, nose.y - side / 2, side, side};
 }

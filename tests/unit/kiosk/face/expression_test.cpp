@@ -70,7 +70,7 @@ TEST(Fap, what_is_no_face_is_refused) {
 
 TEST(Fap, the_plane_of_a_turned_head_is_that_of_a_straight_one) {
   const Mount mount;
-  const float focal = focal_length(mount, 640);
+  const float focal = focal_length(mount, 640, 480);
   FaceMarks marks;
   const HeadPose pose{mat3(glm::rotate(mat4(1), 0.4f, glm::normalize(vec3(0.3f, 1, 0.2f)))),
                       {0.1f, -0.05f, 0.9f},

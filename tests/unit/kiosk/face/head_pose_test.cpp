@@ -12,7 +12,7 @@ namespace wellspring::test {
 namespace {
 
 constexpr int width = 640, height = 480;
-const float focal = focal_length({}, width);
+const float focal = focal_length({}, width, height);
 
 // The model's face, turned (screen angles, radians) and placed (screen metres), as a level camera
 // in the screen's middle sees it.

@@ -19,7 +19,7 @@ Box box_at(float u, float v, float side) {
 
 TEST(Head, a_known_box_gives_known_metres) {
   Mount mount{.fov = 90 * pi / 180};
-  const float focal = focal_length(mount, 640);
+  const float focal = focal_length(mount, 640, 480);
   EXPECT_NEAR(focal, 320, 1e-3f);
   // 57.6 pixels of 0.18 m at 320 pixels focal length: 1 m away.
   expect_near(face_in_camera(box_at(320, 240, 57.6f), focal, 640, 480), {0, 0, 1}, 1e-5f);
@@ -46,6 +46,41 @@ TEST(Head, offset_and_pitch_of_the_camera) {
     vec3 p{0.3f, -0.2f, 1.4f};
     expect_near(camera_to_screen(mount, screen_to_camera(mount, p)), p, 1e-5f);
   }
+}
+
+TEST(Head, a_camera_on_its_side_has_its_field_of_view_upwards) {
+  constexpr float degree = pi / 180;
+  Mount mount{.fov = 90 * degree};
+  for (const auto& [roll, turns] : {std::pair{0.f, 0},
+                                    {40.f, 0},
+                                    {85.f, 1},
+                                    {-92.f, -1},
+                                    {180.f, 2},
+                                    {-180.f, 2},
+                                    {-170.f, 2}}) {
+    mount.roll = roll * degree;
+    EXPECT_EQ(quarter_turns(mount), turns) << roll;
+    EXPECT_NEAR(focal_length(mount, 480, 640), turns % 2 ? 320 : 240, 1e-3f) << roll;
+  }
+}
+
+TEST(Head, what_a_turn_of_the_camera_leaves_is_taken_out_of_places_and_rotations) {
+  constexpr float degree = pi / 180;
+  for (bool mirrored : {false, true})
+    for (float quarter : {0.f, 90.f, -90.f, 180.f}) {
+      // Turned clockwise by 10 degrees more, the camera sees what is level turned the other way.
+      const Mount level{.offset = {0.1f, 0.3f, 0}, .pitch = -0.2f, .mirrored = mirrored};
+      Mount turned = level;
+      turned.roll = (quarter + 10) * degree;
+      const vec3 place{0.2f, -0.1f, 1.2f};
+      const vec3 seen = screen_to_camera(turned, place), straight = screen_to_camera(level, place);
+      const float angle = std::atan2(seen.y, seen.x) - std::atan2(straight.y, straight.x);
+      EXPECT_NEAR(std::abs(angle), 10 * degree, 1e-3f) << quarter;
+      expect_near(camera_to_screen(turned, seen), place, 1e-5f);
+      const vec3 head{0.3f, -0.1f, 0.2f};
+      const mat3 as_seen = rotation_as_seen(turned, head, seen);
+      expect_near(rotation_on_screen(turned, as_seen, seen), head, 1e-4f);
+    }
 }
 
 TEST(Head, angles_have_the_signs_of_the_message) {

@@ -57,8 +57,9 @@ TEST(HandShape, ThePlaceFollowsFromTheSize) {
     for (float pitch : {0.f, 0.8f}) {
       MadeHand hand = showing({true, true, true, true, true}, 0, pitch);
       hand.palm = {0.1f, -0.05f, z};
-      const auto place = place_hand(marks_of(hand), focal_length(level, hand_picture_width),
-                                    hand_picture_width, hand_picture_height);
+      const auto place =
+          place_hand(marks_of(hand), focal_length(level, hand_picture_width, hand_picture_width),
+                     hand_picture_width, hand_picture_height);
       ASSERT_TRUE(place);
       const vec3 palm = camera_to_screen(level, place->palm);
       EXPECT_NEAR(palm.z, z, 0.12f * z + 0.05f) << pitch;

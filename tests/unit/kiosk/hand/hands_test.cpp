@@ -37,8 +37,9 @@ struct Scene {
 
 Cut place_of(const MadeHand& hand) {
   const HandMarks marks = marks_of(hand);
-  return hand_cut_of_place(vec2(marks.points[middle_root_point]),
-                           0.1f * focal_length(Mount{}, hand_picture_width) / hand.palm.z);
+  return hand_cut_of_place(
+      vec2(marks.points[middle_root_point]),
+      0.1f * focal_length(Mount{}, hand_picture_width, hand_picture_width) / hand.palm.z);
 }
 
 TEST(Hands, AHandIsFoundAndFollowedWithoutFurtherPlaces) {

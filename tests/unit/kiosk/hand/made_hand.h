@@ -63,7 +63,7 @@ inline std::array<vec3, hand_points> metres_of(const MadeHand& hand) {
 // `tremble`: deviation of each landmark, metres in the picture's plane and thrice as much away.
 inline HandMarks marks_of(const MadeHand& hand, const Mount& mount = {}, float tremble = 0,
                           uint64_t seed = 1) {
-  const float focal = focal_length(mount, hand_picture_width);
+  const float focal = focal_length(mount, hand_picture_width, hand_picture_width);
   const vec3 wrist = screen_to_camera(mount, hand.palm);
   HandMarks out;
   out.presence = hand.presence;
