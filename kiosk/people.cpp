@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/background_segm.hpp>
 
+#include "kiosk/face/face_path.h"
+
 namespace wellspring::kiosk {
 
 namespace {
@@ -13,16 +15,6 @@ namespace {
 constexpr int patch_side = 28;         // pixels of the remembered texture
 constexpr float same_texture = 0.72f;  // correlation from which a patch is the same face
 constexpr int hits_to_count = 3;       // number of detections before a face counts
-
-float distance(const Box& a, const Box& b) {
-  return std::hypot(a.center_x() - b.center_x(), a.center_y() - b.center_y());
-}
-
-bool could_be(const Box& before, const Box& now, double gap) {
-  float ratio = now.width / before.width;
-  float reach = before.width * (0.6f + 1.5f * float(std::min(gap, 1.0)));
-  return ratio > 0.6f && ratio < 1.65f && distance(before, now) < reach;
-}
 
 cv::Mat cut(const GrayFrame& frame, const Box& box, float scale) {
   cv::Mat full(frame.height, frame.width, CV_8U, const_cast<uint8_t*>(frame.pixels.data()));
@@ -42,6 +34,7 @@ struct People::Impl {
   PeopleSettings settings;
   struct Track {
     Followed who;
+    FacePath path;
     float roll = 0;
     cv::Mat patch;  // the face at patch_side when a detector last saw it
   };
@@ -59,6 +52,7 @@ struct People::Impl {
     who.seen = who.visible = true;
     who.seen_time = frame.time;
     who.hits++;
+    add_place(track.path, frame.time, face.box);
     track.patch = cut(frame, face.box, patch_side / face.box.width);
   }
 
@@ -88,16 +82,51 @@ struct People::Impl {
     who.visible = true;
   }
 
+  // Looks for each face near where it is to be. The window of one who is hidden by another slides
+  // onto the other: of two that find the same face the one that it fits less has lost its own.
+  void follow_all(const GrayFrame& frame) {
+    struct Found {
+      std::optional<Face> face;
+      float misfit = 1;
+    };
+    std::vector<Found> found(tracks.size());
+    for (size_t k = 0; k < tracks.size(); k++) {
+      const Followed& who = tracks[k].who;
+      // A face lost for long is left to the search; its window would only meet others.
+      if (frame.time - who.seen_time >= settings.carry) continue;
+      const auto face = finder.follow(frame, who.face, tracks[k].roll);
+      const auto off = face ? misfit(tracks[k].path, frame.time, face->box) : std::nullopt;
+      if (off) found[k] = {face, *off};
+    }
+    auto same = [](const Box& a, const Box& b) { return overlap(a, b) > 0.4f; };
+    for (size_t i = 0; i < found.size(); i++)
+      for (size_t j = i + 1; j < found.size(); j++)
+        if (found[i].face && found[j].face && same(found[i].face->box, found[j].face->box))
+          found[found[i].misfit <= found[j].misfit ? j : i].face.reset();
+    for (size_t k = 0; k < tracks.size(); k++) {
+      tracks[k].who.seen = false;
+      if (found[k].face) see(tracks[k], frame, *found[k].face);
+    }
+    for (Track& track : tracks) {
+      if (track.who.seen) continue;
+      carry(track, frame);
+      for (const Track& other : tracks)
+        if (other.who.seen && same(other.who.face.box, track.who.face.box))
+          track.who.visible = false;
+    }
+  }
+
   void meet(const GrayFrame& frame, const Face& face) {
     for (Track& track : tracks) {
       Followed& who = track.who;
       if (who.seen && overlap(who.face.box, face.box) > 0.15f) return;
     }
     Track* known = nullptr;
-    for (Track& track : tracks)
-      if (!track.who.seen &&
-          could_be(track.who.face.box, face.box, frame.time - track.who.seen_time))
-        if (!known || track.who.seen_time > known->who.seen_time) known = &track;
+    float best = 1;
+    for (Track& track : tracks) {
+      const auto off = track.who.seen ? std::nullopt : misfit(track.path, frame.time, face.box);
+      if (off && *off < best) known = &track, best = *off;
+    }
     if (!known) {
       if (int(tracks.size()) >= settings.most) return;
       tracks.emplace_back();
@@ -123,22 +152,7 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
   if (time < m.last_time) m.tracks.clear(), m.searched = m.searched_thoroughly = -1e9;
   m.last_time = time;
 
-  for (Impl::Track& track : m.tracks) {
-    Followed& who = track.who;
-    who.seen = false;
-    // A face lost for long is left to the search; its window would only meet others.
-    auto face = time - who.seen_time < m.settings.carry
-                    ? m.finder.follow(frame, who.face, track.roll)
-                    : std::optional<Face>();
-    if (face) m.see(track, frame, *face);
-    else m.carry(track, frame);
-  }
-  // If two windows slide onto one face, the older number stays.
-  for (size_t i = 0; i < m.tracks.size(); i++)
-    for (size_t j = m.tracks.size(); j-- > i + 1;)
-      if (m.tracks[i].who.visible && m.tracks[j].who.visible &&
-          overlap(m.tracks[i].who.face.box, m.tracks[j].who.face.box) > 0.4f)
-        m.tracks.erase(m.tracks.begin() + long(j));
+  m.follow_all(frame);
 
   bool somebody =
       std::any_of(m.tracks.begin(), m.tracks.end(), [](auto& t) { return t.who.visible; });
