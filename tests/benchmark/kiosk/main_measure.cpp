@@ -2,6 +2,8 @@
 // wellspring_kiosk_measure: how good the kiosk's eye is and what it costs, for `wellspring bench
 // --only kiosk`, which starts it: so OpenCV stays in kiosk/ and out of the benchmark's program.
 // Prints one JSON object a result: {"name","value","unit",...}.
+#include "main_measure.h"
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -9,7 +11,6 @@
 #include <ctime>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 
 #include "about/version.h"
@@ -20,7 +21,24 @@
 #include "kiosk/face/face_mesh.h"
 #include "kiosk/figure.h"
 #include "kiosk/network/graph/graph_network.h"
-#include "kiosk/observe.h"
+
+namespace wellspring::test {
+
+void tell(const std::string& name, double value, const std::string& unit, nlohmann::json fields) {
+  if (std::isnan(value)) return;
+  nlohmann::json out{{"name", name}, {"value", value}, {"unit", unit}};
+  if (!fields.is_null()) out.update(fields);
+  std::puts(out.dump().c_str());
+  std::fflush(stdout);
+}
+
+ObserverSettings settings_of(const MeasureOptions& options, const std::string& finder) {
+  ObserverSettings settings;
+  settings.face.weights = finder == "networks" ? options.weights : "/nowhere";
+  return settings;
+}
+
+}  // namespace wellspring::test
 
 namespace {
 
@@ -33,32 +51,6 @@ constexpr float degree = pi / 180;
 constexpr double rate = 30;
 constexpr double comes = 0.5;  // seconds of an empty room
 constexpr double settle = 4;   // seconds in which a visitor is found and believed
-
-struct Options {
-  std::string weights, data;
-  bool quick = false;
-};
-
-void tell(const std::string& name, double value, const std::string& unit, json fields = {}) {
-  if (std::isnan(value)) return;
-  json out{{"name", name}, {"value", value}, {"unit", unit}};
-  if (!fields.is_null()) out.update(fields);
-  std::puts(out.dump().c_str());
-  std::fflush(stdout);
-}
-
-ObserverSettings settings_of(const Options& options, const std::string& finder) {
-  ObserverSettings settings;
-  settings.face.weights = finder == "networks" ? options.weights : "/nowhere";
-  return settings;
-}
-
-struct Mean {
-  double sum = 0;
-  int count = 0;
-  void add(double value) { sum += value, count++; }
-  double value() const { return count ? sum / count : NAN; }
-};
 
 double process_seconds() {
   timespec now;
@@ -108,7 +100,7 @@ void watch_scene(const ObserverSettings& settings, const Scene& scene, Errors& e
   }
 }
 
-void measure_heads(const Options& options, const std::string& finder) {
+void measure_heads(const MeasureOptions& options, const std::string& finder) {
   const ObserverSettings settings = settings_of(options, finder);
   std::vector<Scene> scenes = {
       {{-60, 0, 0}, {60, 0, 0}}, {{0, -20, 0}, {0, 20, 0}}, {{0, 0, -30}, {0, 0, 30}}};
@@ -155,7 +147,7 @@ void measure_heads(const Options& options, const std::string& finder) {
 }
 
 // A visitor comes in front of the camera at a distance and stays, hardly moving.
-void measure_reach(const Options& options, const std::string& finder) {
+void measure_reach(const MeasureOptions& options, const std::string& finder) {
   for (float distance : {1.f, 2.f, 2.5f, 3.f, 3.5f}) {
     Observer observer(settings_of(options, finder));
     double seen_at = NAN;
@@ -207,7 +199,7 @@ double jitter(const std::vector<float>& values) {
   return count ? std::sqrt(sum / count) : NAN;
 }
 
-void measure_clips(const Options& options, const std::string& finder) {
+void measure_clips(const MeasureOptions& options, const std::string& finder) {
   Mean with_face, without;
   for (const Clip& clip : clips) {
     const fs::path file = fs::path(options.data) / "5_faces" / clip.file;
@@ -246,7 +238,7 @@ void measure_clips(const Options& options, const std::string& finder) {
   if (without.count) tell("kiosk.face.false", without.value(), "1", {{"finder", finder}});
 }
 
-void measure_cost(const Options& options, const std::string& finder, bool expression) {
+void measure_cost(const MeasureOptions& options, const std::string& finder, bool expression) {
   ObserverSettings settings = settings_of(options, finder);
   settings.expression = expression;
   Observer observer(settings);
@@ -295,7 +287,7 @@ void measure_graphs(const fs::path& folder) {
 
 // Compares the mesh of a man who talks with his landmarks: the mean distance at corners of eyes
 // and mouth, nose and chin, over that of the eyes.
-void measure_mesh(const Options& options, const fs::path& graphs) {
+void measure_mesh(const MeasureOptions& options, const fs::path& graphs) {
   const fs::path file = fs::path(options.data) / "5_faces" / talking;
   if (options.data.empty() || !fs::exists(file) || !fs::exists(graphs)) return;
   constexpr size_t same[][2] = {{33, 36}, {263, 45}, {61, 48}, {291, 54}, {1, 30}, {152, 8}};
@@ -330,7 +322,7 @@ void measure_mesh(const Options& options, const fs::path& graphs) {
 int main(int argc, char** argv) {
   if (answer_version(argc, argv)) return 0;
   CLI::App app{"Measures the kiosk's eye for wellspring bench."};
-  Options options;
+  MeasureOptions options;
   app.add_option("--weights", options.weights, "folder of the networks' weights");
   app.add_option("--data", options.data, "folder of real recordings");
   app.add_flag("--quick", options.quick, "fewer scenes and shorter clips");
@@ -349,6 +341,7 @@ int main(int argc, char** argv) {
     const fs::path graphs = fs::path(options.weights).parent_path() / "human";
     measure_graphs(graphs);
     measure_mesh(options, graphs);
+    if (fs::exists(options.weights)) measure_prints(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
