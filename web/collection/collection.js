@@ -72,7 +72,7 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
       draw_plane(canvas.getContext('2d'), { view, items, selected, hovered,
         stress: level.stress, circle: circle_now(), lit: lit(), unit,
         ratio: canvas.width / view.width(),
-        groups: group_at.map((at, i) => ({ at, name: name_of(level.clusters[i]) })),
+        groups: group_at.map((at, i) => ({ at, terms: level.clusters[i].terms })),
         image: (item) => pictures.of(item.picture) });
       canvas.dataset.settled = String(passed >= 1);
       if (selected >= 0)
@@ -232,7 +232,7 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
     show_details(false);
     frame.title.textContent = level.title[lang] ?? level.title[lang.split('-')[0]]
       ?? Object.values(level.title)[0] ?? '';
-    groups.fill(level.clusters, lang);
+    groups.fill(level.clusters);
     list.clear();
     show_circle();
     show_trail();

@@ -115,7 +115,7 @@ function draw_grip(context, [x, y], radius, bent, unit) {
 
 // scene: {view, items: [{at, group, stress, colors, object, picture, seen: 0..1, title}], stress:
 // of the map, selected, hovered: indices or -1, circle: {at, radius, inside: Set, bent} or null,
-// lit: Set of groups that are not dimmed, or null, groups: [{at: or null, name}], image(item) or
+// lit: Set of groups that are not dimmed, or null, groups: [{at: or null, terms}], image(item) or
 // null, ratio: pixels of the canvas for one of the page, unit: as of dot_radius()}.
 export function draw_plane(context, scene) {
   const { view, items, circle, lit, selected, hovered, unit } = scene;
@@ -163,9 +163,10 @@ export function draw_plane(context, scene) {
     if (i >= 0 && seen[i]) write(items[i].title, places[i],
         { size: 15 * unit, color: ink, below: below + (has_room ? 16 : 4), most: 260 * unit });
   if (view.zoom() < 2.2)
-    scene.groups.forEach(({ at, name }, i) => {
+    scene.groups.forEach(({ at, terms }, i) => {
       if (!at || (lit && !lit.has(i))) return;
-      const size = (view.width() < narrow ? 14 : 17) * unit;
+      const is_narrow = view.width() < narrow, size = (is_narrow ? 14 : 17) * unit;
+      const name = terms.slice(0, is_narrow ? 1 : 2).join(', ');
       [0, 1.6, -1.6].some((lines) => write(name, view.to_screen(at), { size, below: lines * size,
         color: color_of(i), italic: true, most: 13 * size }));
     });
