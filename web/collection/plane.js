@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws a map of a collection: a dot for each object, in the colour of its group, with the object's
 // own colours where dots are large; pale where the map is not true; pictures where there is room.
+import { clearness } from './truth.js';
+
 export const group_colors = ['#d9b36a', '#8fb9c9', '#c98f7a', '#98bd8c', '#b59acb', '#d8cdb8'];
 export const color_of = (group) => group_colors[group % group_colors.length];
 
@@ -11,10 +13,6 @@ const usual_side = 54;                    // of a picture
 const narrow = 520;                       // of a window with smaller words
 const gold = '#ffd98a', ink = '#f3ecdf', ground = '#16130f';
 const serif = 'Georgia, "Palatino Linotype", "Times New Roman", serif';
-
-// Says how visible a dot is: an object's stress beside that of the map. True places are opaque.
-export const clearness = (stress, of_map) =>
-  1 - 0.62 * Math.min(1, Math.max(0, stress / Math.max(of_map, 1e-9) - 0.8) / 1.2);
 
 // Returns how large dots are on a map with so many, in a window of that size. unit: how many times
 // larger than usual words are.
