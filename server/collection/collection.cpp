@@ -13,6 +13,7 @@ namespace {
 
 constexpr int year_at = 0, color_at = 1, term_at = 4, properties = term_at + term_numbers;
 constexpr int most_term_products = 40;
+constexpr double far_out = 3;  // quartile ranges beyond the quartiles (Tukey 1977)
 
 // Counts which terms records have, each divided by the roots of both counts.
 struct Incidence {
@@ -36,6 +37,23 @@ Incidence count_terms(const Records& records) {
   for (const double count : found.term_count)
     found.term_root.push_back(1 / std::sqrt(count + term_mean));
   return found;
+}
+
+// Holds the years between which others keep their distances.
+struct YearFences {
+  double low = -INFINITY, high = INFINITY;
+  double within(double year) const { return std::clamp(year, low, high); }
+};
+
+YearFences find_fences(const std::vector<Record>& records) {
+  std::vector<double> years;
+  for (const Record& record : records)
+    if (record.year) years.push_back(*record.year);
+  if (years.empty()) return {};
+  std::ranges::sort(years);
+  const double low = years[years.size() / 4], high = years[years.size() * 3 / 4];
+  const double far = far_out * (high - low);
+  return far > 0 ? YearFences{low - far, high + far} : YearFences{};
 }
 
 dvec3 mean_color(const std::vector<Swatch>& palette) {
@@ -93,8 +111,9 @@ Collection make_collection(Records records) {
   double year = 0, dated = 0;
   dvec3 color(0);
   double colored = 0;
+  const YearFences fences = find_fences(records.all);
   for (const Record& record : records.all) {
-    if (record.year) year += *record.year, dated++;
+    if (record.year) year += fences.within(*record.year), dated++;
     if (!record.palette.empty()) color += mean_color(record.palette), colored++;
   }
   year = dated > 0 ? year / dated : 0;
@@ -104,7 +123,7 @@ Collection make_collection(Records records) {
   for (const Record& record : records.all) {
     SetItem item;
     double base[properties] = {};
-    base[year_at] = record.year.value_or(year);
+    base[year_at] = record.year ? fences.within(*record.year) : year;
     const dvec3 mean = record.palette.empty() ? color : mean_color(record.palette);
     for (int k = 0; k < 3; k++) base[color_at + k] = mean[k];
     for (const uint32_t term : record.terms)

@@ -19,7 +19,9 @@ struct Collection {
 // A point of a record has its year, a colour, and a place among terms: there is one for each term,
 // in the record's mean colour, and one for each colour, at the terms' mean place. Terms and colours
 // together weigh the same. Years, colours and terms that are missing are the collection's mean, so
-// that nothing is near for lack of them.
+// that nothing is near for lack of them. Years far from nearly all others (Tukey 1977: "far out")
+// count as the last one that is not, so that a few very old objects do not press the others
+// together.
 Collection make_collection(Records records);
 
 // Returns a place for each term, so that terms which describe the same objects are near:

@@ -11,7 +11,7 @@ import { start_screen_server } from '../screen_server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-collection-'));
-const room = join(folder, 'content', 'room'), bare = join(folder, 'content', 'bare');
+const room = join(folder, 'content', 'room'), second = join(folder, 'content', 'second');
 
 // Records in three departments, which differ in material, colour and century.
 const departments = [['iron', 'war', '#404048', 1300], ['wool', 'winter', '#a02030', 1600],
@@ -25,10 +25,10 @@ const records = departments.flatMap(([material, subject, color, year], k) =>
 let server, browser;
 before(async () => {
   if (skip) return;
-  for (const place of [room, bare])
+  for (const place of [room, second])
     cpSync(join(source, 'content', 'first-room'), place, { recursive: true });
   const exhibit = JSON.parse(readFileSync(join(room, 'exhibit.json'), 'utf8'));
-  writeFileSync(join(bare, 'exhibit.json'), JSON.stringify({ ...exhibit, id: 'bare' }));
+  writeFileSync(join(second, 'exhibit.json'), JSON.stringify({ ...exhibit, id: 'second' }));
   writeFileSync(join(room, 'records.json'), JSON.stringify({ records }));
   const [object] = Object.keys(exhibit.objects);
   const collection = { source: 'records.json', title: { en: 'All our things' },
@@ -86,7 +86,7 @@ const open_from_menu = async (page) => {
 };
 
 test('the menu has the map where there is a collection, and only there', { skip }, async () => {
-  const page = await open('/e/bare?display=server&lang=en');
+  const page = await open('/e/second?display=server&lang=en');
   await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 1);
   await page.click('#menu-button');
   assert(await page.isHidden('#collection-section'));
@@ -234,7 +234,7 @@ test('a trail that no map has leads to everything', { skip }, async () => {
   assert(page.problems.every((one) => /404/.test(one)));
   page.problems.length = 0;
   await close(page);
-  const nothing = await open('/collection?exhibit=bare&lang=en');
+  const nothing = await open('/collection?exhibit=second&lang=en');
   await nothing.waitForSelector('#problem:not([hidden])');
   assert.match(await nothing.textContent('#problem'), /no collection/);
   await close(nothing);

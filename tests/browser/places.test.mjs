@@ -9,8 +9,7 @@ const { in_circle, make_turn, nearest_place, next_place, usual_radius } =
     await import(join(web, 'places.js'));
 const { circle_step, groups_step, make_trail, read_steps } = await import(join(web, 'trail.js'));
 const { make_view } = await import(join(web, 'view.js'));
-const { distortion } = await import(join(web, 'details.js'));
-const { clearness } = await import(join(web, 'plane.js'));
+const { clearness, map_truth, place_truth } = await import(join(web, 'truth.js'));
 
 let seed = 12345;
 const random = () => { seed = (seed * 48271) % 2147483647; return seed / 2147483647; };
@@ -93,7 +92,9 @@ test('a trail is written as the server reads it, and nothing else is', () => {
 });
 
 test('the truth of a place is told by its stress beside that of the map', () => {
-  assert.deepEqual([0, 0.3, 0.4, 0.9].map((stress) => distortion(stress, 0.3)), [0, 1, 2, 3]);
+  assert.deepEqual([0, 0.3, 0.4, 0.9].map((stress) => place_truth(stress, 0.3)), [0, 1, 2, 3]);
+  assert.equal(place_truth(0.1, 0.02), 0, 'true is true, however much truer the others are');
+  assert.deepEqual([0.05, 0.2, 0.4, 0.6].map(map_truth), [0, 1, 2, 3]);
   const clear = [0, 0.3, 0.6, 2].map((stress) => clearness(stress, 0.3));
   assert.equal(clear[0], 1);
   assert(clear[1] > clear[2] && clear[2] > clear[3] - 1e-9 && clear[3] > 0.3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A collection as a map: joins the server's maps, what is drawn of them, and what the visitor does.
-import { distortion, make_details } from './details.js';
+import { make_details } from './details.js';
 import { make_fingers } from './fingers.js';
 import { make_frame } from './frame.js';
 import { make_groups, name_of } from './groups.js';
@@ -11,6 +11,7 @@ import { make_pictures } from './pictures.js';
 import { in_circle, nearest_place, next_place, usual_radius } from './places.js';
 import { dot_radius, draw_plane } from './plane.js';
 import { circle_step, groups_step, make_trail, read_steps } from './trail.js';
+import { map_truth, place_truth } from './truth.js';
 import { make_view } from './view.js';
 import { map_word } from './words.js';
 
@@ -18,7 +19,6 @@ const move_time = 900;          // milliseconds from map to map
 const list_pause = 150;         // milliseconds that the view rests before the list follows
 const bar_height = 76;          // pixels that the circle's slider covers at the lower edge
 const usual_font = 16;          // pixels
-const stress_limits = [0.12, 0.28, 0.45];  // of faithful, mostly faithful and rough maps
 
 // exhibit: its id. place: the element that the map is put in. orders: {there(object): takes the
 // visitor to it, close() or null, changed(trail): another map is seen, touched(): somebody does
@@ -72,7 +72,7 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
       draw_plane(canvas.getContext('2d'), { view, items, selected, hovered,
         stress: level.stress, circle: circle_now(), lit: lit(), unit,
         ratio: canvas.width / view.width(),
-        groups: group_at.map((at, i) => ({ at, name: name_of(level.clusters[i]) })),
+        groups: group_at.map((at, i) => ({ at, terms: level.clusters[i].terms })),
         image: (item) => pictures.of(item.picture) });
       canvas.dataset.settled = String(passed >= 1);
       if (selected >= 0)
@@ -115,7 +115,7 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
     const { title, maker, date, group, stress, object } = items[i];
     say(`${[title, maker, date].filter(Boolean).join(', ')}.`,
         word('of_group', { group: group_name(group) }),
-        word(`truth_${distortion(stress, level.stress)}`), object && word('in_exhibit'));
+        word(`truth_${place_truth(stress, level.stress)}`), object && word('in_exhibit'));
   }
   function show_circle() {
     frame.circle.hidden = selected < 0;
@@ -183,10 +183,9 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
 
   function tell_about() {
     const { objects, region, stress, too_near, items: { length } } = level;
-    const how = stress_limits.filter((limit) => stress > limit).length;
     const texts = [region === objects ? word('region', { n: region })
       : word('region_part', { n: region, all: objects }),
-    ...(length < region ? [word('shown', { n: length })] : []), word(`stress_${how}`),
+    ...(length < region ? [word('shown', { n: length })] : []), word(`stress_${map_truth(stress)}`),
     ...(too_near ? [word('too_near', { n: too_near })] : [])];
     frame.about.replaceChildren(...texts.map((text) => {
       const line = document.createElement('p');
@@ -232,7 +231,7 @@ export function make_collection({ exhibit, lang, place, orders, outside = true }
     show_details(false);
     frame.title.textContent = level.title[lang] ?? level.title[lang.split('-')[0]]
       ?? Object.values(level.title)[0] ?? '';
-    groups.fill(level.clusters, lang);
+    groups.fill(level.clusters);
     list.clear();
     show_circle();
     show_trail();

@@ -3,12 +3,7 @@
 // it is told of, and the way to it if it stands in the exhibit.
 import { element } from '../element.js';
 import { color_of } from './plane.js';
-
-// Returns 0 to 3: how far an object's stress is from that of its map.
-export function distortion(stress, of_map) {
-  const share = stress / Math.max(of_map, 1e-9);
-  return share < 0.85 ? 0 : share < 1.15 ? 1 : share < 1.5 ? 2 : 3;
-}
+import { place_truth, untruth } from './truth.js';
 
 // orders: {there(object), close()}; word(name) -> text; outside: whether links may leave the page.
 export function make_details(word, orders, outside) {
@@ -37,9 +32,8 @@ export function make_details(word, orders, outside) {
     // group: {name, number}; of_map: the map's stress.
     show(item, group, of_map) {
       shown = item;
-      const how = distortion(item.stress, of_map);
       const meter = element('span.meter', { ariaHidden: 'true' }, element('i'));
-      meter.firstChild.style.width = `${Math.round(100 * Math.min(1, item.stress / of_map / 2))}%`;
+      meter.firstChild.style.width = `${Math.round(100 * untruth(item.stress, of_map))}%`;
       const dot = element('i', { ariaHidden: 'true' });
       dot.style.background = color_of(group.number);
       card.replaceChildren(
@@ -50,7 +44,7 @@ export function make_details(word, orders, outside) {
           element('p.by', { textContent: [item.maker, item.date].filter(Boolean).join(' · ') }),
           ...[colors_of(item)].filter(Boolean),
           element('p.group', {}, dot, group.name || word('mixed')),
-          element('p.truth', {}, meter, word(`truth_${how}`)),
+          element('p.truth', {}, meter, word(`truth_${place_truth(item.stress, of_map)}`)),
           ...(item.object ? [element('button.there', { type: 'button',
             textContent: word('there'), onclick: () => orders.there(item.object) })] : []),
           ...(item.link && outside ? [element('a', { href: item.link, target: '_blank',

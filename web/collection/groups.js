@@ -4,10 +4,10 @@
 import { element } from '../element.js';
 import { color_of } from './plane.js';
 
-// Says from when to when, as "1450–1612" or "1210".
-export function say_years({ from, to }, lang) {
+// Says from when to when, as "1450–1612", "1210" or "100 BC–1462".
+function say_years({ from, to }, word) {
   if (from === undefined) return '';
-  const year = (number) => new Intl.NumberFormat(lang, { useGrouping: false }).format(number);
+  const year = (number) => (number < 0 ? word('bc', { n: -number }) : String(number));
   return from === to ? year(from) : `${year(from)}–${year(to)}`;
 }
 export const name_of = (group) => group.terms.join(', ');
@@ -33,7 +33,7 @@ export function make_groups(word, orders) {
 
   return {
     element: element('div.groups', {}, list, alone),
-    fill(groups, lang) {
+    fill(groups) {
       pressed = new Set();
       list.ariaLabel = word('groups');
       buttons = groups.map((group, i) => {
@@ -41,7 +41,7 @@ export function make_groups(word, orders) {
         dot.style.background = color_of(i);
         const button = element('button', { type: 'button', onclick: () => toggle(i) }, dot,
             element('span', {}, element('b', { textContent: name_of(group) || word('mixed') }),
-                element('small', { textContent: [say_years(group, lang),
+                element('small', { textContent: [say_years(group, word),
                   word('objects_count', { n: group.count })].filter(Boolean).join(' · ') })));
         return button;
       });

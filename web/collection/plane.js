@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws a map of a collection: a dot for each object, in the colour of its group, with the object's
 // own colours where dots are large; pale where the map is not true; pictures where there is room.
+import { clearness } from './truth.js';
+
 export const group_colors = ['#d9b36a', '#8fb9c9', '#c98f7a', '#98bd8c', '#b59acb', '#d8cdb8'];
 export const color_of = (group) => group_colors[group % group_colors.length];
 
@@ -11,10 +13,6 @@ const usual_side = 54;                    // of a picture
 const narrow = 520;                       // of a window with smaller words
 const gold = '#ffd98a', ink = '#f3ecdf', ground = '#16130f';
 const serif = 'Georgia, "Palatino Linotype", "Times New Roman", serif';
-
-// Says how visible a dot is: an object's stress beside that of the map. True places are opaque.
-export const clearness = (stress, of_map) =>
-  1 - 0.62 * Math.min(1, Math.max(0, stress / Math.max(of_map, 1e-9) - 0.8) / 1.2);
 
 // Returns how large dots are on a map with so many, in a window of that size. unit: how many times
 // larger than usual words are.
@@ -115,7 +113,7 @@ function draw_grip(context, [x, y], radius, bent, unit) {
 
 // scene: {view, items: [{at, group, stress, colors, object, picture, seen: 0..1, title}], stress:
 // of the map, selected, hovered: indices or -1, circle: {at, radius, inside: Set, bent} or null,
-// lit: Set of groups that are not dimmed, or null, groups: [{at: or null, name}], image(item) or
+// lit: Set of groups that are not dimmed, or null, groups: [{at: or null, terms}], image(item) or
 // null, ratio: pixels of the canvas for one of the page, unit: as of dot_radius()}.
 export function draw_plane(context, scene) {
   const { view, items, circle, lit, selected, hovered, unit } = scene;
@@ -163,9 +161,10 @@ export function draw_plane(context, scene) {
     if (i >= 0 && seen[i]) write(items[i].title, places[i],
         { size: 15 * unit, color: ink, below: below + (has_room ? 16 : 4), most: 260 * unit });
   if (view.zoom() < 2.2)
-    scene.groups.forEach(({ at, name }, i) => {
+    scene.groups.forEach(({ at, terms }, i) => {
       if (!at || (lit && !lit.has(i))) return;
-      const size = (view.width() < narrow ? 14 : 17) * unit;
+      const is_narrow = view.width() < narrow, size = (is_narrow ? 14 : 17) * unit;
+      const name = terms.slice(0, is_narrow ? 1 : 2).join(', ');
       [0, 1.6, -1.6].some((lines) => write(name, view.to_screen(at), { size, below: lines * size,
         color: color_of(i), italic: true, most: 13 * size }));
     });

@@ -135,6 +135,27 @@ TEST(Level, HardCollectionsHaveMaps) {
   EXPECT_EQ(make_first_level(make_collection(std::move(bare))).shown.size(), 10u);
 }
 
+TEST(Level, AFewVeryOldObjectsDoNotPressTheOthersTogether) {
+  auto spread = [](double oldest) {
+    Records records;
+    records.terms = {{TermKind::material, "wood"}, {TermKind::material, "stone"}};
+    for (int i = 0; i < 200; i++) {
+      Record& record = records.all.emplace_back();
+      record.year = i < 2 ? oldest : 1500 + i;
+      record.terms = {uint32_t(i % 2)};
+    }
+    const MapLevel level = make_first_level(make_collection(std::move(records)));
+    double sum = 0, most = 0;
+    for (const dvec2& place : level.layout.places) {
+      sum += glm::length(place);
+      most = std::max(most, glm::length(place));
+    }
+    return sum / double(level.shown.size()) / most;
+  };
+  EXPECT_NEAR(spread(-40'000), spread(-4'000'000), 1e-9);
+  EXPECT_GT(spread(-40'000), 0.5 * spread(1500));
+}
+
 TEST(Level, TrailsAreRead) {
   const auto trail = read_trail("12@0.35;c0,2;7@1e-3");
   ASSERT_TRUE(trail);
