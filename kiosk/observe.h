@@ -40,7 +40,7 @@ struct PresenceState {
 };
 
 // Says what a frame shows of faces: `unsure` ones gather evidence, as it takes a moment to tell
-// whether they live (face/liveness.h), but nobody is there before one of them is a visitor's.
+// whether they live (kiosk/face/liveness.h), but nobody is there before one of them is a visitor's.
 enum class FacesSeen : uint8_t { none, unsure, visitor };
 
 // Takes one frame: `moving` as Motion says, `coming` if a body comes from afar, which is motion at
@@ -64,8 +64,8 @@ struct ObserverSettings {
   std::optional<RecognitionTree> station;   // objects that may be held; empty: none
   const GestureModels* gestures = nullptr;  // borrowed; null: hands are not followed
   bool bodies = false;                      // see bodies, also without a face, from afar
-  std::string
-      graphs;  // folder of networks of meshes, bodies and hands; empty: beside the face networks'
+  // Folder of the networks of meshes, bodies and hands; empty: beside that of the faces' networks.
+  std::string graphs;
 };
 
 class Observer {

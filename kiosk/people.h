@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows faces from frame to frame, under a number each. A followed face is sought in a small
 // window; the whole frame only now and then, for newcomers. A face that turns away is carried on
-// for a moment by its own texture. Pictures of faces are followed, too (face/liveness.h).
+// for a moment by its own texture. Pictures of faces are followed, too (kiosk/face/liveness.h).
 #pragma once
 #include <memory>
 #include <vector>

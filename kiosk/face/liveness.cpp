@@ -9,6 +9,8 @@
 #include <opencv2/video/tracking.hpp>
 #include <vector>
 
+#include "kiosk/network/face_marks.h"
+
 namespace wellspring::kiosk {
 
 // Picture of a face and what is around it, and where it was taken from.
@@ -140,14 +142,6 @@ std::optional<FaceFlow> measure(const FacePart& before, const cv::Mat& now, cons
 }
 
 }  // namespace
-
-std::optional<FaceFlow> measure_face_flow(const GrayView& before, const GrayView& now,
-                                          const Box& face) {
-  if (!is_face(face) || before.width != now.width || before.height != now.height) return {};
-  const cv::Rect area = area_around(face, now.width, now.height);
-  if (area.width < 16 || area.height < 16) return {};
-  return measure(cut_part(before, area), cut_part(now, area).pixels, face);
-}
 
 FaceMotion classify(const FaceFlow& flow) {
   // Shares of the face's width, set with prints that were moved by hand and people at webcams;

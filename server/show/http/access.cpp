@@ -5,17 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "show/exhibit/json_fields.h"
+#include "show/http/refusal.h"
 #include "wire/json.h"
 
 namespace wellspring::show {
 
 namespace {
 
-HttpReply refuse(const char* code, const std::string& message) {
-  HttpReply reply;
-  reply.status = 401;
-  reply.body = nlohmann::json{{"error", {{"code", code}, {"message", message}}}}.dump();
-  reply.headers["Cache-Control"] = "no-store";
+HttpReply refuse_token(const char* code, const std::string& message) {
+  HttpReply reply = refuse(401, code, message);
   reply.headers["WWW-Authenticate"] = "Bearer";
   return reply;
 }
@@ -32,11 +30,12 @@ Access access_of(const AccessRules& rules, const HttpQuestion& question) {
 
 HttpReply refuse_access(const Access& access) {
   if (!access.has_token)
-    return refuse("no_admin_token",
-                  "this is told on the server's own machine alone; elsewhere once the server is "
-                  "started with WELLSPRING_ADMIN_TOKEN or --admin-token-file, to who has that "
-                  "token");
-  return refuse("wrong_token", "the admin token is needed: Authorization: Bearer TOKEN");
+    return refuse_token(
+        "no_admin_token",
+        "this is told on the server's own machine alone; elsewhere once the server is "
+        "started with WELLSPRING_ADMIN_TOKEN or --admin-token-file, to who has that "
+        "token");
+  return refuse_token("wrong_token", "the admin token is needed: Authorization: Bearer TOKEN");
 }
 
 UpgradeAnswer admit(const AccessRules& rules, const HttpQuestion& question) {
@@ -44,7 +43,7 @@ UpgradeAnswer admit(const AccessRules& rules, const HttpQuestion& question) {
   const std::string_view shown = bearer_of(question.authorization);
   if (const Token* token = find_token(rules.kiosk_tokens, shown)) return {{}, token->name};
   if (question.local) return {};
-  return {refuse("not_trusted",
+  return {refuse_token("not_trusted",
                  "a kiosk's camera on another machine needs a kiosk token: Authorization: Bearer "
                  "TOKEN, one of the server's WELLSPRING_KIOSK_TOKEN or --kiosk-token-file")};
 }
@@ -59,10 +58,6 @@ HttpReply reply_of(int status, const json& body) {
   reply.body = body.dump(-1, ' ', false, json::error_handler_t::replace);
   reply.headers["Cache-Control"] = "no-store";
   return reply;
-}
-
-HttpReply refuse(int status, const char* code, const std::string& message) {
-  return reply_of(status, {{"error", {{"code", code}, {"message", message}}}});
 }
 
 Announcement read_announcement(const json& body, std::vector<Problem>& problems) {

@@ -10,6 +10,7 @@
 
 #include "show/http/pages.h"
 #include "show/http/picture_desk.h"
+#include "show/http/refusal.h"
 
 namespace wellspring::show {
 
@@ -20,14 +21,6 @@ namespace {
 constexpr size_t most_waiting_maps = 32, most_kept_maps = 12;
 constexpr int fewest_shown = 2;
 constexpr size_t most_told_colors = 6;
-
-HttpReply refuse(int status, const char* code, const std::string& message) {
-  HttpReply reply;
-  reply.status = status;
-  reply.body = json({{"error", {{"code", code}, {"message", message}}}}).dump();
-  reply.headers["Cache-Control"] = "no-store";
-  return reply;
-}
 
 std::string name_of(const MapQuestion& question, size_t steps) {
   std::string name = std::to_string(question.shown);

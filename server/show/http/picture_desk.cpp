@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "show/exhibit/exhibit_collection.h"
 #include "show/exhibit/exhibit_files.h"
+#include "show/http/refusal.h"
 #include "store/remote/http_get.h"
 
 namespace wellspring::show {
@@ -19,15 +20,6 @@ constexpr size_t most_waiting_pictures = 256, most_picture_bytes = size_t(4) << 
                  most_kept_bytes = size_t(48) << 20;
 constexpr size_t most_at_once = 4;  // pictures that are on their way
 constexpr size_t longest_head = 64;
-
-HttpReply refuse_picture(int status, const char* code, const std::string& message) {
-  HttpReply reply;
-  reply.status = status;
-  reply.body = nlohmann::json{{"error", {{"code", code}, {"message", message}}}}.dump(
-      -1, ' ', false, nlohmann::json::error_handler_t::replace);
-  reply.headers["Cache-Control"] = "no-store";
-  return reply;
-}
 
 HttpReply picture_reply(const std::string& type, const std::string& bytes) {
   HttpReply reply;
@@ -68,7 +60,7 @@ PictureDesk::~PictureDesk() {
   changed_.notify_all();
   for (std::thread& one : threads_) one.join();
   for (const Ticket& ticket : waiting_)
-    ticket.asker->answer(refuse_picture(503, "stopping", "the server stops"));
+    ticket.asker->answer(refuse(503, "stopping", "the server stops"));
 }
 
 void PictureDesk::ask(const std::string& address, const std::vector<std::string>& hosts,
@@ -85,7 +77,7 @@ void PictureDesk::ask(const std::string& address, const std::vector<std::string>
     }
   }
   if (!reply) {
-    reply = refuse_picture(503, "busy", "many ask for pictures; please come back in a moment");
+    reply = refuse(503, "busy", "many ask for pictures; please come back in a moment");
     reply->headers["Retry-After"] = "2";
   }
   asker->answer(std::move(*reply));
@@ -123,13 +115,13 @@ void PictureDesk::live() {
                                                           .accept = "image/jpeg, image/png"});
       if (bytes) made.bytes.assign(bytes->begin(), bytes->end());
       made.type = media_type(Medium::image, std::string_view(made.bytes).substr(0, longest_head));
-      if (!bytes) reply = refuse_picture(404, "no_picture", "its museum has no such picture");
+      if (!bytes) reply = refuse(404, "no_picture", "its museum has no such picture");
       else if (made.type.empty())
-        reply = refuse_picture(502, "no_picture", "its museum sends neither JPEG nor PNG");
+        reply = refuse(502, "no_picture", "its museum sends neither JPEG nor PNG");
       else reply = picture_reply(made.type, made.bytes);
     } catch (const LoadError& problem) {
       log::warn("{}", problem.what());
-      reply = refuse_picture(502, "no_picture", "its museum does not give the picture");
+      reply = refuse(502, "no_picture", "its museum does not give the picture");
     }
     ticket.asker->answer(std::move(*reply));
     lock.lock();

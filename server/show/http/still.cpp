@@ -29,7 +29,7 @@
 
 namespace wellspring::show {
 namespace {
-constexpr size_t most_kept_bytes = size_t(16) << 20;
+constexpr size_t most_stills_bytes = size_t(16) << 20;
 constexpr int still_jpeg_quality = 90;
 constexpr NetSize still_net = NetSize::base;
 constexpr int laid_places = 16;  // places in a pixel at which what is laid over is seen
@@ -327,7 +327,7 @@ StillPicture StillRoom::make(const StillJob& order, const std::function<bool()>&
   kept_.push_front({order, std::move(picture)});
   size_t kept_bytes = 0;
   for (const Kept& kept : kept_) kept_bytes += kept.picture.jpeg.size();
-  for (; kept_.size() > 1 && kept_bytes > most_kept_bytes; kept_.pop_back())
+  for (; kept_.size() > 1 && kept_bytes > most_stills_bytes; kept_.pop_back())
     kept_bytes -= kept_.back().picture.jpeg.size();
   return kept_.front().picture;
 }

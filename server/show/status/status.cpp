@@ -7,19 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "json/fields.h"
+#include "show/http/refusal.h"
 
 namespace wellspring::show {
 
 namespace {
-
-HttpReply refuse(int status, const char* code, const std::string& message) {
-  HttpReply reply;
-  reply.status = status;
-  reply.body = nlohmann::json{{"error", {{"code", code}, {"message", message}}}}.dump(
-      -1, ' ', false, nlohmann::json::error_handler_t::replace);
-  reply.headers["Cache-Control"] = "no-store";
-  return reply;
-}
 
 // The day that the question names, or `otherwise` where it names none.
 std::optional<int64_t> day_of(const HttpQuestion& question, const char* name, int64_t otherwise) {
