@@ -23,6 +23,7 @@ constexpr float walking = 0.3f;        // metres a second from which somebody co
 constexpr float reach = 1.5f;          // metres within which a body could use the kiosk
 constexpr double stays_after = 1;      // seconds for which somebody must have stayed there
 constexpr double arms_last = 0.25;     // seconds for which forearms are told
+constexpr float walked_share = 0.45f;  // a body may walk so much of its size between two looks
 constexpr float seated_step = 0.5f;    // evidence of one look
 constexpr float body_reach = 3;        // face sides to either side that its body may take
 constexpr float stirred_share = 0.1f;  // share of a body's box that a moving zone must cover
@@ -163,13 +164,22 @@ std::optional<BodyLook> BodyTracks::plan(double time, int width, int height,
   return look({vec2(float(width), float(height)) / 2.f, side, side, 0}, 4);
 }
 
-BodyTracks::Track* BodyTracks::find(const BodyMarks& marks) {
+// Returns the nearest track whose body is about as large and not too far to have walked here, but
+// none of those that were found already in this look.
+BodyTracks::Track* BodyTracks::find(const BodyMarks& marks, std::span<const uint32_t> taken) {
   const Box box = box_of(marks);
+  const float size = std::max(box.width, box.height);
   Track* best = nullptr;
-  float most = 0.25f;
-  for (Track& track : tracks_)
-    if (const float common = overlap(box, box_of(track.marks)); common > most)
-      most = common, best = &track;
+  float least = walked_share * size;
+  for (Track& track : tracks_) {
+    const Box other = box_of(track.marks);
+    const float ratio = size / std::max(1.f, std::max(other.width, other.height));
+    const float far =
+        std::hypot(box.center_x() - other.center_x(), box.center_y() - other.center_y());
+    if (ratio < 0.5f || ratio > 2 || far > least) continue;
+    if (std::ranges::find(taken, track.body.id) != taken.end()) continue;
+    least = far, best = &track;
+  }
   return best;
 }
 
@@ -218,9 +228,10 @@ void BodyTracks::judge_course(Track& track, double time) {
 
 void BodyTracks::take(double time, std::span<const BodyMarks> found,
                       std::span<const FaceInView> faces) {
+  std::vector<uint32_t> taken;
   for (const BodyMarks& marks : found) {
     if (!is_finite_body(marks)) continue;
-    Track* track = find(marks);
+    Track* track = find(marks, taken);
     const Score score = score_of(marks);
     if (!score.passes(wide_ ? least_wide : least_score, least_points)) {
       if (wide_ && !track && score.passes(worth_score, worth_points) &&
@@ -245,6 +256,7 @@ void BodyTracks::take(double time, std::span<const BodyMarks> found,
       track->body.id = next_id_++;
       track->first = track->course_since = time;
     }
+    taken.push_back(track->body.id);
     track->face = face_id;
     const Box box = box_of(marks);
     track->stirred |= face_id || std::ranges::any_of(zones_, [&](const Box& zone) {

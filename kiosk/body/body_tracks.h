@@ -78,7 +78,7 @@ class BodyTracks {
   };
 
   bool counts(const Track& track) const;
-  Track* find(const BodyMarks& marks);
+  Track* find(const BodyMarks& marks, std::span<const uint32_t> taken);
   void see(Track& track, double time, const BodyMarks& marks, const BodyMeasure& measure);
   void judge_course(Track& track, double time);
 

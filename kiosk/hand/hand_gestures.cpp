@@ -33,12 +33,11 @@ std::string HandGestures::step(double time, const HandShape& shape, vec3 palm, f
   }
   moments_.push_back({time, palm, shape.pose, shape.upright ? shape.fingers : -1, clockwise});
   while (time - moments_.front().time > kept) moments_.pop_front();
-  if (time - told_at_ >= recovery)
-    for (std::string found : {swipe(), turn()})
-      if (!found.empty()) {
-        told_at_ = time;
-        return found;
-      }
+  for (std::string found : {swipe(), turn()})
+    if (!found.empty()) {
+      told_at_ = time;
+      return found;
+    }
   return held_sign(time);
 }
 
@@ -46,22 +45,16 @@ std::string HandGestures::step(double time, const HandShape& shape, vec3 palm, f
 std::string HandGestures::held_sign(double time) {
   const int fingers = moments_.back().fingers;
   size_t like = 0, all = 0;
-  float fastest = 0;
+  float way = 0;
   double shown = 0;
   for (size_t i = moments_.size(); i-- > 0;) {
     const Moment& one = moments_[i];
     if (time - one.time > held) break;
     shown = time - one.time;
     all++, like += one.fingers == fingers;
-    if (i + 1 < moments_.size()) {
-      const Moment& next = moments_[i + 1];
-      fastest = std::max(fastest, glm::length(next.palm - one.palm) / float(next.time - one.time));
-    }
+    if (i + 1 < moments_.size()) way += glm::length(vec2(moments_[i + 1].palm) - vec2(one.palm));
   }
-  // Landmarks tremble, so the whole way counts besides the fastest step.
-  const Moment& first = moments_[moments_.size() - all];
-  const float way = glm::length(moments_.back().palm - first.palm);
-  const bool rests = way < still * float(std::max(shown, 0.1)) || fastest < still;
+  const bool rests = way < still * float(std::max(shown, 0.1));
   const bool same = float(like) >= same_sign * float(all);
   if (fingers < 1 || !same) {
     told_ = false;
@@ -77,7 +70,7 @@ std::string HandGestures::swipe() const {
   const Moment& now = moments_.back();
   for (size_t i = moments_.size(); i-- > 0;) {
     const Moment& one = moments_[i];
-    if (now.time - one.time > swipe_time) break;
+    if (now.time - one.time > swipe_time || one.time < told_at_ + recovery) break;
     if (one.pose == HandPose::fist) break;
     const vec3 way = now.palm - one.palm;
     if (std::abs(way.x) >= swiped && std::abs(way.x) > 2 * std::abs(way.y))
@@ -91,7 +84,7 @@ std::string HandGestures::turn() const {
   if (now.pose != HandPose::fist && now.pose != HandPose::pinch) return {};
   for (size_t i = moments_.size(); i-- > 0;) {
     const Moment& one = moments_[i];
-    if (now.time - one.time > turn_time) break;
+    if (now.time - one.time > turn_time || one.time < told_at_ + recovery) break;
     if (one.pose != now.pose && one.pose != HandPose::other) break;
     const float angle = turn_between(one.roll, now.roll);
     if (std::abs(angle) >= turned && one.pose == now.pose)

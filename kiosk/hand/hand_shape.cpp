@@ -15,7 +15,7 @@ constexpr float thumb_aside = 0.62f;    // tip to the index's root, over the pal
 constexpr float pinched = 0.33f;        // tips of thumb and index apart, over the palm's length
 constexpr float palm_metres = 0.095f;   // an adult's, from the wrist to the middle finger's root
 constexpr float least_upright = 0.7f;   // cosine to the picture's upward axis
-constexpr float farthest = 6;           // metres
+constexpr float nearest = 0.05f, farthest = 6;  // metres
 
 float cosine(vec3 a, vec3 b) {
   const float lengths = glm::length(a) * glm::length(b);
@@ -56,27 +56,32 @@ HandShape shape_of(const HandMarks& marks) {
   return out;
 }
 
+// Each landmark says u (Z + z) = f (X + x), and likewise v: two equations that are linear in the
+// hand's place (X, Y, Z), of which the least squares' Z is a quotient of covariances.
 std::optional<HandInSpace> place_hand(const HandMarks& marks, float focal, int width, int height) {
-  // Both sides of the palm, so that one that is seen at a slant does not decide alone.
-  constexpr size_t sides[][2] = {{wrist_point, index_root_point},
-                                 {wrist_point, little_root_point},
-                                 {index_root_point, little_root_point}};
-  float pixels = 0, metres = 0;
-  for (const auto& [a, b] : sides) {
-    // The slant is in the metres, too: only what lies in the picture's plane is compared.
-    pixels += glm::length(vec2(marks.points[a]) - vec2(marks.points[b]));
-    metres += glm::length(vec2(marks.metres[a]) - vec2(marks.metres[b]));
-  }
   const float palm = glm::length(marks.metres[middle_root_point] - marks.metres[wrist_point]);
-  if (!(pixels > 2) || !(palm > 0.01f) || !std::isfinite(pixels + metres + palm)) return {};
+  if (!(palm > 0.01f)) return {};
   // The network's metres are of a hand of its own; all hands are taken for an adult's.
   const float scale = palm_metres / palm;
-  const float depth = focal * metres * scale / pixels;
-  if (!(depth > 0.05f && depth < farthest)) return {};
+  const vec2 middle = vec2(float(width), float(height)) / 2.f;
+  std::array<vec2, hand_points> tangents, rest;
+  vec2 mean_tangent{0}, mean_rest{0};
+  for (size_t k = 0; k < hand_points; k++) {
+    const vec3 off = marks.metres[k] * scale;
+    tangents[k] = (vec2(marks.points[k]) - middle) / focal;
+    rest[k] = tangents[k] * off.z - vec2(off);
+    mean_tangent += tangents[k] / float(hand_points);
+    mean_rest += rest[k] / float(hand_points);
+  }
+  float shared = 0, spread = 0;
+  for (size_t k = 0; k < hand_points; k++) {
+    const vec2 tangent = tangents[k] - mean_tangent;
+    shared += glm::dot(tangent, rest[k] - mean_rest), spread += glm::dot(tangent, tangent);
+  }
+  const float depth = -shared / spread;
+  if (!(depth > nearest && depth < farthest)) return {};
   auto place = [&](size_t point) {
-    const vec2 pixel{marks.points[point]};
-    const float z = depth + marks.metres[point].z * scale;
-    return vec3((pixel.x - float(width) / 2) / focal, (pixel.y - float(height) / 2) / focal, 1) * z;
+    return vec3(tangents[point], 1) * (depth + marks.metres[point].z * scale);
   };
   HandInSpace out;
   out.palm = (place(wrist_point) + place(index_root_point) + place(little_root_point)) / 3.f;

@@ -9,7 +9,7 @@ namespace wellspring::kiosk {
 namespace {
 
 constexpr float least_presence = 0.5f;  // a hand that is followed needs it
-constexpr float found_presence = 0.7f;  // a new one needs more
+constexpr float found_presence = 0.6f;  // a new one needs more
 constexpr double lost_after = 0.2;      // seconds without a read that succeeds
 constexpr double retry_after = 0.4;     // seconds before a place without a hand is read again
 constexpr int agree = 2;                // reads that must agree on a pose
@@ -60,8 +60,8 @@ bool HandTracks::update(Track& track, const HandLook& look, HandMarks marks) {
   }
   track.hand.points_at.reset();
   if (track.hand.pose == HandPose::point) {
-    // The line from the eye over the fingertip is what people aim along, and it needs less of the
-    // landmarks than the finger's own direction (docs/benchmarks/kiosk.hands.md).
+    // The line from the head over the hand is what people aim along (Nickel, Stiefelhagen 2007),
+    // and it needs less of the landmarks than the finger's own direction.
     const vec3 tip = camera_to_screen(mount_, place->index_tip);
     if (const auto target = point_on_screen(look.eye, tip)) {
       const vec3 calm = step_one_euro(track.target, target_filter, look.time, vec3(*target, 0));

@@ -70,15 +70,20 @@ GraphAttribute read_attribute(const JsonValue& value) {
 }
 
 struct NamedNodes {
+  static constexpr size_t none = SIZE_MAX;
   std::vector<GraphNode> nodes;                 // in the order of the file
   std::vector<std::vector<std::string>> reads;  // names of each node's inputs
   std::map<std::string, size_t> by_name;
 
-  // Returns the node whose first output `input` names.
-  size_t find(std::string input, const std::string& file, const std::string& where) const {
+  // Returns the node whose first output `input` names, or none.
+  size_t find(std::string input) const {
     if (input.ends_with(":0")) input.resize(input.size() - 2);
     const auto found = by_name.find(input);
-    if (found != by_name.end()) return found->second;
+    return found == by_name.end() ? none : found->second;
+  }
+  // Throws LoadError instead of returning none.
+  size_t find(const std::string& input, const std::string& file, const std::string& where) const {
+    if (const size_t found = find(input); found != none) return found;
     throw LoadError(file, where, "there is no node called '" + input.substr(0, 80) + "'");
   }
 };
@@ -130,6 +135,9 @@ std::vector<size_t> sort_nodes(const NamedNodes& all,
     while (!open.empty()) {
       const size_t node = open.back().node, next = open.back().next++;
       if (next < inputs[node].size()) {
+        // Only a node that is needed has to read what there is.
+        if (inputs[node][next] == NamedNodes::none)
+          all.find(all.reads[node][next], file, all.nodes[node].where);
         enter(inputs[node][next]);
         continue;
       }
@@ -171,8 +179,8 @@ Graph load_graph(const std::string& file, const std::vector<std::string>& cut) {
   std::vector<bool> is_read(all.nodes.size());
   for (size_t i = 0; i < all.nodes.size(); i++)
     for (const std::string& name : all.reads[i]) {
-      inputs[i].push_back(all.find(name, file, all.nodes[i].where));
-      is_read[inputs[i].back()] = true;
+      inputs[i].push_back(all.find(name));
+      if (inputs[i].back() != NamedNodes::none) is_read[inputs[i].back()] = true;
     }
   read_signature(root, all, graph);
   if (!cut.empty()) graph.outputs.clear();

@@ -53,8 +53,6 @@ TEST_F(GuestGestures, ADigitChoosesAStory) {
 TEST_F(GuestGestures, AnOpenPalmStopsTheStory) {
   join(32, 32, "en", "kiosk");
   steps(3);
-  make("stop");
-  EXPECT_EQ(show->totals.gestures, 0u) << "there is nothing to stop";
   make("1");
   EXPECT_EQ(told(), "tale");
   make("stop");

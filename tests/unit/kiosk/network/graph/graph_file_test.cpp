@@ -53,7 +53,7 @@ TEST_F(GraphFile, NodesConstantsAndOutputsAreRead) {
 TEST_F(GraphFile, NodesAreSortedAndUnusedOnesLeftOut) {
   MadeGraph graph = small_graph();
   std::reverse(graph.nodes.begin(), graph.nodes.end());
-  graph.node("idle", "NobodyKnows", {"conv"});
+  graph.node("idle", "NobodyKnows", {"conv", "conv:1"});
   const Graph sorted = load_graph(graph.write(folder));
   ASSERT_EQ(sorted.nodes.size(), 9u);
   for (size_t i = 0; i < sorted.nodes.size(); i++)
