@@ -3,6 +3,7 @@
 #pragma once
 #include <string>
 
+#include "base/layers.h"
 #include "wire/http.h"
 
 namespace wellspring::show {
