@@ -82,6 +82,12 @@ struct Actor {
     gaze = vec3(glm::clamp(vec2(gaze) / std::max(gaze.z, 0.1f), -most, most), 1);
     for (int eye : rig.eye)
       pose.rotations[size_t(eye)] = glm::rotation(vec3(0, 0, 1), normalize(gaze));
+    if (visitor.size != 1) {  // irises are as wide in children as in adults
+      const float wider = 1 / visitor.size;
+      pose.stretches.resize(pose.rotations.size(), mat3(1));
+      for (int eye : rig.eye)
+        pose.stretches[size_t(eye)] = mat3(wider, 0, 0, 0, wider, 0, 0, 0, 1);
+    }
     follow_constraints(character, pose);
 
     std::vector<mat4> joints;
