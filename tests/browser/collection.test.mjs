@@ -3,6 +3,7 @@
 // screen, as a page of its own and at a kiosk.
 import assert from 'node:assert/strict';
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -22,9 +23,21 @@ const records = departments.flatMap(([material, subject, color, year], k) =>
     subjects: [subject, `theme ${(i + k) % 6}`], colors: [color],
     link: `https://example.org/${material}/${i}` })));
 
+// The server of another museum, which has a picture of each thing of glass.
+const asked_for = [];
+const museum = createServer((question, reply) => {
+  asked_for.push(question.url);
+  reply.setHeader('content-type', 'image/jpeg');
+  reply.end(readFileSync(join(source, 'content', 'first-room', 'poster.jpg')));
+});
+
 let server, browser;
 before(async () => {
   if (skip) return;
+  await new Promise((resolve) => museum.listen(0, '127.0.0.1', () => resolve(null)));
+  const { port } = /** @type {any} */ (museum.address());
+  for (const record of records.filter(({ id }) => id.startsWith('glass')))
+    record.picture = `http://127.0.0.1:${port}/${record.id.slice(6)}.jpg`;
   for (const place of [room, second])
     cpSync(join(source, 'content', 'first-room'), place, { recursive: true });
   const exhibit = JSON.parse(readFileSync(join(room, 'exhibit.json'), 'utf8'));
@@ -33,13 +46,15 @@ before(async () => {
   const [object] = Object.keys(exhibit.objects);
   const collection = { source: 'records.json', title: { en: 'All our things' },
     objects: { 'glass 7': object } };
-  writeFileSync(join(room, 'exhibit.json'), JSON.stringify({ ...exhibit, id: 'room', collection }));
+  writeFileSync(join(room, 'exhibit.json'), JSON.stringify({ ...exhibit, id: 'room', collection,
+    allowed_hosts: [`127.0.0.1:${port}`] }));
   server = await start_server([...little_light], { content: join(folder, 'content') });
   browser = await launch();
 });
 after(async () => {
   await browser?.close();
   if (server) assert.equal(await server.stop(), 0);
+  museum.close();
   rmSync(folder, { recursive: true, force: true });
 });
 
@@ -177,6 +192,17 @@ test('the list tells the objects in view and leads to one of the exhibit', { ski
   assert.equal(await card.locator('.by').textContent(), 'Maker 2 · 1907');
   assert.equal(await card.locator('a').getAttribute('href'), 'https://example.org/glass/7');
   assert.match(await card.locator('.truth').textContent(), /place|belongs/);
+  // The picture comes by way of this server, which keeps it.
+  const picture = card.locator('img');
+  await until(() => picture.evaluate((one) => one.naturalWidth > 100), 'a picture');
+  const address = await picture.evaluate((one) => one.src);
+  assert(address.startsWith(`${server.url}/api/v1/exhibits/room/collection/pictures/`), address);
+  const before = asked_for.filter((one) => one === '/7.jpg').length;
+  const again = await fetch(address);
+  assert.equal(again.headers.get('content-type'), 'image/jpeg');
+  assert.equal(asked_for.filter((one) => one === '/7.jpg').length, before);
+  const of_iron = await fetch(address.replace(/\d+$/, '3'));
+  assert.equal((await of_iron.json()).error.code, 'no_picture');
   await card.locator('.there').click();
   await page.waitForSelector('#card:not([hidden])');
   assert.equal(await page.locator('.collection').count(), 0);

@@ -4,8 +4,6 @@
 import { element } from '../element.js';
 import { color_of } from './plane.js';
 
-const most_rows = 300;
-
 // orders: {choose(index), open(index)}. lang: by which titles are sorted.
 export function make_list(lang, orders) {
   const box = element('div.rows', { role: 'listbox', tabIndex: 0, id: 'collection-list' });
@@ -42,7 +40,7 @@ export function make_list(lang, orders) {
     fill(items, label) {
       box.ariaLabel = label;
       const { compare } = new Intl.Collator(lang, { numeric: true });
-      const sorted = items.slice().sort((a, b) => compare(a.title, b.title)).slice(0, most_rows);
+      const sorted = items.slice().sort((a, b) => compare(a.title, b.title));
       const now = sorted.map(({ index }) => index).join();
       if (now !== told) {
         told = now;
