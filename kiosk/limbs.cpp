@@ -17,7 +17,7 @@ namespace wellspring::kiosk {
 namespace {
 
 constexpr double told_for = 0.5;  // seconds a gesture is reported: observations may be thinned out
-constexpr size_t most_reads = 2;  // hands that are read in a frame
+constexpr size_t most_reads = 1;  // hands that are read in a frame: two take turns
 constexpr float far_hands = 3;    // metres; hands of who is farther are not looked for
 
 struct BothArms {

@@ -36,7 +36,7 @@ class Limbs {
   explicit Limbs(const LimbSettings& settings);
   ~Limbs();
   // Takes every frame with what moves in it, largest first, and people, nearest first. Without
-  // `hands` none are looked for. Networks run at most three times a frame, about 10 ms each.
+  // `hands` none are looked for. Networks run at most twice a frame, about 15 ms each.
   void step(const GrayFrame& frame, std::span<const Box> zones,
             std::span<const PersonInView> people, bool hands);
 

@@ -79,7 +79,10 @@ std::vector<Hand> HandTracks::step(const HandLook& look, const Read& read) {
   std::erase_if(failures_, [&](const Failure& f) { return look.time - f.time > retry_after; });
 
   size_t reads = 0;
-  for (size_t i = 0; i < tracks_.size() && reads < look.most_reads; i++, reads++) {
+  // With one read a frame, every fourth looks for the other hand.
+  const bool seeks =
+      look.most_reads == 1 && tracks_.size() == 1 && !look.places.empty() && turn_ % 4 == 3;
+  for (size_t i = 0; !seeks && i < tracks_.size() && reads < look.most_reads; i++, reads++) {
     Track& track = tracks_[(turn_ + i) % tracks_.size()];
     HandMarks marks = read(hand_cut_of_marks(track.marks));
     if (marks.presence >= least_presence && !followed_at(middle_of(marks), &track))

@@ -82,8 +82,9 @@ struct NamedNodes {
     return found == by_name.end() ? none : found->second;
   }
   // Throws LoadError instead of returning none.
-  size_t find(const std::string& input, const std::string& file, const std::string& where) const {
+  size_t find(std::string input, const std::string& file, const std::string& where) const {
     if (const size_t found = find(input); found != none) return found;
+    if (input.ends_with(":0")) input.resize(input.size() - 2);
     throw LoadError(file, where, "there is no node called '" + input.substr(0, 80) + "'");
   }
 };

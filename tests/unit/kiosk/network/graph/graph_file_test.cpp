@@ -53,7 +53,7 @@ TEST_F(GraphFile, NodesConstantsAndOutputsAreRead) {
 TEST_F(GraphFile, NodesAreSortedAndUnusedOnesLeftOut) {
   MadeGraph graph = small_graph();
   std::reverse(graph.nodes.begin(), graph.nodes.end());
-  graph.node("idle", "NobodyKnows", {"conv", "conv:1"});
+  graph.node("idle", "NobodyKnows", {"conv"});
   const Graph sorted = load_graph(graph.write(folder));
   ASSERT_EQ(sorted.nodes.size(), 9u);
   for (size_t i = 0; i < sorted.nodes.size(); i++)
@@ -63,6 +63,13 @@ TEST_F(GraphFile, NodesAreSortedAndUnusedOnesLeftOut) {
   const Graph all = load_graph(graph.write(folder));
   EXPECT_TRUE(all.outputs.contains("idle") && all.outputs.contains("out"));
   EXPECT_EQ(all.outputs.size(), 2u);
+}
+
+TEST_F(GraphFile, NodesThatNobodyNeedsMayReadWhatIsNotKnown) {
+  MadeGraph graph = small_graph();
+  graph.node("after", "Unpack", {"conv:1"});
+  EXPECT_EQ(load_graph(graph.write(folder)).nodes.size(), 9u);
+  EXPECT_THROW(load_graph(graph.write(folder), {"after"}), LoadError);
 }
 
 TEST_F(GraphFile, QuantisedWeightsAreRead) {
