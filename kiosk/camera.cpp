@@ -77,6 +77,9 @@ bool to_gray(const cv::Mat& taken, const CameraSettings& settings, GrayFrame& fr
   return true;
 }
 
+// OpenCV 4.6 turns films the other way than their header says (its issue 22088; mended in 4.7).
+constexpr bool turns_films_wrongly = CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR == 6;
+
 class FileCamera : public Camera {
  public:
   explicit FileCamera(const CameraSettings& settings) : settings_(settings) {
@@ -112,6 +115,9 @@ class FileCamera : public Camera {
         if (capture_.open(settings_.source, reader)) break;
       } catch (const cv::Exception&) {}
     }
+    turn_ = 0;
+    if (turns_films_wrongly && capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0))
+      turn_ = 360 - int(capture_.get(cv::CAP_PROP_ORIENTATION_META));
     double fps = capture_.isOpened() ? capture_.get(cv::CAP_PROP_FPS) : 0;
     fps_ = std::isfinite(fps) && fps >= 1 && fps <= 1000 ? fps : 25;
   }
@@ -127,6 +133,9 @@ class FileCamera : public Camera {
         if (index_ > 0 && std::isfinite(own) && begin_ + own > last_ + 1e-4 &&
             begin_ + own < last_ + 10)
           time = begin_ + own;
+        if (turn_ % 360 == 90) cv::rotate(picture_, picture_, cv::ROTATE_90_CLOCKWISE);
+        else if (turn_ % 360 == 180) cv::rotate(picture_, picture_, cv::ROTATE_180);
+        else if (turn_ % 360 == 270) cv::rotate(picture_, picture_, cv::ROTATE_90_COUNTERCLOCKWISE);
         if (!to_gray(picture_, settings_, frame)) continue;
         index_++;
         frame.time = last_ = time;
@@ -143,6 +152,7 @@ class FileCamera : public Camera {
   GrayFrame first_;
   bool has_first_ = false;
   long index_ = 0;
+  int turn_ = 0;  // degrees, clockwise, that are left to be done by us
   double begin_ = 0, last_ = 0, fps_ = 25;
 };
 

@@ -96,6 +96,7 @@ struct Limbs::Impl {
 Limbs::Limbs(const LimbSettings& settings) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   m.settings = settings;
+  if (settings.weights.empty()) return;  // the finder of faces has said so
   try {
     if (settings.bodies) m.bodies.emplace(settings.weights, settings.mount);
   } catch (const LoadError& error) {

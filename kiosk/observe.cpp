@@ -92,7 +92,7 @@ constexpr float is_a_face = 0.5f;     // confidence of a mesh
 std::string folder_of_graphs(const ObserverSettings& settings) {
   if (!settings.graphs.empty()) return settings.graphs;
   const std::filesystem::path weights = weights_folder(settings.face);
-  return (weights.parent_path() / "human").string();
+  return weights.empty() ? "" : (weights.parent_path() / "human").string();
 }
 
 }  // namespace
@@ -163,7 +163,7 @@ struct Observer::Impl {
     if (!mesh.irises) return;
     person.mouth = open_mouth(mesh);
     const float focal = focal_length(settings.mount, frame.width, frame.height);
-    add_look(head.size, *iris_width(mesh), focal, pose.position.z);
+    add_look(head.size, *iris_width(mesh), focal, pose);
     if (const auto look = look_direction(mesh, pose, focal, frame.width, frame.height))
       person.gaze = seen_place(person.position, *look);
   }

@@ -23,7 +23,7 @@ namespace wellspring::kiosk {
 
 struct PresenceSettings {
   double wake_after = 0.4;     // seconds of movement before absent becomes motion
-  double confirm_after = 0.7;  // seconds of a face before anything becomes person
+  double confirm_after = 0.5;  // seconds of a face before anything becomes person
   double hold_person = 2.0;    // seconds without a face before person is given up
   double hold_motion = 3.0;    // seconds without movement or face before motion becomes absent
   double longest_step = 0.25;  // seconds of evidence in one frame at most, however late it comes

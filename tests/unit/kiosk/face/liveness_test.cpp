@@ -124,13 +124,16 @@ TEST(LivenessState, OneLookThatIsSolidIsEnoughAndOneThatIsPlaneIsNot) {
   EXPECT_TRUE(counts_as_visitor(after({solid}), {}));
   EXPECT_FALSE(counts_as_visitor(after({plane}), {}));
   EXPECT_TRUE(counts_as_visitor(after({plane, solid, solid}), {}));
-  EXPECT_FALSE(counts_as_visitor(after({solid, plane, plane, plane}), {}));
+  EXPECT_FALSE(counts_as_visitor(after({plane, plane}), {}));
+  EXPECT_FALSE(counts_as_visitor(after({solid, plane, plane, plane, plane}), {}));
 }
 
 TEST(LivenessState, WhoStirsUnclearlyOrCannotBeComparedCountsAfterAWait) {
   using enum FaceMotion;
   EXPECT_FALSE(counts_as_visitor(after({unclear}), {}));
   EXPECT_TRUE(counts_as_visitor(after({unclear, unclear, none, unclear}), {}));
+  EXPECT_FALSE(counts_as_visitor(after({unclear, plane, none, none}), {}));
+  EXPECT_TRUE(counts_as_visitor(after({unclear, plane, none, none, none, none}), {}));
   EXPECT_FALSE(counts_as_visitor(after({none, none, none, none, none}), {}));
   const std::vector<std::optional<FaceMotion>> dark(5, std::nullopt);
   EXPECT_TRUE(counts_as_visitor(after(dark), {}));
