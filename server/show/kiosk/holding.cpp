@@ -12,8 +12,9 @@ namespace {
 // Says what is asked for or named, as one word that can be compared.
 std::string key_of(const Holding& holding) {
   if (!holding.id.empty()) return "object " + holding.id;
-  if (holding.hint.empty()) return "";
-  return "hint " + holding.hint.begin()->second;
+  std::string key;
+  for (const auto& [language, words] : holding.hint) key += "hint " + words;
+  return key;
 }
 
 // The story about an object: the one that the exhibit gives it, or the one of its name.
@@ -90,7 +91,8 @@ quat mirror_turn(vec3 angles) {
 }  // namespace
 
 void follow_held(HeldObject& held, int model, const std::optional<Holding>& holding, double now) {
-  const float dt = float(std::clamp(now - held.time, 0.0, 1.0));
+  constexpr double longest_step = 0.25;  // seconds; the first step takes none
+  const float dt = held.time < 0 ? 0 : float(std::clamp(now - held.time, 0.0, longest_step));
   held.time = now;
   const bool seen = model >= 0 && holding && holding->position && holding->rotation;
   const bool other = seen && held.size > 0 && held.model != model;  // the other goes first

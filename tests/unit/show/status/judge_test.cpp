@@ -347,8 +347,11 @@ TEST(Status, TellsFindingsAndTablesAsJson) {
                                                  {"storyteller", true},
                                                  {"screens", 1},
                                                  {"cameras", 1}}));
-  EXPECT_EQ(status["cameras"][0],
-            (nlohmann::json{{"kiosk", "hall"}, {"name", "4"}, {"state", "good"}, {"seconds", 12}}));
+  EXPECT_EQ(status["cameras"][0], (nlohmann::json{{"kiosk", "hall"},
+                                                  {"name", "4"},
+                                                  {"state", "good"},
+                                                  {"eyes", {{"faces", true}}},
+                                                  {"seconds", 12}}));
 }
 
 TEST(Status, OfSeveralExhibitsTellsWhatIsAlikeOnceAndWhatFailed) {
