@@ -10,7 +10,7 @@
 
 namespace wellspring::kiosk {
 
-// Says where the visitor is at a time; position and rotation as in wire/messages.h (Person).
+// Says where the visitor is at a time; position and rotation as in wire/eye_messages.h (Person).
 struct FigurePose {
   bool visible = false;
   vec3 position{0, 0, 0.8f};

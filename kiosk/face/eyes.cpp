@@ -24,7 +24,7 @@ constexpr float read_over_true = 0.93f;
 constexpr float least_iris = 6, most_turned = 0.35f;  // pixels, radians
 // Errors of logarithms: one of all looks together, and one of a look at an iris of one pixel.
 constexpr double common_error = 0.06, pixel_error = 0.6;
-constexpr double most_looks = 200;  // of an iris of ten pixels; older ones fade
+constexpr double most_looks = 200;  // as many of irises of ten pixels; older ones fade
 
 struct Prior {
   double share, mean, spread;
@@ -75,7 +75,7 @@ std::optional<vec3> look_direction(const FaceMesh& mesh, const HeadPose& pose, f
 void add_look(FaceSize& size, float iris, float focal, const HeadPose& pose) {
   const float distance = pose.position.z;
   if (!(iris >= least_iris) || !(focal > 0) || !(distance > 0)) return;
-  const vec3 straight = glm::normalize(pose.position);  // where a face looks that turns to the lens
+  const vec3 straight = glm::normalize(pose.position);  // a face that turns to the lens looks there
   if (!(glm::dot(pose.rotation[2], straight) > std::cos(most_turned))) return;
   const double ratio = iris_metres * read_over_true * focal / iris / distance;
   const double weight = double(iris * iris) / 100;

@@ -164,8 +164,8 @@ FaceMotion classify(const FaceFlow& flow) {
 
 namespace {
 
-// Evidence of one comparison. Of prints five in a hundred moved as heads do, of people who move
-// their hands before the face up to a third as planes do.
+// One comparison gives this evidence: five in a hundred prints moved as heads do, and people who
+// move their hands before the face up to a third as planes do.
 constexpr float solid_evidence = 2, plane_evidence = -1.5f, most_evidence = 5;
 constexpr float is_picture = -2.5f;  // two planes more than solids
 

@@ -18,7 +18,7 @@ namespace wellspring::kiosk {
 // takes about 4 ms to measure.
 struct FaceFlow {
   float motion = 0;         // median path
-  float plane_error = 0;    // what the best homography leaves of three quarters of the points
+  float plane_error = 0;    // the best homography leaves this, of three quarters of the points
   float similar_error = 0;  // the same of the best turn, shift and change of size
   float noise = 0;          // error of a point that is at rest
   // Median path against what is around the face, if that is seen; at how many of its four sides.

@@ -2,7 +2,7 @@
 // Maps pixels to the visitor's place in metres, and back. Three frames of reference:
 //   image   u to the right, v down, pixels; the camera's picture is not mirrored
 //   camera  x as u, y as v, z forward out of the lens, metres
-//   screen  the frame of observations (wire/messages.h): origin in the screen's centre,
+//   screen  the frame of observations (wire/eye_messages.h): origin in the screen's centre,
 //           +x to the right as the visitor sees the screen, +y up, +z out of it to the visitor
 // The camera looks at the visitor, so its right is the visitor's left: image right is screen left,
 // and the visitor's own left hand appears at image right. For a level camera, screen x = -camera x,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws pictures for a kiosk's camera: the project's figures as visitors in a plain room,
 // ray-traced. Each head's place and rotation are known exactly. Axes are those of an observation
-// (wire/messages.h, Person): origin in the lens, +x to the right as the visitor sees the screen, +y
-// up, +z towards the visitor; metres, radians.
+// (wire/eye_messages.h, Person): origin in the lens, +x to the right as the visitor sees the
+// screen, +y up, +z towards the visitor; metres, radians.
 #pragma once
 #include <memory>
 #include <string>

@@ -102,7 +102,7 @@ TEST_F(PictureFolder, OfACameraThatWasMountedOnItsSideIsTurnedUpright) {
   struct Turn {
     float roll;
     bool mirrored;
-    int width, x, y;  // where the white corner is
+    int width, x, y;  // place of the white corner
   };
   for (const Turn& turn : {Turn{0, false, 64, 2, 2},
                            {90, false, 48, 45, 2},

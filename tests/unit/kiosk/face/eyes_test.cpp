@@ -67,7 +67,7 @@ FaceSize looked_at(float distance, float size, int looks = 20) {
 TEST(Eyes, AChildIsNotTakenForAnAdultFarAway) {
   EXPECT_EQ(size_of(FaceSize{}), 1);
   EXPECT_NEAR(size_of(looked_at(0.7f, 0.82f)), 0.82f, 0.04f);
-  // What an iris errs does not move adults.
+  // An iris that is read too wide or too narrow does not move adults.
   EXPECT_NEAR(size_of(looked_at(0.7f, 0.95f)), 1, 0.03f);
   EXPECT_NEAR(size_of(looked_at(0.7f, 1.05f)), 1, 0.025f);
 }
