@@ -274,7 +274,10 @@ Observer::~Observer() = default;
 
 Observation Observer::step(const GrayFrame& frame) {
   Impl& m = *impl_;
-  if (frame.time < m.last_time) m.heads.clear();
+  if (frame.time < m.last_time) {
+    for (const auto& head : m.heads) m.limbs.forget(head.first), m.liveness.forget(head.first);
+    m.heads.clear();
+  }
   m.last_time = frame.time;
   Motion motion = m.motion.step(frame);
   FacesSeen faces = FacesSeen::none;
