@@ -85,9 +85,10 @@ namespace {
 constexpr OneEuroSettings bearing_filter{1.5f, 8.f, 1.f};    // tangents
 constexpr OneEuroSettings distance_filter{0.5f, 1.5f, 1.f};  // logarithm of metres
 
-constexpr double mesh_every = 0.2;    // seconds between looks at the mesh of one face
-constexpr float least_eye_face = 60;  // pixels of a face's box; the irises of smaller ones blur
-constexpr float is_a_face = 0.5f;     // confidence of a mesh
+constexpr double mesh_every = 0.2;     // seconds between looks at the mesh of one face
+constexpr float least_eye_face = 60;   // pixels of a face's box; the irises of smaller ones blur
+constexpr float is_a_face = 0.5f;      // confidence of a mesh
+constexpr float least_mesh_face = 40;  // pixels of a face's box; meshes of smaller ones are unsure
 
 std::string folder_of_graphs(const ObserverSettings& settings) {
   if (!settings.graphs.empty()) return settings.graphs;
@@ -154,6 +155,7 @@ struct Observer::Impl {
     read_mesh = true;
     head.mesh_time = frame.time;
     const bool eyes = who.face.box.width >= least_eye_face;
+    head.is_face |= who.face.box.width < least_mesh_face;
     if (!eyes && head.is_face) return;
     const FaceMesh mesh = meshes->read({frame.pixels.data(), frame.width, frame.height},
                                        mesh_cut_of_marks(*who.face.marks), eyes);

@@ -56,10 +56,10 @@ float error_of(const Paths& paths, const cv::Mat& homography, float share) {
   return error_of(paths, moved, share);
 }
 
-// Returns the best turn, shift and change of size as a homography; empty: there is none.
-cv::Mat find_similarity(const Paths& paths, int method) {
-  const cv::Mat found =
-      cv::estimateAffinePartial2D(paths.from, paths.to, cv::noArray(), method, plane_fit);
+// Returns the best turn, shift and change of size as a homography; empty: there is none. `fits`
+// says of each path whether it takes part.
+cv::Mat find_similarity(const Paths& paths, int method, cv::OutputArray fits = cv::noArray()) {
+  const cv::Mat found = cv::estimateAffinePartial2D(paths.from, paths.to, fits, method, plane_fit);
   if (found.empty()) return {};
   cv::Mat out = cv::Mat::eye(3, 3, CV_64F);
   found.copyTo(out(cv::Rect(0, 0, 3, 2)));
@@ -120,24 +120,31 @@ std::optional<FaceFlow> measure(const FacePart& before, const cv::Mat& now, cons
   mask = 255;
   mask(box(0.65f, 0.95f, 0.8f)) = 0;  // head, hair and neck
   const Paths around = follow_points(before.pixels, now, mask, points_around, 5);
-  int at_side[4] = {};
-  for (const cv::Point2f& point : around.from) {
-    const float x = (point.x - middle.x) / width;
-    at_side[x < -0.65f ? 0 : x > 0.65f ? 1 : point.y < middle.y ? 2 : 3]++;
-  }
   FaceFlow flow;
-  for (int points : at_side) flow.sides += points >= least_side;
   flow.motion = error_of(on_face, on_face.from, 0.5f) / width;
   flow.plane_error =
       error_of(on_face, cv::findHomography(on_face.from, on_face.to, cv::LMEDS), 0.75f) / width;
   flow.similar_error = error_of(on_face, find_similarity(on_face, cv::LMEDS), 0.75f) / width;
   flow.noise = at_rest / width;
-  if (around.from.size() >= least_around) {
-    cv::Mat model;
-    if (flow.sides >= 3) model = cv::findHomography(around.from, around.to, cv::RANSAC, plane_fit);
-    if (model.empty()) model = find_similarity(around, cv::RANSAC);
-    if (!model.empty()) flow.against = error_of(on_face, model, 0.5f) / width;
-  }
+  if (around.from.size() < least_around) return flow;
+  auto count_sides = [&](const cv::Mat& fits) {
+    int at_side[4] = {}, sides = 0;  // left, right, above, below: shoulders are below
+    for (size_t k = 0; k < around.from.size(); k++) {
+      if (!fits.at<uchar>(int(k))) continue;
+      const float x = (around.from[k].x - middle.x) / width;
+      const float y = (around.from[k].y - middle.y) / height;
+      at_side[y > 0.5f ? 3 : x < -0.65f ? 0 : x > 0.65f ? 1 : 2]++;
+    }
+    for (int points : at_side) sides += points >= least_side;
+    return sides;
+  };
+  cv::Mat fits;
+  cv::Mat model = cv::findHomography(around.from, around.to, cv::RANSAC, plane_fit, fits);
+  if (model.empty() || count_sides(fits) < 3)  // too little for where the face is between them
+    model = find_similarity(around, cv::RANSAC, fits);
+  if (model.empty()) return flow;
+  flow.sides = count_sides(fits);
+  flow.against = error_of(on_face, model, 0.5f) / width;
   return flow;
 }
 
@@ -145,7 +152,7 @@ std::optional<FaceFlow> measure(const FacePart& before, const cv::Mat& now, cons
 
 FaceMotion classify(const FaceFlow& flow) {
   // Shares of the face's width, set with prints that were moved by hand and people at webcams;
-  // docs/benchmarks/kiosk.liveness.md has others.
+  // docs/benchmarks/kiosk.face.md has others.
   const float floor = std::max(0.0015f, flow.noise);
   if (flow.motion < floor) return FaceMotion::none;
   // A plane that turns: a homography explains what a similarity cannot.
@@ -194,9 +201,8 @@ float liveness(const LivenessState& state) { return 1 / (1 + std::exp(-state.evi
 bool counts_as_visitor(const LivenessState& state, const LivenessSettings& settings) {
   if (state.evidence <= is_picture) return false;
   if (state.last_time - state.stirred_time > settings.still) return false;
-  const double wait = state.evidence < 0 ? 2 * settings.wait : settings.wait;
   return state.evidence >= solid_evidence ||
-         (state.stirred && state.last_time - state.first_time >= wait);
+         (state.stirred && state.last_time - state.first_time >= settings.wait);
 }
 
 struct LivenessWatch::Impl {

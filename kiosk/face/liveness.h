@@ -21,7 +21,8 @@ struct FaceFlow {
   float plane_error = 0;    // the best homography leaves this, of three quarters of the points
   float similar_error = 0;  // the same of the best turn, shift and change of size
   float noise = 0;          // error of a point that is at rest
-  // Median path against what is around the face, if that is seen; at how many of its four sides.
+  // Median path against what is around the face and moves as one, if that is seen; at how many of
+  // its four sides.
   std::optional<float> against;
   int sides = 0;
 };
@@ -36,10 +37,8 @@ FaceMotion classify(const FaceFlow& flow);
 
 struct LivenessSettings {
   double every = 0.3;  // seconds between two frames that are compared
-  // Seconds after which somebody counts who stirs and is no picture for sure; twice as long if they
-  // have moved like one.
-  double wait = 0.75;
-  double still = 20;  // seconds without any motion; then it is a picture
+  double wait = 1.5;   // seconds after which somebody counts who stirs and is no picture for sure
+  double still = 20;   // seconds without any motion; then it is a picture
 };
 
 struct LivenessState {

@@ -29,7 +29,7 @@ ReportPage kiosk_hands_page() {
            {.caption = "Bodies by recording, share of frames after two seconds",
             .rows = {{"clip", "clip"}},
             .columns = {{"kiosk.body.clip", "with a body"}},
-            .most_rows = 14},
+            .most_rows = 9},
            {.caption = "Made hands",
             .rows = {{"trembling, mm", "trembling, mm"}},
             .columns = {{"kiosk.hand.counted", "fingers counted right"},

@@ -42,19 +42,7 @@ ReportPage kiosk_face_page() {
        {.caption = "Pictures of faces (12 s each)",
         .rows = {{"how", "before the camera"}, {"prints", "prints"}},
         .columns = {{"kiosk.printed_faces", "frames with people", 100, "%"}},
-        .most_rows = 3},
-       {.caption = "Rotation over distance (metres), degrees",
-        .rows = {{"finder", "by"}},
-        .columns = {{"kiosk.head.by_distance_deg", "rotation"}},
-        .across = "metres",
-        .only = {networks},
-        .most_rows = 1},
-       {.caption = "Jitter of a man who talks, degrees",
-        .rows = {{"finder", "by"}},
-        .columns = {{"kiosk.head.jitter_deg", "jitter"}},
-        .across = "axis",
-        .only = {networks},
-        .most_rows = 1}}};
+        .most_rows = 3}}};
 }
 
 }  // namespace wellspring::test

@@ -43,9 +43,10 @@ UpgradeAnswer admit(const AccessRules& rules, const HttpQuestion& question) {
   const std::string_view shown = bearer_of(question.authorization);
   if (const Token* token = find_token(rules.kiosk_tokens, shown)) return {{}, token->name};
   if (question.local) return {};
-  return {refuse_token("not_trusted",
-                 "a kiosk's camera on another machine needs a kiosk token: Authorization: Bearer "
-                 "TOKEN, one of the server's WELLSPRING_KIOSK_TOKEN or --kiosk-token-file")};
+  return {
+      refuse_token("not_trusted",
+                   "a kiosk's camera on another machine needs a kiosk token: Authorization: Bearer "
+                   "TOKEN, one of the server's WELLSPRING_KIOSK_TOKEN or --kiosk-token-file")};
 }
 
 using nlohmann::json;

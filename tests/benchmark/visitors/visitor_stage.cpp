@@ -85,8 +85,7 @@ struct Actor {
     if (visitor.size != 1) {  // irises are as wide in children as in adults
       const float wider = 1 / visitor.size;
       pose.stretches.resize(pose.rotations.size(), mat3(1));
-      for (int eye : rig.eye)
-        pose.stretches[size_t(eye)] = mat3(wider, 0, 0, 0, wider, 0, 0, 0, 1);
+      for (int eye : rig.eye) pose.stretches[size_t(eye)] = mat3(wider, 0, 0, 0, wider, 0, 0, 0, 1);
     }
     follow_constraints(character, pose);
 

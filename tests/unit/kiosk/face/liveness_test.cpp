@@ -131,11 +131,11 @@ TEST(LivenessState, OneLookThatIsSolidIsEnoughAndOneThatIsPlaneIsNot) {
 TEST(LivenessState, WhoStirsUnclearlyOrCannotBeComparedCountsAfterAWait) {
   using enum FaceMotion;
   EXPECT_FALSE(counts_as_visitor(after({unclear}), {}));
-  EXPECT_TRUE(counts_as_visitor(after({unclear, unclear, none, unclear}), {}));
+  EXPECT_TRUE(counts_as_visitor(after({unclear, unclear, none, unclear, none}), {}));
   EXPECT_FALSE(counts_as_visitor(after({unclear, plane, none, none}), {}));
   EXPECT_TRUE(counts_as_visitor(after({unclear, plane, none, none, none, none}), {}));
   EXPECT_FALSE(counts_as_visitor(after({none, none, none, none, none}), {}));
-  const std::vector<std::optional<FaceMotion>> dark(5, std::nullopt);
+  const std::vector<std::optional<FaceMotion>> dark(6, std::nullopt);
   EXPECT_TRUE(counts_as_visitor(after(dark), {}));
 }
 
