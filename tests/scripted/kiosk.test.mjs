@@ -238,20 +238,26 @@ const weights = process.env.WELLSPRING_WEIGHTS ?? join(source, 'build', 'weights
 test('a visitor who smiles is smiled at',
     { skip: !existsSync(join(weights, 'face')) && 'no weights of the face\'s networks' },
     async (context) => {
-  // A figure's neutral face, then its happy one, as a film: JPEGs in a row, 25 a second.
+  // A figure's neutral face, then its happy one, as a film: JPEGs in a row, 25 a second. The head
+  // turns a little to and fro, as who never stirs is a picture on the wall.
   const folder = mkdtempSync(join(tmpdir(), 'smile-'));
   context.after(() => rmSync(folder, { recursive: true }));
-  const draw = async (name, more) => {
-    const file = join(folder, name);
+  const draw = async (more, turn) => {
+    const file = join(folder, 'picture.jpg');
     const drawn = await run('wellspring_avatar', [
       join(source, 'content/castle/figures/storyteller.x3d'), '--close', '--rest', '--spp', '4',
-      '--size', '640x480', '--out', file, ...more]);
+      '--size', '640x480', '--turn', `${turn}`, '--out', file, ...more]);
     assert.equal(drawn.status, 0, drawn.stderr);
     return readFileSync(file);
   };
-  const calm = await draw('calm.jpg', []), happy = await draw('happy.jpg', ['--expression', 'joy']);
+  const take = async (frames, more) => {
+    const ahead = await draw(more, 0), left = await draw(more, 3), right = await draw(more, -3);
+    return Array.from({ length: frames },
+        (_, k) => [ahead, left, ahead, right][Math.floor(k / 5) % 4]);
+  };
   const film = join(folder, 'smile.mjpeg');
-  writeFileSync(film, Buffer.concat([...Array(125).fill(calm), ...Array(375).fill(happy)]));
+  writeFileSync(film, Buffer.concat([...await take(125, []),
+    ...await take(375, ['--expression', 'joy'])]));
   const page = new Visitor(server);
   await page.hello({ role: 'kiosk' });
   const joys = () => page.messages.filter((message) => message.type === 'agent')
