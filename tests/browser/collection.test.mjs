@@ -279,6 +279,7 @@ test('a small touch screen has all of it, and nothing moves for who wants calm',
       await map_is(page, 'c0');
       await page.focus(canvas);
       await page.keyboard.press('ArrowUp');
+      await page.waitForSelector(`${canvas}[data-at]`);
       const at = (await page.getAttribute(canvas, 'data-at')).split(',').map(Number);
       const box = await page.locator(canvas).boundingBox();
       await page.touchscreen.tap(box.x + at[0], box.y + at[1]);
@@ -296,6 +297,7 @@ test("a kiosk's guest opens the map from the book and walks to an object", { ski
   const page = await open('/kiosk?lang=en', { viewport: { width: 1080, height: 1920 } });
   await page.locator('#open-book').click();
   await page.waitForFunction(() => !document.getElementById('book').hidden);
+  await page.locator('.tabs [data-chapter=contents]').click();
   await page.locator('#book .entry', { hasText: 'All our things' }).click();
   await page.waitForFunction(() =>
     document.getElementById('book').dataset.chapter === 'collection');
