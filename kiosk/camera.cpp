@@ -41,15 +41,14 @@ void to_color(const cv::Mat& picture, GrayFrame& frame) {
   small.copyTo(cv::Mat(small.rows, small.cols, CV_8UC3, frame.bgr.data()));
 }
 
-// Turns the picture of a camera that is mounted on its side, or upside down.
-cv::Mat upright(const cv::Mat& picture, const Mount& mount) {
-  const int turns = quarter_turns(mount) * (mount.mirrored ? -1 : 1);
+// Turns a picture clockwise by quarter turns; below 0: the other way.
+cv::Mat turned(const cv::Mat& picture, int quarters) {
+  constexpr cv::RotateFlags ways[] = {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
+                                      cv::ROTATE_90_COUNTERCLOCKWISE};
+  const int turns = (quarters % 4 + 4) % 4;
   if (turns == 0) return picture;
   cv::Mat out;
-  cv::rotate(picture, out,
-             turns == 1    ? cv::ROTATE_90_CLOCKWISE
-             : turns == -1 ? cv::ROTATE_90_COUNTERCLOCKWISE
-                           : cv::ROTATE_180);
+  cv::rotate(picture, out, ways[turns - 1]);
   return out;
 }
 
@@ -57,7 +56,8 @@ cv::Mat upright(const cv::Mat& picture, const Mount& mount) {
 // False for data that is no picture.
 bool to_gray(const cv::Mat& taken, const CameraSettings& settings, GrayFrame& frame) {
   if (taken.empty() || taken.cols < 16 || taken.rows < 16 || taken.depth() != CV_8U) return false;
-  const cv::Mat picture = upright(taken, settings.mount);
+  const Mount& mount = settings.mount;
+  const cv::Mat picture = turned(taken, quarter_turns(mount) * (mount.mirrored ? -1 : 1));
   const int width = settings.width;
   cv::Mat gray = picture;
   if (picture.channels() == 3) cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
@@ -117,7 +117,7 @@ class FileCamera : public Camera {
     }
     turn_ = 0;
     if (turns_films_wrongly && capture_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0))
-      turn_ = 360 - int(capture_.get(cv::CAP_PROP_ORIENTATION_META));
+      turn_ = 4 - int(capture_.get(cv::CAP_PROP_ORIENTATION_META)) / 90;
     double fps = capture_.isOpened() ? capture_.get(cv::CAP_PROP_FPS) : 0;
     fps_ = std::isfinite(fps) && fps >= 1 && fps <= 1000 ? fps : 25;
   }
@@ -133,10 +133,7 @@ class FileCamera : public Camera {
         if (index_ > 0 && std::isfinite(own) && begin_ + own > last_ + 1e-4 &&
             begin_ + own < last_ + 10)
           time = begin_ + own;
-        if (turn_ % 360 == 90) cv::rotate(picture_, picture_, cv::ROTATE_90_CLOCKWISE);
-        else if (turn_ % 360 == 180) cv::rotate(picture_, picture_, cv::ROTATE_180);
-        else if (turn_ % 360 == 270) cv::rotate(picture_, picture_, cv::ROTATE_90_COUNTERCLOCKWISE);
-        if (!to_gray(picture_, settings_, frame)) continue;
+        if (!to_gray(turned(picture_, turn_), settings_, frame)) continue;
         index_++;
         frame.time = last_ = time;
         return true;
@@ -152,7 +149,7 @@ class FileCamera : public Camera {
   GrayFrame first_;
   bool has_first_ = false;
   long index_ = 0;
-  int turn_ = 0;  // degrees, clockwise, that are left to be done by us
+  int turn_ = 0;  // quarter turns, clockwise, that are left to be done by us
   double begin_ = 0, last_ = 0, fps_ = 25;
 };
 

@@ -24,7 +24,7 @@ export async function fetch_level(exhibit, trail, is_wanted) {
   }
 }
 
-// Where the objects of a new map come from, and where they go. before: the items that are seen
+// Says where the objects of a new map come from, and where they go. before: the items that are seen
 // now; sets at, from and to of each item.
 export function place_items(items, before) {
   const old = new Map(before.map((item) => [item.index, item]));
@@ -41,8 +41,8 @@ export function place_items(items, before) {
   }
 }
 
-// Where the words of each group stand: at the object that lies nearest to their middle; null: the
-// map shows none of them.
+// Says where the words of each group stand: at the object that lies nearest to their middle; null:
+// the map shows none of them.
 export function group_places(items, groups) {
   return groups.map((_, number) => {
     const places = items.filter(({ group }) => group === number).map(({ to }) => to);
