@@ -147,6 +147,7 @@ test('keys alone choose, dive, go back, filter and leave', { skip }, async () =>
   await page.keyboard.press('Backspace');
   await map_is(page);
   assert.equal(await count(page), records.length);
+  await until(async () => await listed(page) === records.length, 'all are in the list again');
 
   await page.keyboard.press('1');
   assert.equal(await page.locator('.collection .groups [aria-pressed=true]').count(), 1);
