@@ -20,19 +20,19 @@ constexpr double told_for = 0.5;  // seconds a gesture is reported: observations
 constexpr size_t most_reads = 1;  // hands that are read in a frame: two take turns
 constexpr float far_hands = 3;    // metres; hands of who is farther are not looked for
 
-struct BothArms {
-  HandTracker skin;
-  GestureSpotter spotter;
-  HandTracks hands;
-  Limbs::Arms told;
-  double recognised = -1e9;
-  BothArms(const GestureModels& models, const Mount& mount)
-      : skin(mount.mirrored), spotter(models), hands(mount) {}
-};
-
 }  // namespace
 
 struct Limbs::Impl {
+  struct BothArms {
+    HandTracker skin;
+    GestureSpotter spotter;
+    HandTracks hands;
+    Limbs::Arms told;
+    double recognised = -1e9;
+    BothArms(const GestureModels& models, const Mount& mount)
+        : skin(mount.mirrored), spotter(models), hands(mount) {}
+  };
+
   LimbSettings settings;
   std::optional<BodyWatch> bodies;
   std::optional<HandReader> reader;

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "base/load_error.h"
 #include "base/log.h"
 #include "kiosk/face/eyes.h"
 #include "kiosk/face/face_finder.h"
-#include "kiosk/face/face_mesh.h"
 #include "kiosk/face/head_pose.h"
 #include "kiosk/limbs.h"
 #include "kiosk/station/station.h"
@@ -85,16 +83,8 @@ namespace {
 constexpr OneEuroSettings bearing_filter{1.5f, 8.f, 1.f};    // tangents
 constexpr OneEuroSettings distance_filter{0.5f, 1.5f, 1.f};  // logarithm of metres
 
-constexpr double mesh_every = 0.2;     // seconds between looks at the mesh of one face
-constexpr float least_eye_face = 60;   // pixels of a face's box; the irises of smaller ones blur
-constexpr float is_a_face = 0.5f;      // confidence of a mesh
-constexpr float least_mesh_face = 40;  // pixels of a face's box; meshes of smaller ones are unsure
-
-std::string folder_of_graphs(const ObserverSettings& settings) {
-  if (!settings.graphs.empty()) return settings.graphs;
-  const std::filesystem::path weights = weights_folder(settings.face);
-  return weights.empty() ? "" : (weights.parent_path() / "human").string();
-}
+constexpr double irises_every = 0.2;  // seconds between looks at the irises of one face
+constexpr float least_eye_face = 60;  // pixels of a face's box; the irises of smaller ones blur
 
 }  // namespace
 
@@ -112,14 +102,14 @@ struct Observer::Impl {
     OneEuro bearing, distance, rotation;
     ExpressionState expression;
     Person person;
-    double seen_time = 0, mesh_time = -1e9;
+    double seen_time = 0, irises_time = -1e9;
     FaceSize size;
     bool is_face = false;  // a mesh has said so
     bool visitor = false;  // it is no picture, and counts
   };
   std::map<uint32_t, Head> heads;
-  std::optional<MeshReader> meshes;  // absent without the networks' weights
-  bool read_mesh = false;            // whether this frame reads one: one look a frame
+  std::optional<IrisReader> irises;  // absent without the networks' weights
+  bool read_irises = false;          // whether this frame reads some: one look a frame
   double last_time = -1e9;
   std::optional<ClassReader> classes;  // only while expressions are asked for
   bool read_classes = false;           // whether this frame reads them: one look a frame
@@ -130,15 +120,19 @@ struct Observer::Impl {
         motion(s.motion),
         people(*finder, s.people),
         liveness(s.liveness),
-        limbs({s.mount, folder_of_graphs(s), s.bodies, s.gestures}) {
+        limbs({s.mount, graphs_folder(s.face), s.bodies, s.gestures}) {
     if (s.station) station.emplace(*s.station, StationSettings{.mount = s.mount});
     settings.station.reset();  // the station has its own
-    if (finder->finds_landmarks()) try {
-        meshes.emplace(folder_of_graphs(s));
+    if (finder->reads_meshes()) try {
+        irises.emplace(graphs_folder(s.face));
       } catch (const LoadError& error) {
-        log::warn("no fine faces: {}", error.what());
+        log::warn("no irises: {}", error.what());
       }
     if (!s.expression) return;
+    if (!finder->reads_meshes()) {
+      log::warn("no expressions: faces have no mesh");
+      return;
+    }
     try {
       classes.emplace(weights_folder(s.face));
       log::info("expressions are estimated: visitors must be told before they are seen");
@@ -147,23 +141,20 @@ struct Observer::Impl {
     }
   }
 
-  // Looks at the mesh of a face: whether it is one, how large, and what its eyes and mouth do.
-  void look_at_mesh(Head& head, const GrayFrame& frame, const Followed& who, const HeadPose& pose) {
-    const bool due =
-        !read_mesh && (frame.time - head.mesh_time >= mesh_every || frame.time < head.mesh_time);
-    if (!meshes || !due) return;
-    read_mesh = true;
-    head.mesh_time = frame.time;
-    const bool eyes = who.face.box.width >= least_eye_face;
-    head.is_face |= who.face.box.width < least_mesh_face;
-    if (!eyes && head.is_face) return;
-    const FaceMesh mesh = meshes->read({frame.pixels.data(), frame.width, frame.height},
-                                       mesh_cut_of_marks(*who.face.marks), eyes);
-    head.is_face |= mesh.confidence >= is_a_face;
+  // Looks at eyes and mouth: how large the face is, and what they do.
+  void look_at_eyes(Head& head, const GrayFrame& frame, const Followed& who, const HeadPose& pose) {
     Person& person = head.person;
-    person.gaze.reset(), person.lids = open_lids(mesh), person.mouth.reset();
-    if (!mesh.irises) return;
-    person.mouth = open_mouth(mesh);
+    if (!who.face.mesh || who.face.box.width < least_eye_face) {
+      person.gaze.reset(), person.lids.reset(), person.mouth.reset();
+      return;
+    }
+    const bool due = frame.time - head.irises_time >= irises_every || frame.time < head.irises_time;
+    if (!irises || read_irises || !due) return;
+    read_irises = true;
+    head.irises_time = frame.time;
+    FaceMesh mesh = *who.face.mesh;
+    irises->read({frame.pixels.data(), frame.width, frame.height}, mesh);
+    person.gaze.reset(), person.lids = open_lids(mesh), person.mouth = open_mouth(mesh);
     const float focal = focal_length(settings.mount, frame.width, frame.height);
     add_look(head.size, *iris_width(mesh), focal, pose);
     if (const auto look = look_direction(mesh, pose, focal, frame.width, frame.height))
@@ -180,17 +171,16 @@ struct Observer::Impl {
     return glm::length(place) < far_off ? std::optional(place) : std::nullopt;
   }
 
-  void express(Head& head, const GrayFrame& frame, const FaceMarks& marks, const HeadPose& pose) {
+  void express(Head& head, const GrayFrame& frame, const Face& face) {
     FaceClasses now;
     const bool read =
         !read_classes && frame.time - head.expression.read_time >= settings.expressions.read_every;
     if (read)
-      now = classes->read({frame.pixels.data(), frame.width, frame.height}, cut_of_marks(marks));
+      now = classes->read({frame.pixels.data(), frame.width, frame.height},
+                          cut_of_marks(*face.marks));
     read_classes |= read;
-    const float focal = focal_length(settings.mount, frame.width, frame.height);
-    head.person.expression = step_expression(
-        head.expression, settings.expressions, frame.time,
-        face_plane(marks, pose, focal, frame.width, frame.height), read ? &now : nullptr);
+    head.person.expression = step_expression(head.expression, settings.expressions, frame.time,
+                                             *face.mesh, read ? &now : nullptr);
   }
 
   // Guesses without landmarks: somebody looks at the screen, but for what eyes and profiles show.
@@ -225,8 +215,9 @@ struct Observer::Impl {
     const vec3 rotation =
         pose ? rotation_on_screen(mount, pose->rotation) : crude_rotation(head.person, who, camera);
     head.person.rotation = step_one_euro(head.rotation, rotation_filter, frame.time, rotation);
-    if (pose) look_at_mesh(head, frame, who, *pose);
-    if (classes && pose && needs.expression) express(head, frame, *who.face.marks, *pose);
+    head.is_face |= who.face.mesh || who.face.box.width < least_mesh_face;
+    if (pose) look_at_eyes(head, frame, who, *pose);
+    if (classes && who.face.mesh && needs.expression) express(head, frame, who.face);
     head.person.confidence = std::clamp(who.face.confidence, 0.f, 1.f);
     head.seen_time = frame.time;
     return head.person;
@@ -236,7 +227,7 @@ struct Observer::Impl {
     EyeParts out;
     out.faces = finder->finds_landmarks();
     if (settings.expression) out.expression = classes.has_value();
-    if (out.faces == true) out.mesh = meshes.has_value();
+    if (out.faces == true) out.mesh = finder->reads_meshes();
     out.bodies = limbs.sees_bodies();
     out.hands = limbs.sees_hands();
     if (station) out.objects = true;
@@ -284,7 +275,7 @@ Observation Observer::step(const GrayFrame& frame) {
   Motion motion = m.motion.step(frame);
   FacesSeen faces = FacesSeen::none;
   m.read_classes = false;
-  m.read_mesh = false;
+  m.read_irises = false;
   std::vector<PersonInView> in_view;
   for (const Followed& who : m.people.step(frame, motion)) {
     if (!who.visible) continue;
@@ -292,7 +283,7 @@ Observation Observer::step(const GrayFrame& frame) {
     Impl::Head& head = m.heads[who.id];
     const Person& person = m.place(head, frame, who);
     head.person.liveness = liveness(alive);
-    head.visitor = m.liveness.counts(alive) && (!m.meshes || head.is_face);
+    head.visitor = m.liveness.counts(alive) && (!m.finder->reads_meshes() || head.is_face);
     if (!head.visitor && alive.evidence >= 0) faces = std::max(faces, FacesSeen::unsure);
     if (!head.visitor) continue;
     faces = FacesSeen::visitor;

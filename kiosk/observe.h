@@ -64,8 +64,6 @@ struct ObserverSettings {
   std::optional<RecognitionTree> station;   // objects that may be held; empty: none
   const GestureModels* gestures = nullptr;  // borrowed; null: hands are not followed
   bool bodies = false;                      // see bodies, also without a face, from afar
-  // Folder of the networks of meshes, bodies and hands; empty: beside that of the faces' networks.
-  std::string graphs;
 };
 
 class Observer {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads what a visitor's face seems to express, as six weights: seven classes by a network, joined
-// with how the face has moved from its own rest (FAPs). A face's rest is learnt in the first
+// Reads what a visitor's face seems to express, as six weights: by how the face's mesh has moved
+// from its own rest, joined with seven classes by a network. A face's rest is learnt in the first
 // seconds somebody is seen and forgotten with the person's number; nothing is stored. These are
 // guesses from smiles, brows and lids, not what anybody feels; docs/benchmarks/kiosk.expression.md
 // says how often they are right for drawn figures. It is off unless asked for, since people must be
@@ -9,32 +9,64 @@
 #include <array>
 #include <optional>
 
-#include "kiosk/face/head_pose.h"
+#include "kiosk/face/face_mesh.h"
 #include "kiosk/network/face_marks.h"
 #include "wire/messages.h"
 
 namespace wellspring::kiosk {
 
-// Measures movements of a face in MPEG-4's terms (ISO/IEC 14496-2, annex C): landmarks are its
-// feature points, and each movement is a facial animation parameter (FAP), measured in units of the
-// face's own distances (FAPU), so that it means the same on any face.
+// Measures movements of a face in MPEG-4's terms (ISO/IEC 14496-2, annex C): each is a facial
+// animation parameter (FAP), the mean of both sides, in tenths of the distance between the eyes, so
+// that it means the same on any face.
+enum class Movement : uint8_t {
+  inner_brows_up,         // FAPs 31, 32
+  brows_up,               // 33, 34
+  outer_brows_up,         // 35, 36
+  brows_together,         // 37, 38
+  mouth_wider,            // 53, 54
+  corners_up,             // 59, 60
+  inner_upper_lip_up,     // 4, downwards there
+  inner_lower_lip_up,     // 5
+  upper_lip_up,           // 51, downwards there
+  lower_lip_up,           // 52
+  jaw_down,               // 3
+  upper_lids_up,          // 19, 20, downwards there
+  lower_lids_up,          // 21, 22
+  nose_up,                // 63, at its wings
+  sides_of_upper_lip_up,  // 55, 56, downwards there
+  cheeks_up,              // 41, 42
+  eyes_open,              // upper lids against lower ones
+};
+inline constexpr size_t movement_count = 17;
 
-// Holds landmarks in the plane of the face, metres: x to the picture's right when the face looks
-// into the lens, y down; each on its depth in the model, with the head's pose taken out.
-using FacePlane = std::array<vec2, landmark_count>;
-FacePlane face_plane(const FaceMarks& marks, const HeadPose& pose, float focal, int width,
-                     int height);
+struct FaceMovement {
+  std::array<float, movement_count> by{};  // by Movement
+  // Sines of how far the head is turned from where it was at rest: pitch and yaw. The network of
+  // the mesh draws a turned face a little otherwise.
+  vec2 turned{0};
+};
 
-// Holds FAPs by their number in the standard (1 to 68); those that landmarks do not show stay 0.
-//   3 open jaw; 4, 5 inner lips up and down; 6, 7 stretch and 12, 13 raise their corners;
-//   19-22 close the lids; 31-36 raise the brows; 37, 38 squeeze them; 53, 54 stretch and 59, 60
-//   raise the outer corners of the lips
-using Faps = std::array<float, 69>;
+// Returns `mesh` moved, turned and scaled so that its points that expression moves least lie on
+// those of `rest` (least squares, by the singular values of Umeyama 1991). Nothing if either is no
+// face.
+std::optional<FaceMesh> align(const FaceMesh& mesh, const FaceMesh& rest);
 
-// Measures FAPs of `now` against the same face at rest; 0 for parts that do not move. Movement of
-// the whole face is taken out by its eyes' corners and its nose. Returns nothing if `rest` is no
-// face or a number is not finite.
-std::optional<Faps> measure_faps(const FacePlane& rest, const FacePlane& now);
+// Measures how `now` differs from the same face at rest. Nothing if either is no face.
+std::optional<FaceMovement> measure_movement(const FaceMesh& rest, const FaceMesh& now);
+
+// A guess is linear in these: movements; half of how far classes are above those at rest, in the
+// order of FaceClass; and turns, |yaw|, and squares of pitch and yaw.
+inline constexpr size_t cue_count = movement_count + 7 + 4;
+using Cues = std::array<float, cue_count>;
+Cues cues_of(const FaceMovement& movement, const FaceClasses& usual, const FaceClasses& classes);
+
+// Returns what cues say: 0..1 for each of the six, with valence and arousal. Factors are fitted to
+// the project's figures (ridge regression, expression_table.h).
+Expression expression_of(const Cues& cues);
+
+// Sets valence and arousal, the mean of those of the six by their weights (Russell, Mehrabian,
+// "Evidence for a three-factor theory of emotions", 1977, table 4); 0 for none.
+void tell_mood(Expression& expression);
 
 struct ExpressionSettings {
   double learn = 2;         // seconds in which a face's rest is learnt
@@ -45,18 +77,14 @@ struct ExpressionSettings {
 // This is the state of one person, from first sight on.
 struct ExpressionState {
   double learnt = 0, time = -1e9, read_time = -1e9;  // seconds
-  FacePlane rest{};
+  std::optional<FaceMesh> rest;
   FaceClasses usual{}, classes{};  // means while learning; the network's last answer
   Expression shown;
 };
 
-// Returns the evidence of FAPs alone, 0..1 each (after Raouzaiou et al., "Parameterized facial
-// expression synthesis based on MPEG-4", 2002, table 1: which FAPs go with which expression).
-Expression expression_of(const Faps& faps);
-
-// Takes one frame: `face` as face_plane gives it, `classes` if the network was asked in this frame.
-// Times that run backwards count as no time. Returns state.shown; all 0 while rest is learnt.
+// Takes one frame; `classes` if the network was asked in it. Times that run backwards count as no
+// time. Returns state.shown; all 0 while rest is learnt.
 Expression step_expression(ExpressionState& state, const ExpressionSettings& settings, double time,
-                           const FacePlane& face, const FaceClasses* classes);
+                           const FaceMesh& face, const FaceClasses* classes);
 
 }  // namespace wellspring::kiosk

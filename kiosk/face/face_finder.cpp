@@ -15,11 +15,30 @@ std::string weights_folder(const FaceSettings& settings) {
   return set ? (std::filesystem::path(set) / "face").string() : "";
 }
 
+std::string graphs_folder(const FaceSettings& settings) {
+  if (!settings.graphs.empty()) return settings.graphs;
+  const std::filesystem::path weights = weights_folder(settings);
+  return weights.empty() ? "" : (weights.parent_path() / "human").string();
+}
+
+namespace {
+
+std::optional<MeshReader> open_meshes(const std::string& folder) {
+  try {
+    return MeshReader(folder);
+  } catch (const LoadError& error) {
+    log::warn("no fine faces: {}", error.what());
+    return {};
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<FaceFinder> make_face_finder(const FaceSettings& settings) {
   const std::string folder = weights_folder(settings);
   try {
     if (!folder.empty() && std::filesystem::exists(folder)) {
-      auto finder = make_network_finder(folder);
+      auto finder = make_network_finder(folder, open_meshes(graphs_folder(settings)));
       log::info("faces by networks, weights of {}", folder);
       return finder;
     }

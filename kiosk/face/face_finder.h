@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "kiosk/face/face_mesh.h"
 #include "kiosk/frame/head.h"
 #include "kiosk/network/face_marks.h"
 
@@ -29,6 +30,7 @@ struct Face {
   float confidence = 0;                     // clearness of the detector's answer, 0..1
   std::optional<std::array<vec2, 2>> eyes;  // pixels: the eye at image left, then at image right
   std::optional<FaceMarks> marks{};         // found by networks only
+  std::optional<FaceMesh> mesh{};  // of a followed face that is large enough; marks are its points
   // These concern the detector's looks at landmarks that are followed: its last score, how often it
   // agreed, when it was asked last and when it last agreed.
   float score = 0;
@@ -36,11 +38,17 @@ struct Face {
   double asked_time = -1e9, agreed_time = -1e9;
 };
 
+// Boxes of faces narrower than this, in pixels, have no mesh: it is unsure there.
+inline constexpr float least_mesh_face = 40;
+
 struct FaceSettings {
   std::string cascades = "/usr/share/opencv4";
   // Folder with the networks' weights; empty: WELLSPRING_WEIGHTS/face. Without weights, cascades
   // run.
   std::string weights;
+  // Folder with graphs for faces that are followed; empty: `human` beside the weights. Without
+  // them faces have no mesh.
+  std::string graphs;
   int search_width = 320;     // cascades search whole frames at this width
   float smallest = 1 / 13.f;  // least box side over frame width for cascades
 };
@@ -58,17 +66,21 @@ class FaceFinder {
   virtual std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll = 0) = 0;
   // Returns whether faces come with landmarks, from which the head's pose follows.
   virtual bool finds_landmarks() const = 0;
+  virtual bool reads_meshes() const { return false; }
 };
 
 // Returns the folder of the networks' weights; empty: it is set nowhere.
 std::string weights_folder(const FaceSettings& settings);
+std::string graphs_folder(const FaceSettings& settings);
 
 // Makes a finder by networks if all their weights can be read, else by cascades. The log says
 // which, and why. Throws LoadError when a cascade is missing too.
 std::unique_ptr<FaceFinder> make_face_finder(const FaceSettings& settings);
 
-// Makes one by networks. Throws LoadError naming the file with its fault.
-std::unique_ptr<FaceFinder> make_network_finder(const std::string& folder);
+// Makes one by networks, with meshes if it gets a reader of them. Throws LoadError naming the file
+// with its fault.
+std::unique_ptr<FaceFinder> make_network_finder(const std::string& folder,
+                                                std::optional<MeshReader> meshes = {});
 // Makes one by cascades. Throws LoadError naming the cascade's path and the package that brings it.
 std::unique_ptr<FaceFinder> make_cascade_finder(const FaceSettings& settings = {});
 

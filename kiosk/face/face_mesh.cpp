@@ -11,8 +11,7 @@ namespace wellspring::kiosk {
 
 namespace {
 
-constexpr float least_confidence = 0.5f;  // below, irises are not read
-constexpr float mesh_rim = 1.5f;          // side of the square over that of the mesh
+constexpr float mesh_rim = 1.5f;  // side of the square over that of the mesh
 // The landmarks' square has no forehead: the mesh's is larger by this, and higher by this share.
 constexpr float over_marks = 1.45f, above_marks = 0.1f;
 constexpr float eye_rim = 2.3f;  // side of an eye's square over the distance of its corners
@@ -21,6 +20,14 @@ constexpr float eye_rim = 2.3f;  // side of an eye's square over the distance of
 constexpr size_t eye_corners[2][2] = {{33, 133}, {362, 263}};
 // The iris network tells points of the lids first, then those of the iris.
 constexpr size_t contour_points = 71, lower_lid = 4, upper_lid = 12, lid_corners[] = {0, 8};
+// Entry k is the point of the mesh that lies where landmark k does.
+constexpr std::array<uint16_t, landmark_count> point_of_mark = {
+    162, 234, 93,  58,  172, 136, 149, 148, 152, 377, 378, 365, 397, 288, 323, 454, 389,  // outline
+    71,  63,  105, 66,  107, 336, 296, 334, 293, 301,                                     // brows
+    168, 197, 5,   4,   75,  97,  2,   326, 305,                                          // nose
+    33,  160, 158, 133, 153, 144, 362, 385, 387, 263, 373, 380,                           // eyes
+    61,  39,  37,  0,   267, 269, 291, 405, 314, 17,  84,  181,                           // lips
+    78,  82,  13,  312, 308, 317, 14,  87};
 
 std::string graph_file(const std::string& folder, const char* name) {
   return (std::filesystem::path(folder) / (std::string(name) + ".json")).string();
@@ -66,34 +73,45 @@ Cut mesh_cut_of_mesh(const FaceMesh& mesh) {
   return cut;
 }
 
-MeshReader::MeshReader(const std::string& folder)
-    : mesh_(open_graph(graph_file(folder, "facemesh"))),
-      iris_(open_graph(graph_file(folder, "iris"))) {}
+FaceMarks marks_of_mesh(const FaceMesh& mesh) {
+  FaceMarks marks;
+  for (size_t k = 0; k < marks.size(); k++) marks[k] = vec2(mesh.points[point_of_mark[k]]);
+  return marks;
+}
 
-FaceMesh MeshReader::read(const GrayView& picture, const Cut& square, bool eyes) {
-  const Tensors outputs = mesh_.run(levels(picture, square, mesh_));
+MeshReader::MeshReader(const std::string& folder)
+    : network_(open_graph(graph_file(folder, "facemesh"))) {}
+
+FaceMesh MeshReader::read(const GrayView& picture, const Cut& square) {
+  const Tensors outputs = network_.run(levels(picture, square, network_));
   const std::vector<float>& values = outputs.at("output_mesh").values;
-  const auto side = float(mesh_.input().columns);
+  const auto side = float(network_.input().columns);
   FaceMesh mesh;
   mesh.confidence = first_of(outputs, "output_faceflag");
   for (size_t k = 0; k < mesh_points; k++)
     mesh.points[k] = vec3(cut_to_picture(square, vec2(values[3 * k], values[3 * k + 1]) / side),
                           values[3 * k + 2] / side * square.width);
-  if (!eyes || !(mesh.confidence >= least_confidence)) return mesh;
-  mesh.irises.emplace();
-  for (size_t eye = 0; eye < 2; eye++) read_eye(picture, square, eye, mesh);
   return mesh;
 }
 
-void MeshReader::read_eye(const GrayView& picture, const Cut& square, size_t eye, FaceMesh& mesh) {
+IrisReader::IrisReader(const std::string& folder)
+    : network_(open_graph(graph_file(folder, "iris"))) {}
+
+void IrisReader::read(const GrayView& picture, FaceMesh& mesh) {
+  mesh.irises.emplace();
+  const float angle = mesh_cut_of_mesh(mesh).angle;
+  for (size_t eye = 0; eye < 2; eye++) read_eye(picture, angle, eye, mesh);
+}
+
+void IrisReader::read_eye(const GrayView& picture, float angle, size_t eye, FaceMesh& mesh) {
   const vec2 from{mesh.points[eye_corners[eye][0]]}, to{mesh.points[eye_corners[eye][1]]};
   const float width = eye_rim * glm::length(to - from);
-  const Cut cut{(from + to) / 2.f, width, width, square.angle};
+  const Cut cut{(from + to) / 2.f, width, width, angle};
   const bool mirrored = eye == 1;  // the network knows the eye at image left
-  const auto side = float(iris_.input().columns);
-  std::vector<float> planes = levels(picture, cut, iris_);
+  const auto side = float(network_.input().columns);
+  std::vector<float> planes = levels(picture, cut, network_);
   if (mirrored) mirror(planes, size_t(side));
-  const Tensors outputs = iris_.run(planes);
+  const Tensors outputs = network_.run(planes);
   const std::vector<float>& values = outputs.at("Identity").values;
   const auto point = [&](size_t k) { return vec2(values[3 * k], values[3 * k + 1]) / side; };
   auto& iris = (*mesh.irises)[eye];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds faces by trained networks (kiosk/network): a detector proposes boxes, and the landmark
 // network must make a face of them that could be a head's (head_pose.h). A followed face is sought
-// at its last landmarks in every frame; now and then the detector is asked whether it still is a
-// face.
+// at its last landmarks, or its last mesh, in every frame; now and then the detector is asked
+// whether it still is a face.
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +23,7 @@ constexpr float agree_young = 0.35f;
 constexpr int young = 4;
 constexpr double ask_every = 0.3;  // seconds between the detector's looks at a followed face
 constexpr double doubt = 0.7;      // seconds without its agreement until a face is given up
+constexpr float is_a_face = 0.5f;  // confidence of a mesh
 // These are the sizes of detector windows, network pixels.
 constexpr int columns = 320, rows = 256, near_side = 128;
 constexpr float near_reach = 2.2f;     // side of the window about a followed face, in squares
@@ -67,7 +68,8 @@ std::vector<Cut> windows_over(const Box& box, float width, float height,
 
 class NetworkFinder : public FaceFinder {
  public:
-  explicit NetworkFinder(const std::string& folder) : boxes(folder), reader(folder) {}
+  NetworkFinder(const std::string& folder, std::optional<MeshReader> reader_of_meshes)
+      : boxes(folder), reader(folder), meshes(std::move(reader_of_meshes)) {}
   // This searches in turn the whole frame, coarsely, and one of the windows that cover it; about 12
   // ms.
   std::vector<Face> search(const GrayFrame& frame) override;
@@ -77,20 +79,21 @@ class NetworkFinder : public FaceFinder {
   // This takes about 5 ms, twice that if the head moves quickly.
   std::optional<Face> follow(const GrayFrame& frame, const Face& last, float roll) override;
   bool finds_landmarks() const override { return true; }
+  bool reads_meshes() const override { return meshes.has_value(); }
 
  private:
   FaceBoxes boxes;
   MarkReader reader;
+  std::optional<MeshReader> meshes;
   size_t turn = 0, coarse_turn = 0, fine_turn = 0;
 
   // Returns the face that landmarks make near `square`; nothing if they make none.
   std::optional<Face> face_at(const GrayFrame& frame, Cut square, int reads) {
     const GrayView view = gray_view_of(frame);
     FaceMarks marks{};
-    Cut next;
     for (int k = 0; k < reads; k++) {
       marks = reader.read(view, square);
-      next = cut_of_marks(marks);
+      const Cut next = cut_of_marks(marks);
       if (!(next.width > 8) || !(next.width < 2 * float(frame.width))) return {};
       const float shift = glm::length(next.middle - square.middle) / square.width;
       const float growth = next.width / square.width;
@@ -99,12 +102,37 @@ class NetworkFinder : public FaceFinder {
       square = next;
       if (last) break;
     }
+    return face_of(frame, marks);
+  }
+
+  // Returns the face that the mesh near that of `last` makes; nothing if it says there is none.
+  std::optional<Face> meshed_face(const GrayFrame& frame, const Face& last) {
+    if (!meshes || !last.marks || last.box.width < least_mesh_face) return {};
+    const GrayView view = gray_view_of(frame);
+    Cut square = last.mesh ? mesh_cut_of_mesh(*last.mesh) : mesh_cut_of_marks(*last.marks);
+    FaceMesh mesh;
+    for (int read = 0; read < 2; read++) {
+      mesh = meshes->read(view, square);
+      if (!(mesh.confidence >= is_a_face)) return {};
+      const Cut next = mesh_cut_of_mesh(mesh);
+      const float shift = glm::length(next.middle - square.middle) / square.width;
+      if (shift < moved && std::abs(next.width / square.width - 1) < 2 * moved) break;
+      square = next;
+    }
+    auto face = face_of(frame, marks_of_mesh(mesh));
+    if (face) face->mesh = mesh;
+    return face;
+  }
+
+  // Returns the face with these landmarks; nothing if they could be no head's.
+  static std::optional<Face> face_of(const GrayFrame& frame, const FaceMarks& marks) {
     const auto pose =
         solve_head_pose(marks, usual_focal * float(frame.width), frame.width, frame.height);
     if (!pose || !(trust_of_error(pose->error) > 0)) return {};
+    const Cut square = cut_of_marks(marks);
     Face face;
-    face.box = {next.middle.x - next.width / 2, next.middle.y - next.height / 2, next.width,
-                next.height};
+    face.box = {square.middle.x - square.width / 2, square.middle.y - square.height / 2,
+                square.width, square.height};
     face.confidence = trust_of_error(pose->error);
     face.marks = marks;
     vec2 left{0}, right{0};
@@ -169,7 +197,8 @@ std::optional<Face> NetworkFinder::follow(const GrayFrame& frame, const Face& la
   const Box& b = last.box;
   const Cut square = last.marks ? cut_of_marks(*last.marks)
                                 : Cut{{b.center_x(), b.center_y()}, b.width, b.width, roll};
-  auto face = face_at(frame, square, 2);
+  auto face = meshed_face(frame, last);
+  if (!face) face = face_at(frame, square, 2);
   if (!face) return {};
   const float trust = face->confidence;
   face->score = last.score;
@@ -200,8 +229,9 @@ std::optional<Face> NetworkFinder::follow(const GrayFrame& frame, const Face& la
 
 }  // namespace
 
-std::unique_ptr<FaceFinder> make_network_finder(const std::string& folder) {
-  return std::make_unique<NetworkFinder>(folder);
+std::unique_ptr<FaceFinder> make_network_finder(const std::string& folder,
+                                                std::optional<MeshReader> meshes) {
+  return std::make_unique<NetworkFinder>(folder, std::move(meshes));
 }
 
 }  // namespace wellspring::kiosk

@@ -123,7 +123,7 @@ void measure_clips(const Options& options, const GestureModels& models) {
       settings.gestures = &models;
       settings.bodies = networks;
       // Faces are found by the same networks; those of bodies and hands lie elsewhere.
-      if (!networks) settings.graphs = "/nowhere";
+      if (!networks) settings.face.graphs = "/nowhere";
       Watched all;
       for (const char* file : set.files) {
         if (!fs::exists(folder / file)) continue;

@@ -63,7 +63,8 @@ TEST_F(FaceMeshes, PointsAreWhereLandmarksAre) {
 
 TEST_F(FaceMeshes, IrisesLieBetweenTheCornersOfEyes) {
   MeshReader reader((weights / "human").string());
-  const FaceMesh mesh = reader.read(view(), mesh_cut_of_marks(marks));
+  FaceMesh mesh = reader.read(view(), mesh_cut_of_marks(marks));
+  IrisReader((weights / "human").string()).read(view(), mesh);
   ASSERT_TRUE(mesh.irises);
   for (size_t eye = 0; eye < 2; eye++) {
     const auto& iris = (*mesh.irises)[eye];

@@ -90,7 +90,7 @@ TEST(FaceNetwork, expressions_are_there_only_when_asked_for) {
   ObserverSettings settings;
   settings.face.weights = weights.string();
   settings.expression = true;
-  const Observation seen = watch(settings, vec3(0), 1.5);
+  const Observation seen = watch(settings, vec3(0), 1.9);
   ASSERT_EQ(seen.people.size(), 1u);
   ASSERT_TRUE(seen.people[0].expression);
   EXPECT_EQ(*seen.people[0].expression, Expression{});  // rest is still being learnt

@@ -9,7 +9,7 @@ import { copyFileSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-const names = ['emotion', 'facemesh', 'handlandmark-lite', 'iris', 'movenet-lightning'];
+const names = ['facemesh', 'handlandmark-lite', 'iris', 'movenet-lightning'];
 const folder = join(process.argv[2], 'node_modules/@vladmandic/human');
 // The bundle is a module but does not say so in its name.
 const copy = join(process.argv[2], 'tfjs.mjs');

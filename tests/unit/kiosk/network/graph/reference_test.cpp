@@ -53,7 +53,7 @@ TEST_P(GraphReference, OutputsAreThoseOfThePackage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Human, GraphReference,
-                         testing::Values("emotion", "facemesh", "handlandmark-lite", "iris"),
+                         testing::Values("facemesh", "handlandmark-lite", "iris"),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::ranges::replace(name, '-', '_');
