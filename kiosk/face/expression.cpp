@@ -17,6 +17,7 @@ constexpr size_t rigid[] = {33, 133, 362, 263, 168, 6, 197, 195, 5, 4, 2, 98, 32
 // These are the corners of the eyes, image left first.
 constexpr size_t left_eye[] = {33, 133}, right_eye[] = {362, 263};
 constexpr size_t nose_root = 168, nose_foot = 2;
+static_assert(std::size(expression_table[0]) == cue_count);
 constexpr float cue_of_classes = 0.5f;
 constexpr double longest_step = 0.25;  // seconds
 

@@ -30,7 +30,7 @@ struct Face {
   float confidence = 0;                     // clearness of the detector's answer, 0..1
   std::optional<std::array<vec2, 2>> eyes;  // pixels: the eye at image left, then at image right
   std::optional<FaceMarks> marks{};         // found by networks only
-  std::optional<FaceMesh> mesh{};  // of a followed face that is large enough; marks are its points
+  std::optional<FaceMesh> mesh{};  // a large face that is followed has one; marks are its points
   // These concern the detector's looks at landmarks that are followed: its last score, how often it
   // agreed, when it was asked last and when it last agreed.
   float score = 0;

@@ -173,7 +173,7 @@ void print_table(const Factors& factors) {
   for (size_t e = 0; e < expressions; e++) {
     std::cout << "    // " << names[e] << "\n";
     const std::string margin(5, ' ');
-    std::string line = "    {{";
+    std::string line = "    {";
     for (size_t k = 0; k < cue_count; k++) {
       std::ostringstream number;
       number << std::round(1e4f * factors[e][k]) / 1e4f << 'f';
@@ -183,7 +183,7 @@ void print_table(const Factors& factors) {
       }
       if (k > 0) line += ' ';
       line += number.str();
-      line += k + 1 < cue_count ? "," : "}},";
+      line += k + 1 < cue_count ? "," : "},";
     }
     std::cout << line << '\n';
   }

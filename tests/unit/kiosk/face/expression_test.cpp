@@ -82,7 +82,7 @@ TEST(Expression, NothingMovesInAFaceAtRestWhereverItIs) {
 }
 
 TEST(Expression, MovementsAreTenthsOfTheDistanceBetweenTheEyes) {
-  const float apart = 61;  // of rest_face, pixels
+  const float apart = 61;  // pixels in rest_face
   for (float angle : {0.f, 0.5f}) {
     const FaceMesh face = elsewhere(smiling(), angle);
     EXPECT_NEAR(moved(face, Movement::corners_up), 10 * 6 / apart, 0.01f);
