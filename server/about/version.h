@@ -21,7 +21,8 @@ struct Component {
 // `compiled_in`, libraries of headers alone. Asks dpkg-query if there is one.
 std::vector<Component> list_components(std::initializer_list<const char*> compiled_in);
 
-// These write "VERSION"; "NAME VERSION"; that with the components, one a line; or these as CycloneDX 1.5.
+// These write "VERSION"; "NAME VERSION"; that with the components, one a line; or these as
+// CycloneDX 1.5.
 std::string version_number();
 std::string describe_version(const std::string& program);
 std::string describe_components(const std::string& program,
@@ -78,7 +79,7 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libmpg123.", "mpg123", "LGPL-2.1-only", "recordings, for libsndfile"},
     {"libogg.", "Ogg", "BSD-3-Clause", "recordings, for libsndfile"},
     {"libOpenCL.", "OpenCL ICD loader", "BSD-2-Clause", "for oneDNN; not used"},
-    {"libnats.", "NATS C client", "Apache-2.0", "workers on other machines"},
+    {"libnats.", "NATS C client", "Apache-2.0", "workers elsewhere"},
     {"libopencv_", "OpenCV", "Apache-2.0", "cameras and faces, in the kiosk's program"},
     {"libOpenEXR", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
     {"libopus.", "Opus", "BSD-3-Clause", "recordings, for libsndfile"},

@@ -6,7 +6,7 @@
 namespace wellspring::workers {
 namespace {
 
-constexpr double weight = 0.2;  // of a new measurement
+constexpr double weight = 0.2;  // share of a new measurement
 constexpr double least_share = 0.05, more_share = 0.05, less_share = 0.7;
 constexpr double longest_line = 2;  // seconds
 

@@ -5,6 +5,8 @@
 #pragma once
 #include <cstdint>
 
+#include "base/layers.h"
+
 namespace wellspring::workers {
 
 struct WorkerPace {

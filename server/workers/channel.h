@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Connects to a NATS server; the library libnats is known here alone. Nobody who sends waits:
 // messages go through a bounded queue to a thread of their own, and are dropped while there is no
-// connection. A lost connection comes back by itself, however long that takes. What others publish
-// is handed over on the library's threads.
+// connection. A lost connection comes back by itself, however long that takes. Messages of others
+// are handed over on the library's threads.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -30,7 +30,7 @@ struct ChannelSettings {
 
 struct Subscription {
   std::string subject;
-  std::string group;  // of those who share the subject's messages; empty: all get each
+  std::string group;  // those who share the subject's messages; empty: all get each
   // Any thread, one message at a time.
   std::function<void(std::string_view message, std::string_view reply_to)> heard;
 };

@@ -25,8 +25,8 @@ namespace wellspring::workers {
 struct CrewSettings {
   ChannelSettings channel;  // no address: there are no workers
   std::string secret;       // shared with workers; empty: messages are not sealed
-  std::string version;      // of this program
-  bool verifies = false;    // what goes out is traced here, too, and compared bit by bit
+  std::string version;      // version of this program
+  bool verifies = false;    // requests are traced here, too, and compared bit by bit
 };
 
 // Holds how a worker is, for who looks after it.
@@ -40,7 +40,7 @@ struct WorkerReport {
 // Counts since the beginning.
 struct CrewTotals {
   uint64_t orders = 0, requests = 0;     // sent
-  uint64_t samples = 0;                  // that came, were right and in time
+  uint64_t samples = 0;                  // samples that came, were right and in time
   uint64_t lost = 0;                     // requests without an answer in time
   uint64_t late = 0;                     // samples that came after that
   uint64_t spoiled = 0;                  // messages that were none, or whose samples cannot be

@@ -13,7 +13,7 @@ namespace wellspring::workers {
 namespace {
 
 constexpr size_t most_name_bytes = 64;
-constexpr float most_light = 1e6f;  // of a sample, either way
+constexpr float most_light = 1e6f;  // light of a sample, either way
 constexpr float most_place = 1e7f;  // metres from the scene's origin
 constexpr float infinity = std::numeric_limits<float>::infinity();
 

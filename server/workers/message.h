@@ -19,14 +19,14 @@
 
 namespace wellspring::workers {
 
-inline constexpr size_t most_requests = 4096;              // of an order
-inline constexpr size_t most_state_bytes = 192 * 1024;     // of an order
+inline constexpr size_t most_requests = 4096;              // number in an order
+inline constexpr size_t most_state_bytes = 192 * 1024;     // size in an order
 inline constexpr size_t most_message_bytes = 1000 * 1000;  // NATS takes 1 MiB
 inline constexpr uint32_t longest_worth_ms = 60'000;       // TraceOrder::worth_ms
 
 // Holds what has to be equal for both sides to find the same bits.
 struct Sameness {
-  std::string version;       // of the program
+  std::string version;       // version of the program
   std::string instructions;  // instruction_set()
   uint64_t scene = 0;        // number of what stands and what can move
   uint64_t light = 0;  // number of the illumination maps on which walks end; 0: there are none
@@ -84,7 +84,7 @@ struct CallAnswer {
 
 // Holds the key that a secret makes; none: messages are not sealed.
 using MessageKey = std::optional<std::array<uint8_t, 32>>;
-MessageKey make_message_key(const std::string& secret);  // of any length; empty: no key
+MessageKey make_message_key(const std::string& secret);  // a secret of any length; empty: no key
 
 std::string write_message(const TraceOrder& order, const MessageKey& key);
 std::string write_message(const TraceAnswer& answer, const MessageKey& key);
@@ -105,7 +105,7 @@ bool is_worker_name(std::string_view name);
 // Holds how large numbers in samples of a world may be.
 struct SampleBounds {
   uint32_t objects = 0;
-  std::vector<uint32_t> triangles;  // of each instance
+  std::vector<uint32_t> triangles;  // number of triangles of each instance
 };
 // Returns whether the samples can be answers to requests in such a world.
 bool are_within(const std::vector<Sample>& samples, const SampleBounds& bounds);

@@ -133,7 +133,8 @@ const may_enter = {
     lens: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit/pieces',
       'exhibit'],
     workers: ['state', 'storyteller', 'moving', 'exhibit/pieces', 'exhibit'],
-    draw: ['workers', 'wall', 'lens', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
+    draw: ['workers', 'wall', 'lens', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving',
+      'exhibit'],
     // The tick.
     '': ['draw', 'workers', 'answer', 'count', 'state', 'house', 'kiosk', 'visit', 'storyteller',
       'moving', 'exhibit'],

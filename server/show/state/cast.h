@@ -44,7 +44,7 @@ struct PosedBy {
   Pose pose;
   mat4 placement{1};
   HeldProp held;
-  std::vector<double> times;  // of the exhibit's animations
+  std::vector<double> times;  // times of the exhibit's animations, seconds
   int shown_model = -1;       // index into ShowCast::held
   PropPose shown;
 };
