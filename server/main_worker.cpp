@@ -34,7 +34,8 @@ using namespace wellspring::program;
 namespace {
 
 constexpr size_t most_waiting = 1 << 17;  // requests
-constexpr double look_every = 0.1;        // seconds
+constexpr double look_every = 0.02;       // seconds
+constexpr size_t most_parts = 16;         // parts of maps that wait
 
 std::atomic<bool> asked_to_stop = false;
 void stop(int) { asked_to_stop = true; }
@@ -122,14 +123,15 @@ void load(const Options& options, Workshop& workshop) {
 
 void run(const Options& options) {
   const MessageKey key = make_message_key(read_token(options.key_file, "WELLSPRING_WORKERS_KEY"));
-  Workshop workshop(version_number(), options.name);
+  Workshop workshop(version_number(), options.name, options.cache);
   load(options, workshop);
   Orders orders;
   Channel* line = nullptr;
   std::atomic<bool> ready = false;  // `line` is set
   std::atomic<uint64_t> refused_messages = 0;
-  const auto send = [&](std::string_view to, std::string message) {
-    if (ready && !to.empty()) line->send(std::string(to), "", std::move(message));
+  const auto send = [&](std::string_view to, std::string message,
+                        const std::string& reply_to = {}) {
+    if (ready && !to.empty()) line->send(std::string(to), reply_to, std::move(message));
   };
   Subscription calls{call_subject, "", [&](std::string_view message, std::string_view reply_to) {
                        RollCall call;
@@ -149,9 +151,18 @@ void run(const Options& options) {
             answers_subject(server),
             write_message(TraceAnswer{server, number, options.name, Refusal::busy, 0, 0, {}}, key));
       }};
+  const std::string parts_subject = fmt::format("wellspring.maps.{}-{}", options.name, getpid());
+  std::mutex mutex;
+  std::vector<MapPart> parts;
+  Subscription maps{parts_subject, "", [&](std::string_view message, std::string_view) {
+                      MapPart part;
+                      if (!read_message(message, key, part)) return void(refused_messages++);
+                      std::lock_guard lock(mutex);
+                      if (parts.size() < most_parts) parts.push_back(std::move(part));
+                    }};
   ChannelSettings settings = options.channel;
   settings.name = "wellspring worker " + options.name;
-  Channel channel(settings, {calls, work});
+  Channel channel(settings, {calls, work, maps});
   line = &channel, ready = true;
   std::cout << fmt::format("Wellspring worker {}: {} exhibits, {} cores, {}", options.name,
                            workshop.exhibits(), options.cores, instruction_set())
@@ -159,6 +170,12 @@ void run(const Options& options) {
   uint64_t samples = 0, refusals = 0;
   while (!asked_to_stop) {
     const std::optional<Orders::Waiting> next = orders.take();
+    std::unique_lock lock(mutex);
+    const std::vector<MapPart> came = std::exchange(parts, {});
+    lock.unlock();
+    for (const MapPart& part : came) workshop.take(part);
+    if (const auto question = workshop.ask_for_maps(seconds_now()))
+      send(answers_subject(question->server), write_message(*question, key), parts_subject);
     if (!next) continue;
     const TraceAnswer answer = workshop.answer(next->order, seconds_now() - next->came);
     samples += answer.samples.size();

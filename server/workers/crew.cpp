@@ -7,7 +7,9 @@
 #include <random>
 
 #include "base/clock.h"
+#include "base/load_error.h"
 #include "base/log.h"
+#include "base/read_file.h"
 
 namespace wellspring::workers {
 namespace {
@@ -53,16 +55,15 @@ Crew::Crew(CrewSettings settings, std::string exhibit, uint64_t scene, SampleBou
       key_(make_message_key(settings_.secret)),
       server_(random_number()),
       answers_(answers_subject(server_)),
-      channel_(
-          settings_.channel,
-          {{answers_, "", [this](std::string_view message, std::string_view) { hear(message); }}}) {
+      channel_(settings_.channel,
+               {{answers_, "", [this](auto message, auto reply_to) { hear(message, reply_to); }}}) {
 }
 
-void Crew::hear(std::string_view message) {
+void Crew::hear(std::string_view message, std::string_view reply_to) {
   std::lock_guard lock(mutex_);
   if (inbox_bytes_ + message.size() > most_inbox_bytes) return;  // nobody has asked for so much
   inbox_bytes_ += message.size();
-  inbox_.emplace_back(seconds_now(), message);
+  inbox_.push_back({seconds_now(), std::string(message), std::string(reply_to)});
 }
 
 bool Crew::is_asked(const Member& member, double now) const {
@@ -80,14 +81,16 @@ void Crew::advance() {
   const double now = seconds_now();
   const bool connected = channel_.connected();
   std::unique_lock lock(mutex_);
-  std::deque<std::pair<double, std::string>> inbox = std::exchange(inbox_, {});
+  const std::deque<Heard> inbox = std::exchange(inbox_, {});
   inbox_bytes_ = 0;
   lock.unlock();
-  for (const auto& [came, message] : inbox) {
+  for (const Heard& heard : inbox) {
     CallAnswer here;
     TraceAnswer answer;
-    if (read_message(message, key_, here)) take_call_answer(here, came);
-    else if (read_message(message, key_, answer)) take_answer(std::move(answer), came);
+    MapQuestion question;
+    if (read_message(heard.message, key_, here)) take_call_answer(here, heard.came);
+    else if (read_message(heard.message, key_, answer)) take_answer(std::move(answer), heard.came);
+    else if (read_message(heard.message, key_, question)) answer_map(question, heard.reply_to);
     else {
       lock.lock();
       totals_.spoiled++;
@@ -104,6 +107,26 @@ void Crew::advance() {
   const RollCall call{server_, ++calls_};
   lock.unlock();
   channel_.send(call_subject, answers_, write_message(call, key_));
+}
+
+// A file that cannot be read has no bytes.
+void Crew::answer_map(const MapQuestion& question, const std::string& reply_to) {
+  if (question.server != server_ || reply_to.empty()) return;
+  MapPart part{server_, question.light, question.which, 0, 0, {}};
+  if (question.which < settings_.map_files.size()) {
+    std::string& file = maps_[question.which];
+    if (question.offset == 0) {
+      try {
+        file = read_file(settings_.map_files[question.which], most_map_bytes);
+      } catch (const LoadError&) {
+        file.clear();
+      }
+    }
+    part.offset = std::min<uint64_t>(question.offset, file.size());
+    part.size = file.size();
+    part.bytes = file.substr(part.offset, most_part_bytes);
+  }
+  channel_.send(reply_to, "", write_message(part, key_));
 }
 
 void Crew::take_call_answer(const CallAnswer& answer, double now) {

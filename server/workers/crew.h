@@ -23,10 +23,11 @@
 namespace wellspring::workers {
 
 struct CrewSettings {
-  ChannelSettings channel;  // no address: there are no workers
-  std::string secret;       // shared with workers; empty: messages are not sealed
-  std::string version;      // version of this program
-  bool verifies = false;    // requests are traced here, too, and compared bit by bit
+  ChannelSettings channel;             // no address: there are no workers
+  std::string secret;                  // shared with workers; empty: messages are not sealed
+  std::string version;                 // version of this program
+  std::vector<std::string> map_files;  // those that may hold the present illumination maps
+  bool verifies = false;               // requests are traced here, too, and compared bit by bit
 };
 
 // Holds how a worker is, for who looks after it.
@@ -110,7 +111,12 @@ class Crew {
     double sent = 0, until = 0;
     int requests = 0;
   };
-  void hear(std::string_view message);
+  struct Heard {
+    double came = 0;  // seconds
+    std::string message, reply_to;
+  };
+  void hear(std::string_view message, std::string_view reply_to);
+  void answer_map(const MapQuestion& question, const std::string& reply_to);
   void take_call_answer(const CallAnswer& answer, double now);
   void take_answer(TraceAnswer answer, double now);
   void take_samples(Order order, std::vector<Sample> samples);
@@ -128,12 +134,14 @@ class Crew {
   const uint64_t server_;
   const std::string answers_;  // subject
   mutable std::mutex mutex_;
-  std::deque<std::pair<double, std::string>> inbox_;  // when it came, and the message
+  std::deque<Heard> inbox_;
   size_t inbox_bytes_ = 0;
   std::map<std::string, Member, std::less<>> members_;
   std::map<uint64_t, Order> orders_;  // in flight, by number
   std::vector<CrewSamples> done_;
   CrewTotals totals_;
+  std::map<uint8_t, std::string>
+      maps_;  // files that workers ask for, as they were read; the tick's
   uint64_t numbers_ = 0, calls_ = 0;
   double called_ = -1e9;
   Channel channel_;  // the last member: its threads write into the others

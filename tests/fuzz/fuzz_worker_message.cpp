@@ -29,6 +29,11 @@ void fuzz_worker_message(Bytes bytes) {
     }
     are_within(answer.samples, {4, {1, 2}});
   }
+  MapQuestion question;
+  if (read_message(text, none, question)) require(question.offset <= most_map_bytes, "offset");
+  MapPart part;
+  if (read_message(text, none, part))
+    require(part.offset + part.bytes.size() <= part.size, "the part lies within its file");
   RollCall call;
   read_message(text, none, call);
   CallAnswer here;

@@ -293,6 +293,8 @@ void write_worker_messages(const Corpus& corpus) {
   corpus.put("worker_message", "answer", write_message(make_answer(), none));
   corpus.put("worker_message", "refusal",
              write_message(TraceAnswer{1, 2, "north", Refusal::light, 0, 0, {}}, none));
+  corpus.put("worker_message", "question", write_message(MapQuestion{1, 2, 0, 4096}, none));
+  corpus.put("worker_message", "part", write_message(MapPart{1, 2, 0, 6, 9, "abc"}, none));
   corpus.put("worker_message", "call", write_message(RollCall{3, 4}, none));
   corpus.put("worker_message", "here",
              write_message(CallAnswer{3, 4, "north", "0.1.0", "x86-64 avx2", 8}, none));

@@ -195,13 +195,21 @@ test('an order of another version, scene or light is refused by name', { skip },
   line.close();
 });
 
-test('a worker that has other files is not asked, and told', { skip }, async () => {
+test('a worker without the illumination maps fetches them', { skip }, async () => {
   const exhibits = join(folder, 'content');
   cpSync(join(content, 'first-room'), join(exhibits, 'first-room'), { recursive: true });
   rmSync(join(exhibits, 'first-room', 'light.maps'));
   await start_worker('dark', { exhibits });
-  await until(async () => (await worker_state('dark'))?.problem.includes('light'),
-      'refuses: light');
+  await until(async () => await metric('worker_samples_total', '{worker="dark"}') > 1000,
+      'samples by fetched maps');
+  assert.ok(await metric('workers_refused_total', '{reason="light"}') > 0);
+  assert.equal(await metric('workers_differing_total'), 0);
+  await kill(workers.get('dark'), 'SIGTERM');
+});
+
+test('a worker that has another scene is not asked, and told', { skip }, async () => {
+  const exhibits = join(folder, 'content');
+  cpSync(join(content, 'first-room'), join(exhibits, 'first-room'), { recursive: true });
   const file = join(exhibits, 'first-room', 'scene.glb'), scene = readFileSync(file);
   const place = scene.indexOf('"roughnessFactor":0.');
   assert.ok(place > 0);
@@ -212,7 +220,7 @@ test('a worker that has other files is not asked, and told', { skip }, async () 
       'refuses: scene');
   assert.ok(await metric('workers_refused_total', '{reason="scene"}') > 0);
   await pictures_go_on();
-  for (const name of ['dark', 'other']) await kill(workers.get(name), 'SIGTERM');
+  await kill(workers.get('other'), 'SIGTERM');
 });
 
 function write_text(text) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "light/kept/map_file.h"
 #include "light/technique/technique.h"
 #include "picture/still/reconstruct_still.h"
 #include "show/state/visitor_picture.h"
@@ -32,8 +33,13 @@ std::vector<Sample> trace_here(const Show& show, const cache::Piece& piece) {
 void begin_workers(Show& show) {
   const CrewSettings& settings = show.settings.workers;
   if (settings.channel.url.empty()) return;
-  show.drawing->workers.crew = std::make_unique<Crew>(
-      settings, show.stage.exhibit.id, number_scene(show.stage), sample_bounds(*show.stage.world));
+  CrewSettings own = settings;
+  own.map_files = {shipped_light(show.stage.exhibit.folder)};
+  if (!show.settings.cache.empty())
+    own.map_files.push_back(show.settings.cache + "/" + show.stage.exhibit.id + ".maps");
+  show.drawing->workers.crew =
+      std::make_unique<Crew>(std::move(own), show.stage.exhibit.id, number_scene(show.stage),
+                             sample_bounds(*show.stage.world));
 }
 
 void mind_workers(Show& show) {
@@ -78,7 +84,7 @@ void ask_away(Show& show, const PictureJob& job, const Technique& technique,
     picture.away_view = job.view, picture.away_by = &technique;
     picture.away_asked = 0;
   }
-  const int most = std::min(job.away, BrokerSettings{}.most_waiting);
+  const int most = std::min(job.away, away_requests.most_waiting);
   if (most <= 0 || technique.begin_pass) return;
   work.away.clear();
   plan_still(job.view, picture.away_asked, most, visitor.link->id ^ away_sequence, work.away);

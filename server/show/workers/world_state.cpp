@@ -82,6 +82,27 @@ bool is_choice(const ExhibitPiece& piece, const PieceChoice& choice) {
          std::abs(int64_t(choice.tilt)) <= 360;
 }
 
+// Returns whether all of these numbers are finite and of a usual size.
+bool are_usual(const void* numbers, size_t count) {
+  const auto* all = static_cast<const float*>(numbers);
+  return std::all_of(all, all + count, [](float v) { return std::abs(v) < 1e7f; });
+}
+template <class T>
+bool are_usual(const std::vector<T>& values) {
+  return are_usual(values.data(), values.size() * sizeof(T) / sizeof(float));
+}
+
+bool are_usual(const PosedBy& by) {
+  const Pose& pose = by.pose;
+  const float sizes[] = {by.held.size, by.held.glow, by.shown.size, by.shown.flame};
+  const auto is_time = [](double time) { return std::abs(time) < 1e9; };
+  return are_usual(sizes, 4) && are_usual(&pose.translation, 3) && are_usual(pose.rotations) &&
+         are_usual(pose.displacers) && are_usual(pose.translations) && are_usual(pose.stretches) &&
+         are_usual(&by.placement, 16) && are_usual(&by.held.to_world, 16) &&
+         are_usual(&by.shown.to_world, 16) && is_time(by.time) &&
+         std::ranges::all_of(by.times, is_time);
+}
+
 // Returns whether a state is one of this exhibit.
 bool fits(const WorldState& state, const ExhibitStage& stage, const ShowCast& cast) {
   const Exhibit& exhibit = stage.exhibit;
@@ -95,7 +116,7 @@ bool fits(const WorldState& state, const ExhibitStage& stage, const ShowCast& ca
   const std::string& language = state.shown.language;
   if (!language.empty() && !std::ranges::count(exhibit.piece_languages, language)) return false;
   if (by.times.size() != cast.movers.posed.size() && !by.times.empty()) return false;
-  if (!std::isfinite(by.time) || by.held.prop >= int(exhibit.props.size()) ||
+  if (!are_usual(by) || by.held.prop >= int(exhibit.props.size()) ||
       by.shown_model >= int(cast.held.size()))
     return false;
   if (cast.figures.empty()) return true;

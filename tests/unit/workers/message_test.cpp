@@ -84,6 +84,20 @@ TEST(WorkerMessage, KeepsRefusalsAndCalls) {
   EXPECT_EQ(here.cores, 8u);
 }
 
+TEST(WorkerMessage, KeepsPartsOfMaps) {
+  MapQuestion question;
+  ASSERT_TRUE(read_message(write_message(MapQuestion{1, 2, 1, 4096}, none), none, question));
+  EXPECT_EQ(question.offset, 4096u);
+  MapPart part;
+  ASSERT_TRUE(read_message(write_message(MapPart{1, 2, 1, 4096, 4099, "abc"}, none), none, part));
+  EXPECT_EQ(part.bytes, "abc");
+  EXPECT_EQ(part.size, 4099u);
+  EXPECT_FALSE(read_message(write_message(MapPart{1, 2, 1, 4096, 4098, "abc"}, none), none, part));
+  EXPECT_FALSE(read_message(write_message(MapPart{1, 2, 1, 9, 4, ""}, none), none, part));
+  EXPECT_FALSE(
+      read_message(write_message(MapPart{1, 2, 0, 0, uint64_t(1) << 40, "abc"}, none), none, part));
+}
+
 TEST(WorkerMessage, RefusesWhatIsCutOffOrLonger) {
   const std::string order = write_message(make_order(), none);
   const std::string answer = write_message(make_answer(), none);
