@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workers/channel.h"
 
+#include <chrono>
 #include <nats/nats.h>
 #include <stdexcept>
+#include <utility>
 
 #include "base/log.h"
 
@@ -14,6 +16,7 @@ constexpr int most_pending_messages = 4096, most_pending_bytes = 64 << 20;
 constexpr int64_t reconnect_wait_ms = 500, ping_interval_ms = 2000, write_deadline_ms = 2000,
                   connect_timeout_ms = 2000;
 constexpr int most_pings_out = 2;
+constexpr std::chrono::milliseconds look_every{100};
 
 void need(natsStatus status, const std::string& what) {
   if (status != NATS_OK) throw std::invalid_argument(what + ": " + natsStatus_GetText(status));
@@ -138,14 +141,14 @@ Channel::~Channel() {
   thread_.join();
 }
 
-bool Channel::connected() const {
+// The library may hold its lock for as long as a connection takes.
+bool Channel::ask_connected() const {
   return natsConnection_Status(connection_->connection) == NATS_CONN_STATUS_CONNECTED;
 }
 
 bool Channel::send(std::string subject, std::string reply_to, std::string message) {
-  const bool connection = connected();
   std::lock_guard lock(mutex_);
-  if (!connection || outbox_bytes_ + message.size() > most_outbox_bytes) {
+  if (!connected_ || outbox_bytes_ + message.size() > most_outbox_bytes) {
     dropped_++;
     return false;
   }
@@ -157,17 +160,20 @@ bool Channel::send(std::string subject, std::string reply_to, std::string messag
 
 void Channel::carry(const std::stop_token& end) {
   std::unique_lock lock(mutex_);
-  while (wake_.wait(lock, end, [this] { return !outbox_.empty(); })) {
-    const Parcel parcel = std::move(outbox_.front());
-    outbox_.pop_front();
-    outbox_bytes_ -= parcel.message.size();
+  while (!end.stop_requested()) {
+    wake_.wait_for(lock, end, look_every, [this] { return !outbox_.empty(); });
+    std::deque<Parcel> parcels = std::exchange(outbox_, {});
+    outbox_bytes_ = 0;
     lock.unlock();
-    const char* reply = parcel.reply_to.empty() ? nullptr : parcel.reply_to.c_str();
-    bool sent = connected();  // otherwise the library would keep it for later
-    sent = sent && natsConnection_PublishRequest(connection_->connection, parcel.subject.c_str(),
-                                                 reply, parcel.message.data(),
-                                                 int(parcel.message.size())) == NATS_OK;
-    if (!sent) dropped_++;
+    for (const Parcel& parcel : parcels) {
+      const char* reply = parcel.reply_to.empty() ? nullptr : parcel.reply_to.c_str();
+      connected_ = ask_connected();  // otherwise the library would keep it for later
+      if (!connected_ || natsConnection_PublishRequest(
+                             connection_->connection, parcel.subject.c_str(), reply,
+                             parcel.message.data(), int(parcel.message.size())) != NATS_OK)
+        dropped_++;
+    }
+    connected_ = ask_connected();
     lock.lock();
   }
 }

@@ -16,17 +16,9 @@
 #include <thread>
 #include <vector>
 
-#include "base/layers.h"
+#include "workers/settings.h"
 
 namespace wellspring::workers {
-
-struct ChannelSettings {
-  std::string url;        // nats://HOST:PORT, tls://HOST:PORT, nats://TOKEN@HOST; several: commas
-  std::string token;      // shown to the NATS server; empty: none but the address's
-  std::string authority;  // file of certificates that sign the server's; empty: the system's
-  std::string certificate, key;  // files of the client's own; empty: none
-  std::string name;              // as the NATS server lists this client
-};
 
 struct Subscription {
   std::string subject;
@@ -46,7 +38,7 @@ class Channel {
 
   // Any thread. Returns false if the message is dropped: there is no connection, or others wait.
   bool send(std::string subject, std::string reply_to, std::string message);
-  bool connected() const;
+  bool connected() const { return connected_; }  // as it was a tenth of a second ago
   uint64_t dropped() const { return dropped_; }
 
  private:
@@ -55,12 +47,14 @@ class Channel {
     std::string subject, reply_to, message;
   };
   void carry(const std::stop_token& end);
+  bool ask_connected() const;
   std::unique_ptr<Connection> connection_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::deque<Parcel> outbox_;
   size_t outbox_bytes_ = 0;
   std::atomic<uint64_t> dropped_ = 0;
+  std::atomic<bool> connected_ = false;
   std::jthread thread_;
 };
 

@@ -296,6 +296,7 @@ CrewReport Crew::report() const {
   const double now = seconds_now();
   std::lock_guard lock(mutex_);
   report.totals = totals_;
+  report.totals.dropped = channel_.dropped();
   for (const auto& [name, member] : members_) {
     WorkerReport one{name,
                      member.problem,

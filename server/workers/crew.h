@@ -19,41 +19,10 @@
 #include "workers/budget.h"
 #include "workers/channel.h"
 #include "workers/message.h"
+#include "workers/report.h"
+#include "workers/settings.h"
 
 namespace wellspring::workers {
-
-struct CrewSettings {
-  ChannelSettings channel;             // no address: there are no workers
-  std::string secret;                  // shared with workers; empty: messages are not sealed
-  std::string version;                 // version of this program
-  std::vector<std::string> map_files;  // those that may hold the present illumination maps
-  bool verifies = false;               // requests are traced here, too, and compared bit by bit
-};
-
-// Holds how a worker is, for who looks after it.
-struct WorkerReport {
-  std::string name, problem;  // why it is not asked at the moment; empty: it is
-  int cores = 0;
-  double samples_per_second = 0, line = 0, share = 1;  // budget.h
-  uint64_t in_flight = 0, samples = 0;                 // requests sent; samples that came
-};
-
-// Counts since the beginning.
-struct CrewTotals {
-  uint64_t orders = 0, requests = 0;     // sent
-  uint64_t samples = 0;                  // samples that came, were right and in time
-  uint64_t lost = 0;                     // requests without an answer in time
-  uint64_t late = 0;                     // samples that came after that
-  uint64_t spoiled = 0;                  // messages that were none, or whose samples cannot be
-  uint64_t verified = 0, differing = 0;  // samples compared; those that differ
-  uint64_t refused[refusals] = {};       // requests, by reason
-};
-
-struct CrewReport {
-  bool used = false, connected = false;  // there is an address; a NATS server answers there
-  CrewTotals totals;
-  std::vector<WorkerReport> workers;
-};
 
 // Says what is the same for all requests of an errand.
 struct Errand {

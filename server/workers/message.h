@@ -16,6 +16,7 @@
 
 #include "light/sample.h"
 #include "light/transport_settings.h"
+#include "workers/report.h"
 
 namespace wellspring::workers {
 
@@ -47,22 +48,6 @@ struct TraceOrder {
   std::string state;              // state of the world (show/workers/world_state.h)
   std::vector<Request> requests;  // `pixel` and `resample` stay at home
 };
-
-// Says why there are no samples.
-enum class Refusal : uint8_t {
-  none,
-  version,       // another version of the program
-  instructions,  // another instruction set
-  exhibit,       // this worker has no such exhibit
-  scene,         // its files differ
-  light,         // its illumination maps differ
-  state,         // its lamps or moving things cannot be put so
-  technique,     // unknown, or one of passes over a picture
-  late,          // the answer would not be worth having any more
-  busy,          // too much waits here
-};
-inline constexpr int refusals = 10;
-const char* to_word(Refusal refusal);
 
 struct TraceAnswer {
   uint64_t server = 0, number = 0;  // as in the order

@@ -70,6 +70,8 @@ void per_worker(std::string& out, const CrewReport& report) {
              double(totals.samples));
   add_metric(out, "workers_lost_total", "Requests to workers without an answer in time",
              double(totals.lost));
+  add_metric(out, "workers_dropped_total", "Messages that the line to NATS did not take",
+             double(totals.dropped));
   add_metric(out, "workers_late_total", "Samples that came too late", double(totals.late));
   add_metric(out, "workers_spoiled_total", "Messages that were none, or held impossible samples",
              double(totals.spoiled));

@@ -9,6 +9,7 @@
 #include "show/state/renderer.h"
 #include "show/state/show.h"
 #include "show/state/visitor_picture.h"
+#include "workers/crew.h"
 
 namespace wellspring::show {
 

@@ -12,7 +12,7 @@
 #include "show/state/totals.h"
 #include "show/visit/flow.h"
 #include "wire/messages.h"
-#include "workers/crew.h"
+#include "workers/report.h"
 
 namespace wellspring::show {
 

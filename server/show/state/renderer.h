@@ -33,8 +33,11 @@
 #include "picture/warp_picture.h"
 #include "show/exhibit/pieces/piece_choices.h"
 #include "show/state/visitor_attention.h"
-#include "workers/crew.h"
 #include "world/view.h"
+
+namespace wellspring::workers {
+class Crew;  // workers/crew.h
+}
 
 namespace wellspring::show {
 
@@ -208,6 +211,8 @@ struct Renderer {
 
 // Holds the workers of a show (show/workers/send.h).
 struct ShowCrew {
+  ShowCrew();
+  ~ShowCrew();
   std::unique_ptr<Crew> crew;  // null: there are none
   // maps whose number is `light`
   std::shared_ptr<const IlluminationMap> maps;

@@ -8,7 +8,7 @@
 #include "light/transport_settings.h"
 #include "show/house/house.h"
 #include "wire/tokens.h"
-#include "workers/crew.h"
+#include "workers/settings.h"
 
 namespace wellspring::show {
 

@@ -8,6 +8,7 @@
 #include "picture/still/reconstruct_still.h"
 #include "show/state/visitor_picture.h"
 #include "show/workers/world_state.h"
+#include "workers/crew.h"
 
 namespace wellspring::show {
 namespace {
