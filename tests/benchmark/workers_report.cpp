@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int counts[] = {1, 2, 4, 6};
-constexpr double share = 0.25;                    // of a core, for each worker
+constexpr double share = 0.25;                    // share of a core that each worker has
 constexpr double longest_wait = 120, settle = 4;  // seconds
 
 void write_word(const fs::path& file, const std::string& word) {
