@@ -52,6 +52,15 @@ void take_message(natsConnection*, natsSubscription*, natsMsg* message, void* cl
 
 void end_listener(void* closure) { delete static_cast<Listener*>(closure); }
 
+natsStatus publish(natsConnection* connection, const std::string& subject,
+                   const std::string& reply_to, const std::string& message) {
+  const int size = int(message.size());
+  if (reply_to.empty())
+    return natsConnection_Publish(connection, subject.c_str(), message.data(), size);
+  return natsConnection_PublishRequest(connection, subject.c_str(), reply_to.c_str(),
+                                       message.data(), size);
+}
+
 // The library tells its threads' news here.
 void say_lost(natsConnection*, void*) { log::warn("the connection to NATS is lost"); }
 void say_back(natsConnection*, void*) { log::info("connected to NATS again"); }
@@ -99,6 +108,7 @@ static void set_options(const ChannelSettings& settings, natsOptions* options) {
                                            settings.key.c_str()),
          settings.certificate);
   need(natsOptions_SetName(options, settings.name.c_str()), "name");
+  natsOptions_DisableNoResponders(options, true);  // who is not there says nothing
   natsOptions_SetMaxReconnect(options, -1);
   natsOptions_SetReconnectWait(options, reconnect_wait_ms);
   natsOptions_SetTimeout(options, connect_timeout_ms);
@@ -166,11 +176,9 @@ void Channel::carry(const std::stop_token& end) {
     outbox_bytes_ = 0;
     lock.unlock();
     for (const Parcel& parcel : parcels) {
-      const char* reply = parcel.reply_to.empty() ? nullptr : parcel.reply_to.c_str();
       connected_ = ask_connected();  // otherwise the library would keep it for later
-      if (!connected_ || natsConnection_PublishRequest(
-                             connection_->connection, parcel.subject.c_str(), reply,
-                             parcel.message.data(), int(parcel.message.size())) != NATS_OK)
+      if (!connected_ || publish(connection_->connection, parcel.subject, parcel.reply_to,
+                                 parcel.message) != NATS_OK)
         dropped_++;
     }
     connected_ = ask_connected();
