@@ -19,7 +19,7 @@ constexpr double call_every = 1, gone_after = 3.5;
 // Seconds for which an answer is worth having: of a walking visitor, of a picture at rest.
 constexpr double worth_walking = 0.5, worth_resting = 2;
 constexpr double refused_rest = 10, first_garbage_rest = 10, most_garbage_rest = 600;  // seconds
-constexpr int least_order = 64, most_order = 2048;                                     // requests
+constexpr int least_order = 64, least_part = 256, most_order = 2048;                   // requests
 constexpr int most_unanswered = 3;                                                     // orders
 constexpr size_t most_inbox_bytes = 64 << 20, most_members = 256, most_done = 1024;
 
@@ -227,18 +227,26 @@ int Crew::room(bool rests) const {
 
 int Crew::send(Broker& broker, const Errand& errand, int most, const TraceHere& trace) {
   if (!channel_.connected()) return 0;
-  std::lock_guard lock(mutex_);
   const double now = seconds_now();
+  std::lock_guard lock(mutex_);
+  const auto room = [&](const Member& member) {
+    return is_asked(member, now) ? room_for(member.pace, errand.rests) : 0;
+  };
+  const int asked = int(std::ranges::count_if(
+      members_, [&](const auto& one) { return room(one.second) >= least_order; }));
+  if (asked == 0) return 0;
+  const int part = std::clamp(most / asked, least_part, most_order);
   int left = most;
-  for (auto& [name, member] : members_) {
-    if (!is_asked(member, now)) continue;
-    for (int room = room_for(member.pace, errand.rests); room >= least_order && left >= least_order;
-         room = room_for(member.pace, errand.rests)) {
-      const uint64_t before = member.pace.in_flight;
-      if (!send_order(broker, errand, name, member, std::min({room, left, most_order}), trace))
-        return most - left;
-      left -= int(member.pace.in_flight - before);
-    }
+  while (left >= least_order) {
+    // Who has most room is next, so that the others keep theirs for what comes soon.
+    const auto next =
+        std::ranges::max_element(members_, {}, [&](const auto& one) { return room(one.second); });
+    auto& [name, member] = *next;
+    if (room(member) < least_order) break;
+    const uint64_t before = member.pace.in_flight;
+    const int size = std::min({room(member), left, part});
+    if (!send_order(broker, errand, name, member, size, trace)) break;
+    left -= int(member.pace.in_flight - before);
   }
   return most - left;
 }
