@@ -18,9 +18,11 @@ namespace {
 constexpr double call_every = 1, gone_after = 3.5;
 // Seconds for which an answer is worth having: of a walking visitor, of a picture at rest.
 constexpr double worth_walking = 0.5, worth_resting = 2;
-constexpr double refused_rest = 10, first_garbage_rest = 10, most_garbage_rest = 600;  // seconds
-constexpr int least_order = 64, least_part = 256, most_order = 2048;                   // requests
-constexpr int most_unanswered = 3;                                                     // orders
+// Seconds of rest: of who refuses, who fetches maps meanwhile, who answers nonsense.
+constexpr double refused_rest = 10, fetching_rest = 2, first_garbage_rest = 10,
+                 most_garbage_rest = 600;                             // seconds
+constexpr int least_order = 64, least_part = 256, most_order = 2048;  // requests
+constexpr int most_unanswered = 3;                                    // orders
 constexpr size_t most_inbox_bytes = 64 << 20, most_members = 256, most_done = 1024;
 
 uint64_t random_number() {
@@ -163,7 +165,7 @@ void Crew::take_answer(TraceAnswer answer, double now) {
     // Who is merely late or busy is asked for less, others not at all.
     if (answer.refusal != Refusal::late && answer.refusal != Refusal::busy)
       rest(member, fmt::format("{} refuses: {}", order.worker, to_word(answer.refusal)),
-           now + refused_rest);
+           now + (answer.refusal == Refusal::light ? fetching_rest : refused_rest));
     return;
   }
   if (answer.samples.size() != size_t(order.requests) || !are_within(answer.samples, bounds_)) {

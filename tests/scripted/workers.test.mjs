@@ -12,7 +12,7 @@ import { Visitor, sleep, source, start_server, until } from '../server.mjs';
 
 const skip = spawnSync('nats-server', ['--version']).error ? 'nats-server is not installed' : false;
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
-const secret = 'what only these tests know';
+const secret = 'what-only-these-tests-know';
 const content = join(source, 'content');
 const workers = new Map();
 let port, nats, server, visitor;
