@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "about/version.h"
 #include "base/host.h"
 #include "base/log.h"
 #include "config/config_file.h"
@@ -18,7 +19,8 @@ namespace {
 struct Words {
   int port = 8080, agent_port = 0;
   double visitors_memory = 0, pieces_memory = 256;  // MiB
-  std::string token_file, kiosk_token_file, display = display_names[0];
+  std::string token_file, kiosk_token_file, workers_key_file, nats_token_file,
+      display = display_names[0];
 };
 
 std::vector<std::string> technique_names() {
@@ -133,6 +135,22 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   add_switch(app, "--late-samples,!--no-late-samples", show.late_samples,
              "samples of a walking visitor are traced when its picture is on its way, and show "
              "in the next");
+  ChannelSettings& nats = show.workers.channel;
+  app.add_option("--workers", nats.url,
+                 "address of the NATS server that workers listen to, e.g. nats://10.0.0.5:4222 "
+                 "(docs/workers.md); empty: there are none");
+  app.add_option("--workers-key", words.workers_key_file,
+                 "file of the secret that seals messages to workers and back; without it "
+                 "WELLSPRING_WORKERS_KEY");
+  add_switch(
+      app, "--verify-workers", show.workers.verifies,
+      "traces here, too, what workers trace, and counts samples that differ: to find faults, "
+      "since it takes more time than it saves");
+  app.add_option("--nats-token-file", words.nats_token_file,
+                 "file of the token that NATS asks for; without it WELLSPRING_NATS_TOKEN");
+  app.add_option("--nats-ca", nats.authority, "certificates in PEM that sign that of NATS");
+  app.add_option("--nats-cert", nats.certificate, "certificate in PEM that is shown to NATS");
+  app.add_option("--nats-key", nats.key, "its key in PEM");
   app.add_option("--log", options.log,
                  "file of the log, opened anew at SIGUSR1 and SIGHUP; empty: stderr");
   app.add_option("--log-level", options.log_level, "of the least urgent lines that are logged")
@@ -171,6 +189,11 @@ int read_options(ServerOptions& options, int argc, char** argv) {
     options.access.admin_token = read_token(words.token_file, "WELLSPRING_ADMIN_TOKEN");
     options.access.kiosk_tokens = read_tokens(words.kiosk_token_file, "WELLSPRING_KIOSK_TOKEN");
     options.museum.show.kiosk_tokens = options.access.kiosk_tokens;
+    CrewSettings& workers = options.museum.show.workers;
+    workers.secret = read_token(words.workers_key_file, "WELLSPRING_WORKERS_KEY");
+    workers.channel.token = read_token(words.nats_token_file, "WELLSPRING_NATS_TOKEN");
+    workers.channel.name = "wellspring server";
+    workers.version = version_number();
     log::set_level(options.log_level);
     if (!options.log.empty()) log::send_to(options.log);
   } catch (const CLI::ParseError& error) {

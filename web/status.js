@@ -115,6 +115,14 @@ function show_kiosks({ kiosks, cameras }) {
   by_id('cameras-section').hidden = cameras.length === 0;
 }
 
+function show_workers({ workers }) {
+  by_id('workers-section').hidden = workers.length === 0;
+  fill(by_id('workers'), ['Worker', 'Exhibit', 'State', 'Cores', 'Samples/s', 'Samples', 'Line ms'],
+      workers.map((one) => [one.name, one.exhibit,
+        { text: one.problem || 'traces', bad: one.problem !== '' }, number(one.cores),
+        number(one.samples_per_second), number(one.samples), number(one.line_ms)]));
+}
+
 // Returns a reader of metrics over all exhibits: counts are added, of other values the largest is
 // taken.
 const reader = (metrics) => (name) => {
@@ -288,6 +296,7 @@ async function refresh() {
       by_id('sign-in').hidden = true;
       judge(status);
       show_kiosks(status);
+      show_workers(status);
       by_id('sums').hidden = !status.sums;
       const metrics = parse_metrics(await figures.text());
       show_figures(metrics);

@@ -162,6 +162,8 @@ std::vector<Component> list_components(std::initializer_list<const char*> compil
   return components;
 }
 
+std::string version_number() { return WELLSPRING_VERSION; }
+
 std::string describe_version(const std::string& program) {
   return program + " " + WELLSPRING_VERSION + "\n";
 }

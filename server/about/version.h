@@ -21,7 +21,9 @@ struct Component {
 // `compiled_in`, libraries of headers alone. Asks dpkg-query if there is one.
 std::vector<Component> list_components(std::initializer_list<const char*> compiled_in);
 
-// These write "NAME VERSION"; that with the components, one a line; or these as CycloneDX 1.5.
+// These write "VERSION"; "NAME VERSION"; that with the components, one a line; or these as
+// CycloneDX 1.5.
+std::string version_number();
 std::string describe_version(const std::string& program);
 std::string describe_components(const std::string& program,
                                 const std::vector<Component>& components);
@@ -77,11 +79,13 @@ inline constexpr KnownLibrary known_libraries[] = {
     {"libmpg123.", "mpg123", "LGPL-2.1-only", "recordings, for libsndfile"},
     {"libogg.", "Ogg", "BSD-3-Clause", "recordings, for libsndfile"},
     {"libOpenCL.", "OpenCL ICD loader", "BSD-2-Clause", "for oneDNN; not used"},
+    {"libnats.", "NATS C client", "Apache-2.0", "workers elsewhere"},
     {"libopencv_", "OpenCV", "Apache-2.0", "cameras and faces, in the kiosk's program"},
     {"libOpenEXR", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
     {"libopus.", "Opus", "BSD-3-Clause", "recordings, for libsndfile"},
     {"libpixman-1.", "Pixman", "MIT", "for Cairo"},
     {"libpng16.", "libpng", "libpng-2.0", "PNG pictures"},
+    {"libprotobuf-c.", "protobuf-c", "BSD-2-Clause", "for the NATS C client; not used"},
     {"libpugixml.", "pugixml", "MIT", "X3D figures"},
     {"libqrcodegen", "QR Code generator", "MIT", "codes for guests' phones"},
     {"libseccomp.", "libseccomp", "LGPL-2.1-only", "what a process gives up"},

@@ -24,6 +24,7 @@ namespace gltf {}
 namespace world {}
 namespace light {}
 namespace cache {}
+namespace workers {}
 namespace picture {}
 namespace avatar {}
 namespace show {}
@@ -101,6 +102,13 @@ using namespace world;
 using namespace frame;
 }  // namespace cache
 
+namespace workers {
+using namespace cache;
+using namespace light;
+using namespace world;
+using namespace frame;
+}  // namespace workers
+
 namespace picture {
 using namespace spectrum;
 using namespace cache;
@@ -121,6 +129,7 @@ namespace show {
 using namespace spectrum;
 using namespace collection;
 using namespace picture;
+using namespace workers;
 using namespace store;
 using namespace volume;
 using namespace scan;
@@ -175,6 +184,7 @@ using namespace gltf;
 using namespace world;
 using namespace light;
 using namespace cache;
+using namespace workers;
 using namespace picture;
 using namespace avatar;
 using namespace show;

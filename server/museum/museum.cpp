@@ -23,6 +23,7 @@
 #include "show/house/house.h"
 #include "show/state/renderer.h"
 #include "show/state/make_show.h"
+#include "show/workers/send.h"
 #include "show/status/status.h"
 #include "show/storyteller/voice.h"
 #include "show/tick.h"
@@ -248,6 +249,7 @@ struct Museum::Impl {
     for (const Problem& problem : light) show->stage.light_problem = to_string(problem);
     notes.insert(notes.end(), light.begin(), light.end());
     for (const Problem& note : notes) log::warn("{}", to_string(note));
+    begin_workers(*show);
     show->visits.capacity = capacity;
     show->cast.speech = make_speech_source(speaker);
     show->cast.speech.prepare(lines_of(show->stage.exhibit));

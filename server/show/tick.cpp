@@ -24,6 +24,7 @@
 #include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
 #include "show/state/visitor_world.h"
+#include "show/workers/send.h"
 #include "show/state/renderer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -363,6 +364,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
       if (lamps_wait(show, visitor)) light_lamps(show, visitor);
       follow_wish(show, visitor);
     }
+  mind_workers(show);
+  if (free) take_deliveries(show);
   if (free && !show.drawing->renderer.drawn) watch_baker(show);
   narrate(show, dt);
   Demand demand;

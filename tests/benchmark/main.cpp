@@ -64,11 +64,11 @@ int main(int argc, char** argv) {
   std::string only, file, traces, pages, last, steps;
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
-  app.add_option(
-      "--only", only,
-      "one part: stream, load, pieces, lamps, cache, corrective, bake, show, denoise, avatar, "
-      "attention, kiosk, light "
-      "(or one of its own: light.error ...)");
+  app.add_option("--only", only,
+                 "one part: stream, load, workers, pieces, lamps, cache, corrective, bake, show, "
+                 "denoise, avatar, "
+                 "attention, kiosk, light "
+                 "(or one of its own: light.error ...)");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
   app.add_option("--last", last,
                  "where to keep it, too, if it has error over time: /status shows that");

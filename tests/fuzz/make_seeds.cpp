@@ -17,6 +17,7 @@
 #include "unit/store/band_files/made_bands.h"
 #include "unit/store/format/pictures.h"
 #include "unit/volume/format/volume_files.h"
+#include "unit/workers/messages.h"
 
 namespace wellspring::test {
 namespace {
@@ -286,6 +287,19 @@ void write_volumes(const Corpus& corpus) {
       R"( "byte_order": "big", "origin": [0, 0, 1], "axes": "RAS", "slope": 2})");
 }
 
+void write_worker_messages(const Corpus& corpus) {
+  const MessageKey none;
+  corpus.put("worker_message", "order", write_message(make_order(), none));
+  corpus.put("worker_message", "answer", write_message(make_answer(), none));
+  corpus.put("worker_message", "refusal",
+             write_message(TraceAnswer{1, 2, "north", Refusal::light, 0, 0, {}}, none));
+  corpus.put("worker_message", "question", write_message(MapQuestion{1, 2, 0, 4096}, none));
+  corpus.put("worker_message", "part", write_message(MapPart{1, 2, 0, 6, 9, "abc"}, none));
+  corpus.put("worker_message", "call", write_message(RollCall{3, 4}, none));
+  corpus.put("worker_message", "here",
+             write_message(CallAnswer{3, 4, "north", "0.1.0", "x86-64 avx2", 8}, none));
+}
+
 }  // namespace
 }  // namespace wellspring::test
 
@@ -306,5 +320,6 @@ int main(int argc, char** argv) {
   write_large_pictures(corpus);
   write_many_bands(corpus);
   write_volumes(corpus);
+  write_worker_messages(corpus);
   return 0;
 }

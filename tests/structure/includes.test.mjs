@@ -87,6 +87,9 @@ const may_enter = {
     still: ['cells'],
     '': ['cells', 'still'],
   },
+  workers: {
+    '': [],
+  },
   kiosk: {
     frame: [],
     gesture: [],
@@ -129,9 +132,11 @@ const may_enter = {
     watch: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
     lens: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit/pieces',
       'exhibit'],
-    draw: ['wall', 'lens', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
+    workers: ['state', 'storyteller', 'moving', 'exhibit/pieces', 'exhibit'],
+    draw: ['workers', 'wall', 'lens', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving',
+      'exhibit'],
     // The tick.
-    '': ['draw', 'answer', 'count', 'state', 'house', 'kiosk', 'visit', 'storyteller',
+    '': ['draw', 'workers', 'answer', 'count', 'state', 'house', 'kiosk', 'visit', 'storyteller',
       'moving', 'exhibit'],
   },
 };

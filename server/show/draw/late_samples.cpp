@@ -17,6 +17,7 @@
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
 #include "show/state/visitor_world.h"
+#include "show/workers/send.h"
 
 namespace wellspring::show {
 
@@ -168,8 +169,10 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
     return plan_pass(work.pass, visitor.link->id, uint32_t(job.tick), work.requests);
   }
   cache.attend();
+  const bool still = is_still(job);
   int most_asked = int(more_asked * float(job.samples));
-  bool late = !is_still(job) && may_be_late(show.settings, cache, technique, most_asked);
+  if (!still) most_asked += std::clamp(BrokerSettings{}.most_waiting - most_asked, 0, job.away);
+  bool late = !still && may_be_late(show.settings, cache, technique, most_asked);
   int asked = late ? most_asked : job.samples;
   work.ahead.clear();
   if (job.ahead != job.view && !technique.begin_pass)
@@ -190,8 +193,11 @@ bool begin_samples(Show& show, const PictureJob& job, const Technique& technique
   work.traced = 0;
   if (picture.costs.late) {
     picture.broker.ask(job.view, {&technique, transport_of(show.settings, job)}, work.requests);
+    send_waiting(show, job, visitor, false, job.away);
     return false;
   }
+  if (is_still(job))
+    ask_away(show, job, technique, transport_of(show.settings, job), work, visitor);
   picture.broker.forget();  // answers that were still on their way
   work.pose = show.cast.pose_number;
   if (technique.begin_pass)
@@ -224,8 +230,9 @@ void remember_traced(const Show& show, const PictureJob& job, const Technique& t
   if (show.cast.pose_number != work.pose) follow_meshes(*show.stage.world, work.samples);
   if (show.settings.display == Display::points)
     for (Sample& sample : work.samples) sample.glow = vec3(0);  // points show all light
-  picture.cache.remember(job.view, work.requests, work.samples);
   picture.costs.samples = work.samples.size();
+  if (is_still(job)) add_away(show, job, picture, work.requests, work.samples);
+  picture.cache.remember(job.view, work.requests, work.samples);
   // A picture that is drawn, not reconstructed, has a use for the samples only when it is kept for
   // long.
   if (!is_still(job) || !(job.learns || picture.cache.is_still())) return;

@@ -14,6 +14,7 @@
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_picture.h"
+#include "show/workers/send.h"
 
 namespace wellspring::show {
 
@@ -105,6 +106,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
   const bool leaps = !still && place.leapt && !seen && show.stage.lights.maps;
   if (leaps || (still && is_wanted_at_once(picture, now)))
     job.samples = std::min(job.samples, samples_at_once);
+  if (!has_all_samples(picture.rest)) job.away = room_of_workers(show, still);
   double interval = 1 / drawing_rate(show, visitor);
   if (moves) {
     // The picture is seen from when it is finished until the next one is.

@@ -61,6 +61,46 @@ void per_kiosk(std::string& out, const ShowReport& report) {
     add_sample(out, "kiosk_storyteller", {{"kiosk", kiosk.name}}, kiosk.storyteller);
 }
 
+void per_worker(std::string& out, const CrewReport& report) {
+  if (!report.used) return;
+  const CrewTotals& totals = report.totals;
+  add_metric(out, "workers_connected", "There is a connection to NATS", report.connected);
+  add_metric(out, "workers_requests_total", "Requests sent to workers", double(totals.requests));
+  add_metric(out, "workers_samples_total", "Samples that workers traced in time",
+             double(totals.samples));
+  add_metric(out, "workers_lost_total", "Requests to workers without an answer in time",
+             double(totals.lost));
+  add_metric(out, "workers_dropped_total", "Messages that the line to NATS did not take",
+             double(totals.dropped));
+  add_metric(out, "workers_late_total", "Samples that came too late", double(totals.late));
+  add_metric(out, "workers_spoiled_total", "Messages that were none, or held impossible samples",
+             double(totals.spoiled));
+  add_metric(out, "workers_verified_total", "Samples of workers that were traced here, too",
+             double(totals.verified));
+  add_metric(out, "workers_differing_total", "Those that were not the same bits",
+             double(totals.differing));
+  begin_metric(out, "workers_refused_total", "Requests that workers refused");
+  for (int i = 1; i < refusals; i++)
+    add_sample(out, "workers_refused_total", {{"reason", to_word(Refusal(i))}},
+               double(totals.refused[i]));
+  const auto each = [&](const char* name, const char* help, auto value) {
+    if (report.workers.empty()) return;
+    begin_metric(out, name, help);
+    for (const WorkerReport& one : report.workers)
+      add_sample(out, name, {{"worker", one.name}}, double(value(one)));
+  };
+  each("worker_asked", "The worker is given requests",
+       [](const WorkerReport& one) { return one.problem.empty(); });
+  each("worker_samples_total", "Samples that came from it",
+       [](const WorkerReport& one) { return one.samples; });
+  each("worker_samples_per_second", "As it traces; 0: not known",
+       [](const WorkerReport& one) { return one.samples_per_second; });
+  each("worker_line_milliseconds", "The line there and back, without waiting and tracing",
+       [](const WorkerReport& one) { return 1000 * one.line; });
+  each("worker_requests_in_flight", "Requests sent to it and not answered",
+       [](const WorkerReport& one) { return one.in_flight; });
+}
+
 double resident_bytes() {
   std::ifstream in("/proc/self/statm");
   double total = 0, resident = 0;
@@ -226,6 +266,7 @@ std::string write_metrics(const ShowReport& report) {
               [](auto& v) { return v.line_ms; });
   per_visitor(out, report, "line_bytes_per_second", "What the line carries; 0: not known",
               [](auto& v) { return v.line_rate; });
+  per_worker(out, report.workers);
   per_limit(out, report);
   per_visitor(out, report, "cache_bytes", "Memory of the render cache",
               [](auto& v) { return v.cache_bytes; });

@@ -9,6 +9,7 @@
 #include "show/state/renderer.h"
 #include "show/state/show.h"
 #include "show/state/visitor_picture.h"
+#include "workers/crew.h"
 
 namespace wellspring::show {
 
@@ -62,6 +63,7 @@ ShowReport make_report(const Show& show) {
   for (const Eye& eye : show.kiosks.eyes) report.cameras.push_back(report_camera(eye, show.time));
   report.mood = show.cast.teller.mind.mood;
   report.totals = show.totals;
+  if (const Crew* crew = show.drawing->workers.crew.get()) report.workers = crew->report();
   if (show.cast.speech.counts) {
     Speaker::Counts counts = show.cast.speech.counts();
     report.voice_running = counts.process_id != 0;

@@ -12,6 +12,7 @@
 #include "show/state/totals.h"
 #include "show/visit/flow.h"
 #include "wire/messages.h"
+#include "workers/report.h"
 
 namespace wellspring::show {
 
@@ -77,6 +78,7 @@ struct ShowReport {
   size_t map_texels = 0;
   std::string light_problem;  // problem with the package's own light; empty: none
   BakerStatus bake;
+  CrewReport workers;
   bool voice_running = false;
   uint64_t voice_restarts = 0, voice_lines = 0, voice_waiting = 0, voice_failed = 0;
   std::vector<VisitorReport> visitors;

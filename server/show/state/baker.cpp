@@ -94,6 +94,8 @@ void Baker::publish(const World& world, Bake& bake, uint64_t key, float& shown) 
   shown = map->error;
   if (!save_map(world, *map, settings_.file + ".maps", key))
     log::warn("{}.maps cannot be written: the next start knows less light", settings_.file);
+  else if (settings_.as_kept)
+    if (auto kept = load_map(world, settings_.file + ".maps", key).map) map = std::move(kept);
   std::lock_guard lock(mutex_);
   found_ = std::move(map);
 }

@@ -28,6 +28,7 @@ struct BakerSettings {
   float shown_error = 1;       // error of the map that is shown already; 1: not known
   // map on which walks end, all lamps full; may be null
   std::shared_ptr<const IlluminationMap> known;
+  bool as_kept = false;  // maps are handed over as their file has them, for others who read it
   std::vector<PlacedVolume> volumes;  // as World has them: they throw shadows
 };
 

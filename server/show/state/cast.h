@@ -36,6 +36,19 @@ struct Teller {
   Mood agent_mood = Mood::idle;
 };
 
+// Holds what the world was last posed by, for whoever has to pose another one alike.
+struct PosedBy {
+  double time = 0;  // show time
+  size_t storyteller = 0;
+  bool visible = false;
+  Pose pose;
+  mat4 placement{1};
+  HeldProp held;
+  std::vector<double> times;  // times of the exhibit's animations, seconds
+  int shown_model = -1;       // index into ShowCast::held
+  PropPose shown;
+};
+
 struct ShowCast {
   std::vector<Figure> figures;  // figures of all the exhibit's storytellers; hidden but for one
   std::vector<Prop> props;      // one for each of Exhibit::props; hidden but for what is held
@@ -50,7 +63,8 @@ struct ShowCast {
   // counts all that is heard, the storyteller's utterances and narrators' alike
   uint32_t utterances = 0;
   size_t greetings = 0, farewells = 0;
-  double behaved_at = -1;    // show time when the storyteller was last moved
+  double behaved_at = -1;  // show time when the storyteller was last moved
+  PosedBy posed_by;
   uint64_t pose_number = 1;  // number of the world's pose: counts commits
   // Teller::number of the storyteller whose pose the figures have; none yet
   uint64_t posed_as = ~uint64_t(0);

@@ -211,6 +211,7 @@ void follow_lamps(ExhibitStage& stage, Visitor& visitor) {
     });
   }
   picture.broker.forget();
+  picture.away.forget();
   picture.compositor.invalidate_samples();
   picture.lamps = lit;
 }

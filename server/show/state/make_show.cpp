@@ -96,6 +96,7 @@ void begin_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   use_maps(show.stage, show.visits, std::move(maps));
   if (settings.cache.empty() || !settings.bakes) return;
   baker.file = settings.cache + "/" + show.stage.exhibit.id;
+  baker.as_kept = !settings.workers.channel.url.empty();
   baker.source = show.stage.exhibit.folder;
   baker.places = eye_places(show.stage.exhibit);
   baker.eyes = all_eye_places(show.stage.exhibit);

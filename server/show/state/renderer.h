@@ -35,6 +35,10 @@
 #include "show/state/visitor_attention.h"
 #include "world/view.h"
 
+namespace wellspring::workers {
+class Crew;  // workers/crew.h
+}
+
 namespace wellspring::show {
 
 // Holds what a picture is to be, decided before it is drawn (show/draw/picture.h).
@@ -86,6 +90,7 @@ struct PictureJob {
   // wide view for a quick turn; drawn before the picture, in fewer pixels
   std::optional<View> around;
   int samples = 0;
+  int away = 0;           // number of further samples that workers may trace
   DynamicLights dynamic;  // lights that move or change, as they are at that time
   ShownPieces pieces;     // seen by the visitor
 };
@@ -144,7 +149,7 @@ struct DrawingWork {
   Keyframe keyframe, around;  // likewise
   // the picture made small, for attention; null: not wanted
   std::shared_ptr<const SeenPicture> seen;
-  std::vector<Request> requests, ahead;
+  std::vector<Request> requests, ahead, away;
   std::vector<Sample> samples;
   View pass;          // view whose pixels are all asked for, if whole passes are filtered
   size_t traced = 0;  // number of requests traced so far
@@ -204,6 +209,16 @@ struct Renderer {
   bool idle() const { return !worker.busy(); }
 };
 
+// Holds the workers of a show (show/workers/send.h).
+struct ShowCrew {
+  ShowCrew();
+  ~ShowCrew();
+  std::unique_ptr<Crew> crew;  // null: there are none
+  // maps whose number is `light`
+  std::shared_ptr<const IlluminationMap> maps;
+  uint64_t light = 0;
+};
+
 // Holds what draws the pictures of a show, and how fast it was measured to be.
 struct ShowDrawing {
   double drew_at = 0;                 // show time when anything was last drawn, traced or lit
@@ -212,6 +227,7 @@ struct ShowDrawing {
   float samples_per_second = 200000;  // measured, of all cores
   WarpScratch warp;  // shared by all visitors, whose pictures are warped one after the other
   StillPass pass;
+  ShowCrew workers;
   AttentionAnalysis analysis;  // show/draw/steer.h
   Renderer renderer;           // the last member: it reads the others while it is at work
 };

@@ -8,6 +8,7 @@
 #include "light/transport_settings.h"
 #include "show/house/house.h"
 #include "wire/tokens.h"
+#include "workers/settings.h"
 
 namespace wellspring::show {
 
@@ -37,6 +38,7 @@ struct ShowSettings {
   int max_pixels = 1920 * 1200;
   HouseSettings house;
   std::vector<Token> kiosk_tokens;  // show/answer/cameras.h
+  CrewSettings workers;             // machines that trace samples, too (show/workers)
   bool watched = false;  // a curator works at the exhibit: pages show what helps with that
   // Seconds (show/answer/idle.h): without input until visitors are asked whether they are there,
   // and until they have answered; of a hidden page until its visit rests. 0: never.

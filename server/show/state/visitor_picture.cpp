@@ -38,10 +38,10 @@ void mix_fade(const Fade& fade, float share, Image8& image) {
 
 size_t memory_bytes(const VisitorPicture& picture) {
   return picture.cache.memory_bytes() + picture.compositor.memory_bytes() +
-         picture.broker.memory_bytes() + memory_bytes(picture.keyframe) +
-         memory_bytes(picture.around.keyframe) + memory_bytes(picture.moving) +
-         memory_bytes(picture.surfaces) + memory_bytes(picture.settled) +
-         bytes_of(picture.fade.from.rgb, picture.lens.picture.rgb) +
+         picture.broker.memory_bytes() + picture.away.memory_bytes() +
+         memory_bytes(picture.keyframe) + memory_bytes(picture.around.keyframe) +
+         memory_bytes(picture.moving) + memory_bytes(picture.surfaces) +
+         memory_bytes(picture.settled) + bytes_of(picture.fade.from.rgb, picture.lens.picture.rgb) +
          (picture.lens.compositor ? picture.lens.compositor->memory_bytes() : 0);
 }
 

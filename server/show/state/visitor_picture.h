@@ -68,6 +68,10 @@ struct LensPicture {
   bool unsent = false;
 };
 
+// Requests that are traced elsewhere are on their way for longer than those that are traced here.
+inline constexpr BrokerSettings late_requests{64, 1 << 14, 1 << 16, 1 << 16},
+    away_requests{64, 1 << 17, 1 << 17, 1 << 17};
+
 struct VisitorPicture {
   bool at_work = false;  // a picture of this visitor is drawn or its samples are traced
   // These hold the light that has been found.
@@ -75,8 +79,13 @@ struct VisitorPicture {
   std::optional<double> hour;  // hour of the day that pictures are drawn for
   RenderCache cache;
   Compositor compositor;
-  Broker broker;              // samples that are traced after the visitor's picture, for the next
-  double broker_seconds = 0;  // seconds of all cores, for what was last asked
+  Broker broker{
+      late_requests};          // samples that are traced after the visitor's picture, for the next
+  Broker away{away_requests};  // samples of its picture at rest that workers trace
+  uint64_t away_asked = 0;     // number asked for, of the view's sequence of these
+  View away_view;              // view that asked
+  const Technique* away_by = nullptr;  // technique of these
+  double broker_seconds = 0;           // seconds of all cores, for what was last asked
   // Seconds of the renderer's time that this visitor has had, on a clock that it shares with the
   // others who want pictures (Renderer::served): a visitor who wanted none for a while begins where
   // the others are.

@@ -87,6 +87,9 @@ void light_lawns(Show& show, const Visitor& visitor) {
 
 void pose_world(ExhibitStage& stage, ShowCast& cast, double time, const Teller& teller,
                 const std::vector<double>& times, const ShownHeld& held) {
+  cast.posed_by = {
+      time,        teller.index, teller.visible, teller.pose, teller.storyteller.placement,
+      teller.held, times,        held.model,     held.pose};
   bool moved = pose_movers(stage.exhibit, times, cast.movers, *stage.world);
   cast.posed_as = teller.number;
   for (size_t i = 0; i < cast.figures.size(); i++)

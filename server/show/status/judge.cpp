@@ -321,6 +321,22 @@ void judge_voice(Judge& judge, const ShowReport& report) {
                         .remedy = "If that goes on, read the server's log."});
 }
 
+void judge_workers(Judge& judge, const CrewReport& report) {
+  judge.judge(report.used && !report.connected,
+              {.about = "nats",
+               .what = "No samples come from workers",
+               .why = "no NATS server answers at the address of --workers",
+               .remedy = "See whether it runs and may be reached. This server goes on alone."},
+              {.before = 5, .after = 5});
+  for (const WorkerReport& one : report.workers)
+    if (!one.problem.empty())
+      judge.tell({.about = "worker " + one.name,
+                  .what = "A worker is not asked",
+                  .why = one.problem,
+                  .remedy = "docs/workers.md says what each reason means."},
+                 {.before = 5});
+}
+
 }  // namespace
 
 std::vector<Finding> judge(const ShowReport& report, JudgeMemory& memory) {
@@ -329,6 +345,7 @@ std::vector<Finding> judge(const ShowReport& report, JudgeMemory& memory) {
   judge_screens(judge, report, memory);
   judge_pictures(judge, report);
   judge_voice(judge, report);
+  judge_workers(judge, report.workers);
   judge_doors(judge, report.doors);
   if (!report.sums_problem.empty())
     judge.tell({.about = "sums",

@@ -81,13 +81,27 @@ void put_kiosks(json& status, const Standing& one) {
   }
 }
 
+void put_workers(json& status, const Standing& one) {
+  for (const WorkerReport& worker : one.report.workers.workers)
+    status["workers"].push_back({{"name", worker.name},
+                                 {"exhibit", one.exhibit},
+                                 {"cores", worker.cores},
+                                 {"problem", worker.problem},
+                                 {"samples", worker.samples},
+                                 {"samples_per_second", std::round(worker.samples_per_second)},
+                                 {"line_ms", std::round(1000 * worker.line)}});
+}
+
 }  // namespace
 
 std::string write_status(const std::vector<Standing>& exhibits,
                          const std::vector<FailedExhibit>& failed, bool sums) {
   json findings = json::array();
-  json status = {
-      {"house", nullptr}, {"kiosks", json::array()}, {"cameras", json::array()}, {"sums", sums}};
+  json status = {{"house", nullptr},
+                 {"kiosks", json::array()},
+                 {"cameras", json::array()},
+                 {"workers", json::array()},
+                 {"sums", sums}};
   if (!exhibits.empty())
     status["house"] = {{"open", exhibits[0].report.open}, {"quiet", exhibits[0].report.quiet}};
   for (const FailedExhibit& one : failed)
@@ -103,6 +117,7 @@ std::string write_status(const std::vector<Standing>& exhibits,
   for (const Standing& one : exhibits) {
     put_findings(findings, one);
     put_kiosks(status, one);
+    put_workers(status, one);
   }
   std::stable_sort(findings.begin(), findings.end(), [](const json& a, const json& b) {
     return a["grave"].get<bool>() && !b["grave"].get<bool>();

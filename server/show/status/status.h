@@ -31,9 +31,10 @@ struct Standing {
 
 // Writes {"fine", "findings": [{exhibit, about, grave, what, seconds (that it has been so), why,
 // remedy}], "house": {open, quiet}, "kiosks": [{name, exhibit, stage, people, storyteller, screens,
-// cameras}], "cameras": [{kiosk, name, state, seconds}], "sums": boolean: there are some}. A
-// problem that several exhibits have alike is reported once; exhibits that failed to load are
-// reported, too.
+// cameras}], "cameras": [{kiosk, name, state, seconds}], "workers": [{name, exhibit,
+// cores, problem (why it is not asked; empty: it is), samples, samples_per_second, line_ms}],
+// "sums": boolean: there are some}. A problem that several exhibits have alike is reported once;
+// exhibits that failed to load are reported, too.
 std::string write_status(const std::vector<Standing>& exhibits,
                          const std::vector<FailedExhibit>& failed, bool sums);
 

@@ -313,6 +313,22 @@ TEST_F(Judged, WaitingVisitorsAreToldAfterAWhile) {
   EXPECT_EQ(all(), "");
 }
 
+TEST_F(Judged, WorkersThatAreNotAskedAreTold) {
+  report.workers.used = report.workers.connected = true;
+  report.workers.workers = {{.name = "north", .problem = ""},
+                            {.name = "south", .problem = "south refuses: scene"}};
+  wait(10);
+  ASSERT_TRUE(found("A worker is not asked")) << all();
+  EXPECT_EQ(found("A worker is not asked")->why, "south refuses: scene");
+  EXPECT_EQ(findings.size(), 1u);
+  report.workers.workers.clear();
+  wait(1);
+  EXPECT_EQ(all(), "");
+  report.workers.connected = false;
+  wait(10);
+  EXPECT_TRUE(found("No samples come from workers")) << all();
+}
+
 TEST_F(Judged, GraveOnesComeFirst) {
   report.denoiser_problem = "no weights";
   wait(10);

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workers/crew.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fmt/core.h>
+#include <random>
+
+#include "base/clock.h"
+#include "base/load_error.h"
+#include "base/log.h"
+#include "base/read_file.h"
+
+namespace wellspring::workers {
+namespace {
+
+// Seconds: from call to call; until who does not answer is gone.
+constexpr double call_every = 1, gone_after = 3.5;
+// Seconds for which an answer is worth having: of a walking visitor, of a picture at rest.
+constexpr double worth_walking = 0.5, worth_resting = 2;
+// Seconds of rest: of who refuses, who fetches maps meanwhile, who answers nonsense.
+constexpr double refused_rest = 10, fetching_rest = 2, first_garbage_rest = 10,
+                 most_garbage_rest = 600;                             // seconds
+constexpr int least_order = 64, least_part = 256, most_order = 2048;  // requests
+constexpr int most_unanswered = 3;                                    // orders
+constexpr size_t most_inbox_bytes = 64 << 20, most_members = 256, most_done = 1024;
+
+uint64_t random_number() {
+  std::random_device random;
+  return uint64_t(random()) << 32 | random();
+}
+
+bool are_same(const Sample& a, const Sample& b) {
+  const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+  return same(a.position, b.position) && same(a.normal, b.normal) && same(a.distance, b.distance) &&
+         a.object == b.object && a.instance == b.instance && a.triangle == b.triangle &&
+         same(a.barycentric, b.barycentric) && same(a.albedo, b.albedo) &&
+         same(a.smooth, b.smooth) && same(a.rest, b.rest) && same(a.glow, b.glow) &&
+         same(a.known, b.known) && same(a.raised, b.raised) && a.flags == b.flags;
+}
+
+}  // namespace
+
+std::string orders_subject(std::string_view worker) {
+  return fmt::format("wellspring.orders.{}", worker);
+}
+
+std::string answers_subject(uint64_t server) {
+  return fmt::format("wellspring.answers.{:016x}", server);
+}
+
+Crew::Crew(CrewSettings settings, std::string exhibit, uint64_t scene, SampleBounds bounds)
+    : settings_(std::move(settings)),
+      exhibit_(std::move(exhibit)),
+      scene_(scene),
+      bounds_(std::move(bounds)),
+      key_(make_message_key(settings_.secret)),
+      server_(random_number()),
+      answers_(answers_subject(server_)),
+      channel_(settings_.channel,
+               {{answers_, "", [this](auto message, auto reply_to) { hear(message, reply_to); }}}) {
+}
+
+void Crew::hear(std::string_view message, std::string_view reply_to) {
+  std::lock_guard lock(mutex_);
+  if (inbox_bytes_ + message.size() > most_inbox_bytes) return;  // nobody has asked for so much
+  inbox_bytes_ += message.size();
+  inbox_.push_back({seconds_now(), std::string(message), std::string(reply_to)});
+}
+
+bool Crew::is_asked(const Member& member, double now) const {
+  return now - member.heard < gone_after && now >= member.rests_until &&
+         member.unanswered < most_unanswered;
+}
+
+void Crew::rest(Member& member, const std::string& problem, double until) {
+  if (member.problem != problem) log::warn("a worker is not asked for a while: {}", problem);
+  member.problem = problem;
+  member.rests_until = until;
+}
+
+void Crew::advance() {
+  const double now = seconds_now();
+  const bool connected = channel_.connected();
+  std::unique_lock lock(mutex_);
+  const std::deque<Heard> inbox = std::exchange(inbox_, {});
+  inbox_bytes_ = 0;
+  lock.unlock();
+  for (const Heard& heard : inbox) {
+    CallAnswer here;
+    TraceAnswer answer;
+    MapQuestion question;
+    if (read_message(heard.message, key_, here)) take_call_answer(here, heard.came);
+    else if (read_message(heard.message, key_, answer)) take_answer(std::move(answer), heard.came);
+    else if (read_message(heard.message, key_, question)) answer_map(question, heard.reply_to);
+    else {
+      lock.lock();
+      totals_.spoiled++;
+      lock.unlock();
+    }
+  }
+  lock.lock();
+  give_up(now);
+  std::erase_if(members_, [&](const auto& one) {
+    return now - one.second.heard > 60 && now > one.second.rests_until;
+  });
+  if (!connected || now - called_ < call_every) return;
+  called_ = now;
+  const RollCall call{server_, ++calls_};
+  lock.unlock();
+  channel_.send(call_subject, answers_, write_message(call, key_));
+}
+
+// A file that cannot be read has no bytes.
+void Crew::answer_map(const MapQuestion& question, const std::string& reply_to) {
+  if (question.server != server_ || reply_to.empty()) return;
+  MapPart part{server_, question.light, question.which, 0, 0, {}};
+  if (question.which < settings_.map_files.size()) {
+    std::string& file = maps_[question.which];
+    if (question.offset == 0) {
+      try {
+        file = read_file(settings_.map_files[question.which], most_map_bytes);
+      } catch (const LoadError&) {
+        file.clear();
+      }
+    }
+    part.offset = std::min<uint64_t>(question.offset, file.size());
+    part.size = file.size();
+    part.bytes = file.substr(part.offset, most_part_bytes);
+  }
+  channel_.send(reply_to, "", write_message(part, key_));
+}
+
+void Crew::take_call_answer(const CallAnswer& answer, double now) {
+  std::lock_guard lock(mutex_);
+  if (answer.server != server_ || answer.number != calls_) return;
+  if (!members_.contains(answer.worker) && members_.size() >= most_members) return;
+  const bool known = members_.contains(answer.worker);
+  Member& member = members_[answer.worker];
+  if (!known) log::info("worker {}: {} cores, {}", answer.worker, answer.cores, answer.version);
+  member.cores = int(answer.cores);
+  member.heard = now;
+  member.unanswered = 0;
+  if (now >= member.rests_until) member.problem.clear();
+  note_called(member.pace, now - called_);
+}
+
+void Crew::take_answer(TraceAnswer answer, double now) {
+  std::lock_guard lock(mutex_);
+  auto found = answer.server == server_ ? orders_.find(answer.number) : orders_.end();
+  if (found == orders_.end() || found->second.worker != answer.worker) {
+    totals_.late += answer.samples.size();
+    return;
+  }
+  Order order = std::move(found->second);
+  orders_.erase(found);
+  auto who = members_.find(order.worker);
+  if (who == members_.end()) return;
+  Member& member = who->second;
+  member.heard = now;
+  member.unanswered = 0;
+  if (answer.refusal != Refusal::none) {
+    totals_.refused[size_t(answer.refusal)] += uint64_t(order.requests);
+    note_unanswered(member.pace, order.requests, order.errand.rests);
+    // Who is merely late or busy is asked for less, others not at all.
+    if (answer.refusal != Refusal::late && answer.refusal != Refusal::busy)
+      rest(member, fmt::format("{} refuses: {}", order.worker, to_word(answer.refusal)),
+           now + (answer.refusal == Refusal::light ? fetching_rest : refused_rest));
+    return;
+  }
+  if (answer.samples.size() != size_t(order.requests) || !are_within(answer.samples, bounds_)) {
+    totals_.spoiled++;
+    note_unanswered(member.pace, order.requests, order.errand.rests);
+    member.rest = std::clamp(2 * member.rest, first_garbage_rest, most_garbage_rest);
+    rest(member, fmt::format("{} answers what cannot be", order.worker), now + member.rest);
+    return;
+  }
+  note_answered(member.pace, order.requests, order.errand.rests, now - order.sent,
+                double(answer.waited), double(answer.traced));
+  member.samples += answer.samples.size();
+  take_samples(std::move(order), std::move(answer.samples));
+}
+
+// The lock is held.
+void Crew::take_samples(Order order, std::vector<Sample> samples) {
+  totals_.samples += samples.size();
+  for (size_t i = 0; i < order.expected.size(); i++) {
+    totals_.verified++;
+    totals_.differing += !are_same(order.expected[i], samples[i]);
+  }
+  if (done_.size() >= most_done) return;  // nobody takes them
+  CrewSamples delivery{order.errand.asker, order.errand.rests, {}};
+  auto next = samples.begin();
+  for (cache::Piece& piece : order.pieces) {
+    const auto end = next + std::ptrdiff_t(piece.requests.size());
+    delivery.answers.push_back({std::move(piece), order.errand.pose, {next, end}});
+    next = end;
+  }
+  done_.push_back(std::move(delivery));
+}
+
+// The lock is held.
+void Crew::give_up(double now) {
+  for (auto it = orders_.begin(); it != orders_.end();) {
+    const Order& order = it->second;
+    if (now < order.until) {
+      ++it;
+      continue;
+    }
+    totals_.lost += uint64_t(order.requests);
+    if (auto who = members_.find(order.worker); who != members_.end()) {
+      note_unanswered(who->second.pace, order.requests, order.errand.rests);
+      if (++who->second.unanswered == most_unanswered)
+        who->second.problem = fmt::format("{} does not answer", order.worker);
+    }
+    it = orders_.erase(it);
+  }
+}
+
+int Crew::room(bool rests) const {
+  if (!channel_.connected()) return 0;
+  std::lock_guard lock(mutex_);
+  const double now = seconds_now();
+  int room = 0;
+  for (const auto& [name, member] : members_)
+    if (is_asked(member, now)) room += room_for(member.pace, rests);
+  return room;
+}
+
+int Crew::send(Broker& broker, const Errand& errand, int most, const TraceHere& trace) {
+  if (!channel_.connected()) return 0;
+  const double now = seconds_now();
+  std::lock_guard lock(mutex_);
+  const auto room = [&](const Member& member) {
+    return is_asked(member, now) ? room_for(member.pace, errand.rests) : 0;
+  };
+  const int asked = int(std::ranges::count_if(
+      members_, [&](const auto& one) { return room(one.second) >= least_order; }));
+  if (asked == 0) return 0;
+  const int part = std::clamp(most / asked, least_part, most_order);
+  int left = most;
+  while (left >= least_order) {
+    // Who has most room is next, so that the others keep theirs for what comes soon.
+    const auto next =
+        std::ranges::max_element(members_, {}, [&](const auto& one) { return room(one.second); });
+    auto& [name, member] = *next;
+    if (room(member) < least_order) break;
+    const uint64_t before = member.pace.in_flight;
+    const int size = std::min({room(member), left, part});
+    if (!send_order(broker, errand, name, member, size, trace)) break;
+    left -= int(member.pace.in_flight - before);
+  }
+  return most - left;
+}
+
+// Sends one order of at most about `most` requests; false: the broker has no more, or the line
+// takes none. The lock is held.
+bool Crew::send_order(Broker& broker, const Errand& errand, const std::string& name, Member& member,
+                      int most, const TraceHere& trace) {
+  const double now = seconds_now();
+  Order sent{name, errand, {}, {}, now, 0, 0};
+  TraceOrder order;
+  while (sent.requests < most) {
+    std::optional<cache::Piece> piece = broker.take();
+    if (!piece) break;
+    order.requests.insert(order.requests.end(), piece->requests.begin(), piece->requests.end());
+    sent.requests += int(piece->requests.size());
+    if (settings_.verifies) {
+      const std::vector<Sample> here = trace(*piece);
+      sent.expected.insert(sent.expected.end(), here.begin(), here.end());
+    }
+    sent.pieces.push_back(std::move(*piece));
+  }
+  if (sent.pieces.empty()) return false;
+  const TraceJob& job = sent.pieces.front().order;
+  const double worth = errand.rests ? worth_resting : worth_walking;
+  order.server = server_;
+  order.number = ++numbers_;
+  order.worth_ms = uint32_t(1000 * worth);
+  order.exhibit = exhibit_;
+  order.same = {settings_.version, instruction_set(), scene_, errand.light};
+  order.technique = job.technique->name;
+  order.transport = job.transport;
+  order.state = errand.state;
+  if (!channel_.send(orders_subject(name), answers_, write_message(order, key_))) {
+    totals_.lost += uint64_t(sent.requests);
+    return false;
+  }
+  sent.until = now + worth + member.pace.line;
+  totals_.orders++;
+  totals_.requests += uint64_t(sent.requests);
+  note_sent(member.pace, sent.requests, errand.rests);
+  orders_.emplace(order.number, std::move(sent));
+  return true;
+}
+
+std::vector<CrewSamples> Crew::take() {
+  std::lock_guard lock(mutex_);
+  return std::exchange(done_, {});
+}
+
+CrewReport Crew::report() const {
+  CrewReport report;
+  report.used = true;
+  report.connected = channel_.connected();
+  const double now = seconds_now();
+  std::lock_guard lock(mutex_);
+  report.totals = totals_;
+  report.totals.dropped = channel_.dropped();
+  for (const auto& [name, member] : members_) {
+    WorkerReport one{name,
+                     member.problem,
+                     member.cores,
+                     member.pace.rate,
+                     member.pace.line,
+                     member.pace.share,
+                     member.pace.in_flight,
+                     member.samples};
+    if (one.problem.empty() && now - member.heard >= gone_after) one.problem = name + " is gone";
+    report.workers.push_back(std::move(one));
+  }
+  return report;
+}
+
+}  // namespace wellspring::workers

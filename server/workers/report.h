@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tells how a server's workers are, and why they refuse.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/layers.h"
+
+namespace wellspring::workers {
+
+// Says why there are no samples.
+enum class Refusal : uint8_t {
+  none,
+  version,       // another version of the program
+  instructions,  // another instruction set
+  exhibit,       // this worker has no such exhibit
+  scene,         // its files differ
+  light,         // its illumination maps differ
+  state,         // its lamps or moving things cannot be put so
+  technique,     // unknown, or one of passes over a picture
+  late,          // the answer would not be worth having any more
+  busy,          // too much waits here
+};
+inline constexpr int refusals = 10;
+const char* to_word(Refusal refusal);
+
+// Holds how a worker is, for who looks after it.
+struct WorkerReport {
+  std::string name, problem;  // why it is not asked at the moment; empty: it is
+  int cores = 0;
+  double samples_per_second = 0, line = 0, share = 1;  // budget.h
+  uint64_t in_flight = 0, samples = 0;                 // requests sent; samples that came
+};
+
+// Counts since the beginning.
+struct CrewTotals {
+  uint64_t orders = 0, requests = 0;     // sent
+  uint64_t samples = 0;                  // samples that came, were right and in time
+  uint64_t lost = 0;                     // requests without an answer in time
+  uint64_t dropped = 0;                  // messages that the line did not take
+  uint64_t late = 0;                     // samples that came after that
+  uint64_t spoiled = 0;                  // messages that were none, or whose samples cannot be
+  uint64_t verified = 0, differing = 0;  // samples compared; those that differ
+  uint64_t refused[refusals] = {};       // requests, by reason
+};
+
+struct CrewReport {
+  bool used = false, connected = false;  // there is an address; a NATS server answers there
+  CrewTotals totals;
+  std::vector<WorkerReport> workers;
+};
+
+}  // namespace wellspring::workers

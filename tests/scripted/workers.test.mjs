@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// A server with workers behind a real NATS server: their samples arrive with the same bits, who
+// differs is refused by name, who answers nonsense is not asked, and whatever dies, pictures go on.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import net from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Visitor, sleep, source, start_server, until } from '../server.mjs';
+
+const skip = spawnSync('nats-server', ['--version']).error ? 'nats-server is not installed' : false;
+const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
+const secret = 'what-only-these-tests-know';
+const content = join(source, 'content');
+const workers = new Map();
+let port, nats, server, visitor;
+
+function free_port() {
+  return new Promise((resolve) => {
+    const socket = net.createServer().listen(0, '127.0.0.1', () => {
+      const { port: found } = socket.address();
+      socket.close(() => resolve(found));
+    });
+  });
+}
+
+async function start_nats() {
+  nats = spawn('nats-server', ['-a', '127.0.0.1', '-p', String(port)], { stdio: 'ignore' });
+  const answers = () => new Promise((resolve) => {
+    const socket = net.connect(port, '127.0.0.1');
+    socket.on('data', () => { socket.destroy(); resolve(true); });
+    socket.on('error', () => resolve(false));
+  });
+  await until(answers, 'nats-server answers');
+}
+
+// Speaks as much of NATS as a test needs.
+class Nats {
+  constructor() {
+    this.rest = Buffer.alloc(0);
+    this.heard = [];
+    this.socket = net.connect(port, '127.0.0.1');
+    this.socket.on('error', () => {});
+    this.socket.on('data', (bytes) => this.read(bytes));
+    this.socket.write('CONNECT {"verbose":false,"pedantic":false}\r\n');
+  }
+  read(bytes) {
+    this.rest = Buffer.concat([this.rest, bytes]);
+    for (let end; (end = this.rest.indexOf('\r\n')) >= 0;) {
+      const words = this.rest.toString('latin1', 0, end).split(' ');
+      let next = end + 2;
+      if (words[0] === 'MSG') {
+        const size = Number(words.at(-1));
+        if (this.rest.length < next + size + 2) return;
+        const message = Buffer.from(this.rest.subarray(next, next + size));
+        next += size + 2;
+        this.heard[Number(words[2])](message, words.length > 4 ? words[3] : '');
+      } else if (words[0] === 'PING') this.socket.write('PONG\r\n');
+      this.rest = this.rest.subarray(next);
+    }
+  }
+  listen(subject, heard) {
+    this.heard.push(heard);
+    this.socket.write(`SUB ${subject} ${this.heard.length - 1}\r\n`);
+  }
+  send(subject, message) {
+    this.socket.write(`PUB ${subject} ${message.length}\r\n`);
+    this.socket.write(message);
+    this.socket.write('\r\n');
+  }
+  close() { this.socket.destroy(); }
+}
+
+function start_worker(name, { exhibits = content, words = [], key = '' } = {}) {
+  const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_worker'),
+      ['--nats', `nats://127.0.0.1:${port}`, '--content', exhibits, '--exhibit', 'first-room',
+        '--cache', join(folder, 'worker'), '--name', name, '--cores', '1', ...words],
+      { stdio: ['ignore', 'pipe', 'inherit'],
+        env: { ...process.env, WELLSPRING_WORKERS_KEY: key } });
+  workers.set(name, child);
+  return new Promise((resolve, reject) => {
+    child.stdout.once('data', () => resolve(child));
+    child.once('exit', (status) => reject(new Error(`worker ${name} ended with ${status}`)));
+  });
+}
+const kill = (child, signal) => new Promise((resolve) => {
+  if (child.exitCode !== null || child.signalCode !== null) return resolve(child.exitCode);
+  child.on('exit', (status) => resolve(status));
+  child.kill(signal);
+});
+
+async function metric(name, labels = '') {
+  const text = await (await fetch(`${server.url}/metrics`)).text();
+  const line = text.split('\n').find((one) => one.startsWith(`wellspring_${name}${labels} `)
+      || one.startsWith(`wellspring_${name}{`) && one.includes(labels));
+  return line ? Number(line.split(' ').at(-1)) : 0;
+}
+async function worker_state(name) {
+  const { workers: all } = await (await fetch(`${server.url}/api/v1/status`)).json();
+  return all.find((one) => one.name === name);
+}
+const pictures_go_on = async () => {
+  for (let k = 0; k < 3; k++) await visitor.picture();
+};
+
+// Walks and stands in turn, so that both kinds of samples are asked for.
+let walks;
+function begin_to_walk() {
+  let seq = 1;
+  walks = setInterval(() => {
+    seq++;
+    visitor.send({ type: 'input', seq, move: [0, 0, seq % 16 < 8 ? 0 : seq % 32 < 16 ? 0.4 : -0.4],
+      look: [seq % 16 < 8 ? 0 : 0.02, 0] });
+  }, 250);
+}
+
+before(async () => {
+  if (skip) return;
+  port = await free_port();
+  await start_nats();
+  server = await start_server(['--exhibit', 'first-room', '--no-bake', '--verify-workers',
+    '--workers', `nats://127.0.0.1:${port}`, '--cache', join(folder, 'server')]);
+  await Promise.all([start_worker('north'), start_worker('south')]);
+  visitor = new Visitor(server);
+  await visitor.hello();
+  begin_to_walk();
+});
+after(async () => {
+  clearInterval(walks);
+  await Promise.all([...workers.values()].map((child) => kill(child, 'SIGKILL')));
+  if (server) assert.equal(await server.stop(), 0);
+  if (nats) await kill(nats, 'SIGKILL');
+  rmSync(folder, { recursive: true, force: true });
+});
+
+test('samples come from all workers, with the same bits', { skip }, async () => {
+  for (const name of ['north', 'south'])
+    await until(async () => await metric('worker_samples_total', `{worker="${name}"}`) > 2000,
+        `samples of ${name}`);
+  assert.ok(await metric('workers_verified_total') > 4000);
+  assert.equal(await metric('workers_differing_total'), 0);
+  assert.equal(await metric('workers_spoiled_total'), 0);
+  const north = await worker_state('north');
+  assert.equal(north.problem, '');
+  assert.equal(north.cores, 1);
+  assert.ok(north.samples_per_second > 0);
+});
+
+// Reads where fields of an order lie (server/workers/message.cpp).
+function places_of(order) {
+  let at = 5 + 8;
+  const places = { number: at };
+  at += 8 + 4;
+  for (const name of ['exhibit', 'version', 'instructions']) {
+    places[name] = at + 4;
+    at += 4 + order.readUInt32LE(at);
+  }
+  places.scene = at, places.light = at + 8;
+  at += 16;
+  places.technique = at + 4;
+  at += 4 + order.readUInt32LE(at) + 9;
+  places.state = at + 4;
+  return places;
+}
+const words = ['none', 'version', 'instructions', 'exhibit', 'scene', 'light', 'state', 'technique',
+  'late', 'busy'];
+
+test('an order of another version, scene or light is refused by name', { skip }, async () => {
+  const line = new Nats();
+  const order = await new Promise((resolve) => line.listen('wellspring.orders.north', resolve));
+  const answers = new Map();
+  line.listen('wellspring.answers.*', (message) => {
+    if (message[4] === 2)
+      answers.set(message.readUInt32LE(13), words[message[21 + 4 + message.readUInt32LE(21)]]);
+  });
+  const places = places_of(order);
+  let number = 1 << 30;
+  for (const name of words.slice(1, 8)) {
+    const other = Buffer.from(order);
+    other.writeUInt32LE(++number, places.number);
+    other[places[name]] ^= 1;
+    line.send('wellspring.orders.north', other);
+    await until(() => answers.has(number), `an answer to another ${name}`);
+    assert.equal(answers.get(number), name);
+  }
+  // What is no order at all is not answered, and does no harm.
+  for (const size of [0, 5, 60, order.length - 1])
+    line.send('wellspring.orders.north', order.subarray(0, size));
+  const again = Buffer.from(order);
+  again.writeUInt32LE(++number, places.number);
+  line.send('wellspring.orders.north', again);
+  await until(() => answers.has(number), 'an answer to the order itself');
+  line.close();
+});
+
+test('a worker without the illumination maps fetches them', { skip }, async () => {
+  const exhibits = join(folder, 'content');
+  cpSync(join(content, 'first-room'), join(exhibits, 'first-room'), { recursive: true });
+  rmSync(join(exhibits, 'first-room', 'light.maps'));
+  await start_worker('dark', { exhibits });
+  await until(async () => await metric('worker_samples_total', '{worker="dark"}') > 1000,
+      'samples by fetched maps');
+  assert.ok(await metric('workers_refused_total', '{reason="light"}') > 0);
+  assert.equal(await metric('workers_differing_total'), 0);
+  await kill(workers.get('dark'), 'SIGTERM');
+});
+
+test('a worker that has another scene is not asked, and told', { skip }, async () => {
+  const exhibits = join(folder, 'content');
+  cpSync(join(content, 'first-room'), join(exhibits, 'first-room'), { recursive: true });
+  const file = join(exhibits, 'first-room', 'scene.glb'), scene = readFileSync(file);
+  const place = scene.indexOf('"roughnessFactor":0.');
+  assert.ok(place > 0);
+  scene[place + '"roughnessFactor":0.'.length] ^= 1;
+  writeFileSync(file, scene);
+  await start_worker('other', { exhibits });
+  await until(async () => (await worker_state('other'))?.problem.includes('scene'),
+      'refuses: scene');
+  assert.ok(await metric('workers_refused_total', '{reason="scene"}') > 0);
+  await pictures_go_on();
+  await kill(workers.get('other'), 'SIGTERM');
+});
+
+function write_text(text) {
+  const size = Buffer.alloc(4);
+  size.writeUInt32LE(text.length);
+  return Buffer.concat([size, Buffer.from(text)]);
+}
+
+test('a worker that answers nonsense is not asked, and spoils nothing', { skip }, async () => {
+  const line = new Nats();
+  let orders = 0;
+  line.listen('wellspring.call', (call, reply) => {
+    const cores = Buffer.from([1, 0, 0, 0]);
+    line.send(reply, Buffer.concat([Buffer.from('WSW1\x04'), call.subarray(5),
+      write_text('liar'), write_text('0.1.0'), write_text('x'), cores]));
+  });
+  line.listen('wellspring.orders.liar', (order, reply) => {
+    orders++;
+    const one = Buffer.alloc(2 + 12 + 12 + 4 + 12);  // a hit on an object that is not there
+    one[0] = 1, one.writeUInt32LE(0xffff0000, 26);
+    const head = Buffer.concat([Buffer.from('WSW1\x02'), order.subarray(5, 21),
+      write_text('liar'), Buffer.from([0]), Buffer.alloc(8), Buffer.from([1, 0, 0, 0])]);
+    line.send(reply, Buffer.concat([head, one]));
+  });
+  await until(async () => (await worker_state('liar'))?.problem.includes('cannot be'), 'is judged');
+  assert.ok(orders >= 1);
+  assert.ok(await metric('workers_spoiled_total') > 0);
+  assert.equal(await metric('workers_differing_total'), 0);
+  await pictures_go_on();
+  line.close();
+});
+
+test('pictures go on when a worker dies, or NATS, and when it is back', { skip }, async () => {
+  await kill(workers.get('south'), 'SIGKILL');
+  await until(async () => (await worker_state('south'))?.problem, 'the dead worker is noticed');
+  await pictures_go_on();
+  await kill(nats, 'SIGKILL');
+  await until(async () => await metric('workers_connected') === 0, 'the loss is noticed');
+  await pictures_go_on();
+  const before_it = await metric('workers_samples_total');
+  await start_nats();
+  await until(async () => await metric('workers_samples_total') > before_it + 1000,
+      'samples come again');
+});
+
+test('with a secret, who does not know it is neither heard nor obeyed', { skip }, async () => {
+  const key = join(folder, 'key');
+  writeFileSync(key, `${secret}\n`, { mode: 0o600 });
+  await kill(workers.get('north'), 'SIGTERM');
+  await start_worker('sealed', { key: secret });
+  await start_worker('open');
+  clearInterval(walks);
+  await visitor.close();
+  assert.equal(await server.stop(), 0);
+  server = await start_server(['--exhibit', 'first-room', '--no-bake', '--verify-workers',
+    '--workers', `nats://127.0.0.1:${port}`, '--workers-key', key,
+    '--cache', join(folder, 'server')]);
+  visitor = new Visitor(server);
+  await visitor.hello();
+  begin_to_walk();
+  await until(async () => await metric('worker_samples_total', '{worker="sealed"}') > 1000,
+      'samples of who knows it');
+  await sleep(1500);  // more than a call
+  assert.equal(await worker_state('open'), undefined);
+  assert.equal(await metric('workers_differing_total'), 0);
+});
