@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "base/load_error.h"
 #include "base/read_file.h"
@@ -83,8 +82,11 @@ double CostCurve::at(double pixels) const {
 }
 
 Costs load_costs(const std::string& file) {
-  const json report =
-      json::parse(read_file(file, most_bytes, FileKind::regular_or_pipe), nullptr, false);
+  const std::string text = read_file(file, most_bytes, FileKind::regular_or_pipe);
+  return read_costs(json::parse(text, nullptr, false), file);
+}
+
+Costs read_costs(const json& report, const std::string& file) {
   if (!report.is_object() || !report.contains("results") || !report["results"].is_array())
     throw LoadError(file, "", "is no report of ./wellspring bench --json");
   const Rows rows(file, report["results"]);

@@ -3,6 +3,7 @@
 // that `./wellspring bench --only load.plan --json FILE` wrote. They are measured with one visitor,
 // mostly as processor time, so that other programs of the machine count for little.
 #pragma once
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,5 +45,7 @@ struct Costs {
 // Throws LoadError that names the file and the field if it cannot be read, is no such report, or a
 // value is missing or makes no sense.
 Costs load_costs(const std::string& file);
+// Takes them from such a report that was read already; `file` is named by errors.
+Costs read_costs(const nlohmann::json& report, const std::string& file);
 
 }  // namespace wellspring::plan

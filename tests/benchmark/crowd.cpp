@@ -84,7 +84,8 @@ Spent spent_by(const ServerProcess& server) {
 void watch(const ServerProcess& server, const CrowdPlan& plan, CrowdSeen& seen) {
   using Seconds = std::chrono::duration<double>;
   std::this_thread::sleep_for(Seconds(plan.warm_up));
-  std::map<std::string, std::pair<double, int>> all, first, last;
+  std::map<std::string, std::vector<double>> all;
+  std::map<std::string, std::pair<double, int>> first, last;
   const Spent before = spent_by(server);
   add_metrics(fetch(server.port, "/metrics"), first);
   double first_at = seconds_now(), last_at = first_at;
@@ -96,8 +97,8 @@ void watch(const ServerProcess& server, const CrowdPlan& plan, CrowdSeen& seen) 
       others += count_other_threads(server.id());
     }
     const std::string text = fetch(server.port, "/metrics");
-    add_metrics(text, all);
     last.clear(), add_metrics(text, last);
+    for (const auto& [name, value] : means(last)) all[name].push_back(value);
     last_at = seconds_now();
   }
   const Spent after = spent_by(server);
@@ -108,7 +109,7 @@ void watch(const ServerProcess& server, const CrowdPlan& plan, CrowdSeen& seen) 
       (after.machine - before.machine) / time - seen.server_cores - seen.visitors_cores;
   seen.others = looks > 0 ? others / looks : 0;
   seen.resident = server.resident();
-  seen.metrics = means(all);
+  for (const auto& [name, values] : all) seen.metrics[name] = quantile(values, 0.5);
   seen.begun = means(first), seen.ended = means(last);
   seen.watched = last_at - first_at;
   seen.keyframes = seen.growth("pictures_drawn_total") / plan.visitors;

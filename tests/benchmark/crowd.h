@@ -26,8 +26,8 @@ struct CrowdSeen {
   double server_cores = 0, visitors_cores = 0, other_cores = 0;  // that were taken meanwhile
   double others = 0;    // threads of other programs that wanted a core; nice ones count for less
   double resident = 0;  // bytes of the server, in the end
-  // Figures of /metrics by name without what they begin with, as means over the visitors: over the
-  // time, when it began, and when it ended.
+  // Figures of /metrics by name without what they begin with, as means over the visitors: their
+  // medians over the time, and what they were when it began and ended.
   std::map<std::string, double> metrics, begun, ended;
   // Returns by how much a figure grew in a second.
   double growth(const std::string& name) const;

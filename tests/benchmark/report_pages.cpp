@@ -368,6 +368,7 @@ std::vector<ReportPage> declared_pages() {
           show_load_page(),
           load_visitors_page(),
           load_seats_page(),
+          load_plan_page(),
           pieces_picture_page(),
           pieces_bands_page(),
           pieces_scan_page(),
