@@ -26,7 +26,7 @@ struct Machine {
   double cores = 2;
   double bandwidth = 125e6;  // bytes a second of its network
   double memory = 0;         // bytes that the server may use; 0: any number
-  double others = 0;         // threads of other programs that always want a core
+  double others = 0;  // other programs that want all of its cores, each as much as the server
   bool operator==(const Machine&) const = default;
 };
 

@@ -7,17 +7,14 @@
 namespace wellspring::plan {
 
 namespace {
-constexpr double nothing = 1e-12;  // seconds that rounding may leave
+constexpr double nothing = 1e-9;  // seconds that rounding may leave
 }
 
 double width_on(double cores, double serial) {
   return cores <= 1 ? cores : 1 / (serial + (1 - serial) / cores);
 }
 
-double SharedCores::speed() const {
-  const double wanted = width_ + others_;
-  return wanted > cores_ ? cores_ / wanted : 1;
-}
+double SharedCores::speed() const { return width_ > free_ ? free_ / width_ : 1; }
 
 double SharedCores::seconds_left(const Task& task) const {
   return task.timed ? task.left : task.left / (task.width * speed());

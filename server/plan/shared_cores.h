@@ -18,8 +18,10 @@ double width_on(double cores, double serial);
 
 class SharedCores {
  public:
-  // others: threads of other programs that always want a core.
-  explicit SharedCores(double cores, double others = 0) : cores_(cores), others_(others) {}
+  // others: programs that want all cores at once; each gets as much as the server, as systemd's
+  // services and sessions do by default (sched(7): autogroups, cgroups).
+  explicit SharedCores(double cores, double others = 0)
+      : cores_(cores), free_(cores / (1 + others)) {}
   // Begins a task of so many core-seconds. `now` never goes back.
   void add(int id, double core_seconds, double width, double now);
   // Begins a task that ends after so many seconds, whatever it has got by then.
@@ -41,7 +43,7 @@ class SharedCores {
   double speed() const;  // part of its width that each task gets
   double seconds_left(const Task& task) const;
   void advance(double now);
-  const double cores_, others_;
+  const double cores_, free_;  // free_: that other programs leave
   std::vector<Task> tasks_;
   double width_ = 0;  // of all tasks
   double at_ = 0, used_ = 0;

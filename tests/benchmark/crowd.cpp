@@ -2,11 +2,11 @@
 #include "crowd.h"
 
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <sched.h>
+#include <set>
 #include <sstream>
 #include <thread>
 #include <unistd.h>
@@ -30,29 +30,26 @@ double machine_core_seconds() {
   return (user + nice + system + irq + soft + steal) / double(sysconf(_SC_CLK_TCK));
 }
 
-// Returns how many threads of other programs run or want to, each counted by the weight that Linux
-// gives its niceness: 1.25 times less for each step (sched(7), the kernel's sched_prio_to_weight).
-double count_other_threads(int server) {
+// Returns how many sessions but our own have a thread that runs or wants to. Linux gives each the
+// same part of the cores (sched(7), autogroups), however many threads it has.
+int count_other_sessions() {
   namespace fs = std::filesystem;
-  double sum = 0;
+  std::set<int> sessions;
   std::error_code gone;  // threads end meanwhile
   for (const auto& process : fs::directory_iterator("/proc", gone)) {
-    const int id = std::atoi(process.path().filename().c_str());
-    if (id <= 0 || id == server || id == getpid()) continue;
+    if (std::atoi(process.path().filename().c_str()) <= 0) continue;
     for (const auto& thread : fs::directory_iterator(process.path() / "task", gone)) {
       std::ifstream file(thread.path() / "stat");
-      std::string line;
+      std::string line, state;
       if (!std::getline(file, line)) continue;
       std::istringstream words(line.substr(line.rfind(')') + 1));
-      std::string state, skipped;
-      double niceness = 0;
-      words >> state;
-      for (int i = 0; i < 15; i++) words >> skipped;
-      words >> niceness;
-      if (state == "R") sum += std::pow(1.25, -niceness);
+      int parent = 0, group = 0, session = 0;
+      words >> state >> parent >> group >> session;
+      if (state == "R") sessions.insert(session);
     }
   }
-  return sum;
+  sessions.erase(getsid(0));
+  return int(sessions.size());
 }
 
 // Adds the figures of a text of /metrics to sums and counts by name, whoever they are of.
@@ -94,7 +91,7 @@ void watch(const ServerProcess& server, const CrowdPlan& plan, CrowdSeen& seen) 
   while (seconds_now() - before.time < plan.seconds - look_interval) {
     for (const double from = seconds_now(); seconds_now() - from < look_interval; looks++) {
       std::this_thread::sleep_for(Seconds(count_interval));
-      others += count_other_threads(server.id());
+      others += count_other_sessions();
     }
     const std::string text = fetch(server.port, "/metrics");
     last.clear(), add_metrics(text, last);

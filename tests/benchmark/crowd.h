@@ -24,7 +24,7 @@ struct CrowdSeen {
   double bytes = 0;               // of one, in the mean
   std::vector<double> scales;     // of keyframes that came: their width over what was asked for
   double server_cores = 0, visitors_cores = 0, other_cores = 0;  // that were taken meanwhile
-  double others = 0;    // threads of other programs that wanted a core; nice ones count for less
+  double others = 0;  // other sessions with a thread that wanted a core: each gets as much as ours
   double resident = 0;  // bytes of the server, in the end
   // Figures of /metrics by name without what they begin with, as means over the visitors: their
   // medians over the time, and what they were when it began and ended.

@@ -30,7 +30,7 @@ Outcome predict(const Costs& costs, const CrowdPlan& plan, const CrowdSeen& seen
   Fleet fleet;
   fleet.machine.cores = costs.cores;
   fleet.machine.bandwidth = 1e10;
-  fleet.machine.others = std::max(seen.others + seen.visitors_cores, 0.0);
+  fleet.machine.others = seen.others;
   return simulate(costs, demand, fleet, simulated);
 }
 

@@ -94,13 +94,13 @@ Line fit(const std::vector<Drawn>& all) {
   return {(u1 * vv - v1 * uv) / det, (v1 * uu - u1 * uv) / det};
 }
 
-// Returns the share of a keyframe that one core does alone, by how long it took on all cores, of
-// which other programs wanted some.
+// Returns the share of a keyframe that one core does alone, by how long it took on the cores
+// that other programs left.
 double serial_share(const Drawn& drawn, const Line& line, double cores) {
   const double work = line.fixed + line.a_pixel * drawn.size.pixels() * drawn.mean_square;
   const double seconds = 0.001 * drawn.seen.metrics.at("visitor_drawn_after_milliseconds");
-  double width = work / seconds;
-  if (width + drawn.seen.others > cores) width *= drawn.seen.others / (cores - width);
+  const double free = cores / (1 + drawn.seen.others);
+  double width = work / seconds * cores / free;
   width = std::clamp(width, 1.0, cores);
   return cores > 1 ? (1 / width - 1 / cores) / (1 - 1 / cores) : 0;
 }

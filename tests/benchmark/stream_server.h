@@ -22,7 +22,6 @@ class ServerProcess {
   ServerProcess(const BenchOptions& options, const std::string& exhibit);
   double resident() const;      // memory in bytes
   double core_seconds() const;  // processor time so far
-  int id() const { return int(process_->id()); }
   uint16_t port = 0;
   double started = 0;  // seconds_now() when its process began
 
