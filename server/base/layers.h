@@ -17,6 +17,7 @@ namespace volume {}
 namespace scan {}
 namespace lawn {}
 namespace collection {}
+namespace plan {}
 namespace frame {}
 namespace attention {}
 namespace denoise {}
@@ -177,6 +178,7 @@ using namespace volume;
 using namespace scan;
 using namespace lawn;
 using namespace collection;
+using namespace plan;
 using namespace frame;
 using namespace attention;
 using namespace denoise;

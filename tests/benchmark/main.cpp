@@ -27,7 +27,7 @@ std::vector<std::string> words_of(const CLI::App& app) {
     const std::string name = option->get_name();
     bool is_place = name == "--json" || name == "--markdown" || name == "--plots" ||
                     name == "--scenes" || name == "--content" || name == "--web" ||
-                    name == "--visit-pictures" || name == "--last";
+                    name == "--visit-pictures" || name == "--last" || name == "--costs";
     if (option->count() == 0 || is_place) continue;
     words.push_back(name);
     if (option->get_items_expected_max() > 0)
@@ -45,11 +45,19 @@ void say_part(const char* name, size_t part, size_t parts, double seconds) {
   std::fprintf(stderr, "%s\n", wellspring::progress_line("bench", done, seconds, more).c_str());
 }
 
-bool has_curves(const wellspring::test::BenchReport& report) {
+bool has_report(const wellspring::test::BenchReport& report, const std::string& name) {
   const nlohmann::json all = report.to_json();
-  return std::ranges::any_of(all["results"], [](const nlohmann::json& result) {
-    return result.value("report", "") == "light.error";
+  return std::ranges::any_of(all["results"], [&](const nlohmann::json& result) {
+    return result.value("report", "") == name;
   });
+}
+
+// Keeps the whole report in a file of its own, if it has what that file is for.
+void keep(const wellspring::test::BenchReport& report, const std::string& file,
+          const std::string& name) {
+  if (file.empty() || !has_report(report, name)) return;
+  std::filesystem::create_directories(std::filesystem::path(file).parent_path());
+  report.save(file);
 }
 
 }  // namespace
@@ -61,7 +69,7 @@ int main(int argc, char** argv) {
   log::start("bench");
   CLI::App app{"Speed against error, measured on this machine."};
   BenchOptions options;
-  std::string only, file, traces, pages, last, steps;
+  std::string only, file, traces, pages, last, costs, steps;
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
@@ -72,6 +80,8 @@ int main(int argc, char** argv) {
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
   app.add_option("--last", last,
                  "where to keep it, too, if it has error over time: /status shows that");
+  app.add_option("--costs", costs,
+                 "likewise, if it has costs of serving: ./wellspring plan reads that");
   app.add_option("--markdown", pages,
                  "where to write it for readers: a file.md, or a folder for a page of each");
   app.add_option("--from", read, "instead of measuring: the JSON files that --markdown shows")
@@ -163,10 +173,8 @@ int main(int argc, char** argv) {
       return 2;
     }
     report.save(file);
-    if (!last.empty() && has_curves(report)) {
-      std::filesystem::create_directories(std::filesystem::path(last).parent_path());
-      report.save(last);
-    }
+    keep(report, last, "light.error");
+    keep(report, costs, "load.plan");
     if (!pages.empty()) write_pages(report.to_json(), pages);
   } catch (const std::exception& error) {
     std::cerr << "error: " << error.what() << "\n";

@@ -61,6 +61,7 @@ double quantile(std::vector<double> values, double p);
 void bench_stream(BenchReport& report, const BenchOptions& options);
 void bench_load_seats(BenchReport& report, const BenchOptions& options);
 void bench_workers(BenchReport& report, const BenchOptions& options);
+void bench_load_plan(BenchReport& report, const BenchOptions& options);
 void bench_load_visitors(BenchReport& report, const BenchOptions& options);
 void bench_pieces_picture(BenchReport& report, const BenchOptions& options);
 void bench_pieces_bands(BenchReport& report, const BenchOptions& options);

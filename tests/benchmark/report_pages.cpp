@@ -369,6 +369,7 @@ std::vector<ReportPage> declared_pages() {
           load_visitors_page(),
           load_seats_page(),
           workers_page(),
+          load_plan_page(),
           pieces_picture_page(),
           pieces_bands_page(),
           pieces_scan_page(),

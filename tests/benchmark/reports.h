@@ -31,6 +31,7 @@ ReportPage kiosk_map_page();
 ReportPage load_visitors_page();
 ReportPage load_seats_page();
 ReportPage workers_page();
+ReportPage load_plan_page();
 ReportPage light_frame_page();
 ReportPage light_scaling_page();
 ReportPage light_error_page(const std::string& name);

@@ -18,6 +18,7 @@ struct Stroll {
   std::vector<double> arrivals;   // pictures' arrivals, seconds from the first that counts
   std::vector<double> latencies;  // milliseconds from an input to the first picture that shows it
   std::vector<double> bytes;      // pictures' sizes
+  std::vector<double> scales;     // keyframes' widths, over those that were asked for
   size_t repeated = 0;            // the same as the one before
   double walked = 0;              // seconds
   double fps() const;

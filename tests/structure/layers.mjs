@@ -16,6 +16,7 @@ export const may_include = {
   scan: ['gltf', 'store', 'image', 'json', 'base'],
   lawn: ['image', 'json', 'base'],
   collection: ['json', 'base'],
+  plan: ['base'],
   frame: ['image', 'base'],
   attention: ['frame', 'base'],
   denoise: ['base'],
