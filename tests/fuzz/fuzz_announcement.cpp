@@ -15,7 +15,8 @@ void fuzz_announcement(Bytes bytes) {
     put = true;
     return 1u;
   }};
-  const AccessRules rules{.admin_token = "a token of many letters"};
+  AccessRules rules;
+  rules.admin_token = "a token of many letters";
   require((answer_announce(desk, access_of(rules, question), question).status == 200) == put,
           "what is announced is handed over");
 }
