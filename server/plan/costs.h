@@ -28,16 +28,16 @@ class CostCurve {
 
 // All times are in seconds, those of work in core-seconds.
 struct Costs {
-  double cores = 0;           // of the machine that was measured
-  CostCurve draw;             // of a keyframe, for a page that draws by itself or not
-  CostCurve warp;             // of a picture that is warped from one
-  CostCurve encode_keyframe;  // of its JPEG and depth
+  double cores = 0;           // the measured machine has so many
+  CostCurve draw;             // drawing a keyframe
+  CostCurve warp;             // warping a picture from one
+  CostCurve encode_keyframe;  // making its JPEG and depth
   CostCurve encode_picture;   // of a finished picture's JPEG
   CostCurve keyframe_bytes, picture_bytes;
   CostCurve visitor_memory;           // bytes of a visitor's pictures
   double server_memory = 0;           // bytes of a server besides
   double serial = 0;                  // share of a keyframe that one core does alone
-  double tick = 0, tick_visitor = 0;  // of a tick, and for each visitor more
+  double tick = 0, tick_visitor = 0;  // a tick takes, and more for each visitor
   double samples = 0;                 // samples a second that one core traces
   double wide_rate = 0;               // wide views that a walker needs, a second
 };

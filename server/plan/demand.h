@@ -13,12 +13,12 @@ struct Demand {
   double walking = 1;   // share of the time in which a visitor walks
   double standing = 0;  // and stands; in what is left the page is hidden, and nothing is drawn
   double turn = 9;      // seconds after which a visitor has walked, stood and rested
-  double pixels = 640 * 360;  // of a picture
+  double pixels = 640 * 360;  // a picture has
   bool local = false;         // pages draw by themselves, of keyframes with depth
   double input_interval = 1 / 30.0;
   double latency = 0;        // of a visitor's line, one way
   double bandwidth = 125e6;  // bytes a second of a visitor's line
-  double stay = 0;           // of a visit, in the mean; then somebody else comes. 0: for ever
+  double stay = 0;           // a visit lasts, in the mean; then somebody else comes. 0: for ever
   bool operator==(const Demand&) const = default;
 };
 
@@ -34,11 +34,11 @@ struct Fleet {
   int servers = 1;
   Machine machine;
   int workers = 0;             // machines that only trace samples
-  double worker_cores = 0;     // of each
+  double worker_cores = 0;     // each has
   double worker_trip = 0.002;  // seconds there and back
 };
 
-// How long is simulated. What happens before `warm_up` does not count.
+// Says how many seconds are simulated, and how many before them do not count.
 struct Span {
   double warm_up = 4, seconds = 20;
   uint64_t seed = 1;

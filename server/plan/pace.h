@@ -9,7 +9,7 @@
 namespace wellspring::plan {
 
 struct KeyframePace {
-  double scale = 1;   // of its sides
+  double scale = 1;   // its sides have so much
   double period = 0;  // until the next
 };
 // show::plan_keyframe: what a keyframe of scale `before` took, how many walk, and how long one may
@@ -17,8 +17,8 @@ struct KeyframePace {
 KeyframePace pace_keyframe(double seconds, int walkers, double before, double longest);
 
 // Returns how long a page may use one keyframe (show::longest_period, show::finished_period): a
-// page that draws by itself long while its visitor goes ahead, less in a turn. What is uncovered
-// beside near things is left out: it depends on the exhibit.
+// page that draws by itself long while its visitor goes ahead, less in a turn. Near things
+// and what they uncover are left out, as they depend on the exhibit.
 double longest_use(bool local, bool turns);
 
 // Returns the time that a picture gets for samples. `drawing`: what drawing one of its scale takes;

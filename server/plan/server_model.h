@@ -37,11 +37,11 @@ enum class EventKind : uint8_t {
 struct Event {
   EventKind kind = EventKind::tick;
   int server = -1, guest = -1;
-  uint64_t number = 0;  // of the tick or work that is meant, or of the visit: later ones count
+  uint64_t number = 0;  // says which tick, work or visit is meant: later ones count
   int seq = -1;         // arrival: the input that it shows; -1: it shows none anew
 };
 
-// What is the same for all servers of a simulation.
+// Holds all that the servers of a simulation share.
 struct Hall {
   const Costs& costs;
   const Demand& demand;
@@ -59,7 +59,6 @@ class ServerModel {
   void leave(int guest, double now);
   void tick(uint64_t number, double now);
   void work(uint64_t number, double now);
-  void acknowledge(int guest) { hall_.guests[size_t(guest)].in_flight--; }
   int connections() const { return int(here_.size()); }
   // Counts from now on.
   void begin_counting(double now);
@@ -98,7 +97,7 @@ class ServerModel {
   const int index_;
   Hall& hall_;
   SharedCores cores_;
-  const double width_;  // of a drawing
+  const double width_;  // cores that a drawing uses
   std::vector<int> here_;
   int walkers_ = 0;
   double showing_ = 0;  // seconds that a finished picture for each walker takes

@@ -45,7 +45,7 @@ class SharedCores {
   void advance(double now);
   const double cores_, free_;  // free_: that other programs leave
   std::vector<Task> tasks_;
-  double width_ = 0;  // of all tasks
+  double width_ = 0;  // all tasks together
   double at_ = 0, used_ = 0;
 };
 

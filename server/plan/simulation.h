@@ -16,15 +16,15 @@ struct Outcome {
   Tally latency;               // seconds from an input to the first picture that shows it
   Tally gaps;                  // seconds between pictures of walkers
   double keyframes = 0;        // drawn, in the mean
-  double least_keyframes = 0;  // of whoever got the fewest
-  double pictures = 0;         // that arrived, in the mean
+  double least_keyframes = 0;  // whoever got the fewest had these
+  double pictures = 0;         // arrived, in the mean
   double samples = 0;          // traced, in the mean
   double bytes = 0;            // a second of one visitor, in the mean over all its time
   double most_bytes = 0;       // a second of whoever takes the most
   double total_bytes = 0;      // a second of all
   double renderer = 0, tick = 0, cores = 0, network = 0;  // shares that are busy
   double line = 0;                                        // of the busiest visitor's line
-  int most_connections = 0;                               // of one server
+  int most_connections = 0;                               // one server had
 };
 
 // Returns what is wrong with what it is told ("bandwidth has to be more than 0"); empty: nothing.

@@ -10,10 +10,10 @@
 namespace wellspring::plan {
 namespace {
 
-constexpr int most_visitors = 1000;      // of one server (--max-visitors)
+constexpr int most_visitors = 1000;      // one server takes no more (--max-visitors)
 constexpr double one_in_twenty = 1.645;  // standard deviations of the normal distribution
 constexpr Span trial{4, 16, 1}, whole{4, 12, 3};
-constexpr double most_simulated = 4e5;  // visitor-seconds of the whole fleet
+constexpr double most_simulated = 6e4;  // visitor-seconds of the whole fleet
 
 double rate_of(const Outcome& outcome, bool local) {
   return local ? outcome.keyframes : outcome.pictures;

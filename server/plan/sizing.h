@@ -8,11 +8,11 @@
 
 namespace wellspring::plan {
 
-// What everybody who walks is to have.
+// Says what everybody who walks is to have.
 struct Goals {
-  double rate = 3;       // keyframes a second, or finished pictures, in the mean
-  double latency = 0.4;  // seconds from an input to its picture, in 95 of 100 cases
-  double samples = 0;    // samples of light a second
+  double rate = 3;     // keyframes a second, or finished pictures, in the mean
+  double latency = 1;  // seconds from an input to its picture, in 95 of 100 cases
+  double samples = 0;  // samples of light a second
 };
 
 // Which goal, or which part of a server, gives out first as visitors become more.
@@ -30,7 +30,7 @@ struct Sizing {
   double server_bandwidth = 0;  // bytes a second of the busiest server
   double bandwidth = 0;         // bytes a second of the museum
   double line = 0;              // bytes a second of whoever takes the most
-  Outcome outcome;              // of all of them together; none for nobody
+  Outcome outcome;              // for all of them together; none for nobody
   Limit limit;                  // with one visitor more a server
 };
 

@@ -20,10 +20,10 @@ struct CrowdPlan {
 struct CrowdSeen {
   std::vector<double> latencies;  // milliseconds from an input to its picture, of all
   double keyframes = 0;           // drawn for each visitor, a second
-  double pictures = 0;            // that came to each visitor, a second
-  double bytes = 0;               // of one, in the mean
-  std::vector<double> scales;     // of keyframes that came: their width over what was asked for
-  double server_cores = 0, visitors_cores = 0, other_cores = 0;  // that were taken meanwhile
+  double pictures = 0;            // came to each visitor, a second
+  double bytes = 0;               // one has, in the mean
+  std::vector<double> scales;     // keyframes have these: width over what was asked for
+  double server_cores = 0, visitors_cores = 0, other_cores = 0;  // were taken meanwhile
   double others = 0;  // other sessions with a thread that wanted a core: each gets as much as ours
   double resident = 0;  // bytes of the server, in the end
   // Figures of /metrics by name without what they begin with, as means over the visitors: their

@@ -60,7 +60,7 @@ ReportPage load_plan_page() {
           {"The check: a stroll through the castle, from an input to its picture. The simulation "
            "knows the costs, and how many threads of other programs wanted a core meanwhile.",
            "Museums: so many at the peak, half of whose time is walked, at 1280x720 with the local "
-           "display; 3 keyframes a second and 400 ms (95th percentile) for whoever walks."},
+           "display; 3 keyframes a second and 1,000 ms (95th percentile) for whoever walks."},
           {{.caption = "The check, on this machine",
             .rows = {{"display", "display"}, {"size", "size"}, {"visitors", "visitors"}},
             .columns = both,

@@ -61,7 +61,7 @@ void draw_curves(BenchReport& report, const BenchOptions& options, const Costs& 
             "visitors who walk",
             "milliseconds",
             {},
-            400,
+            1000,
             "goal"};
   for (const double cores : {2.0, 8.0, 32.0}) {
     Curve curve{std::to_string(int(cores)) + " cores", {}};
@@ -79,7 +79,7 @@ void draw_curves(BenchReport& report, const BenchOptions& options, const Costs& 
   save_svg(options.plots + "load_plan.svg", plot);
 }
 
-// What to buy for visitors at the peak, half of whose time is walked.
+// Says what to buy for visitors at the peak, half of whose time is walked.
 void size_museums(BenchReport& report, const Costs& costs) {
   for (const double cores : {2.0, 8.0, 32.0})
     for (const int visitors : {100, 1000, 10000}) {

@@ -26,7 +26,7 @@ constexpr Size sizes[] = {{160, 90}, {320, 180}, {640, 360}, {1280, 720}};
 // Rungs of resolution of keyframes (show::plan_keyframe), which keep a border for turns.
 constexpr double rungs[] = {1, 0.75, 0.5, 0.375}, border = 1.04;
 constexpr double guessed = 30, weighed = 30e3;  // as in show/state/capacity.cpp
-constexpr int quality = 82;                     // of JPEGs, as the server begins
+constexpr int quality = 82;                     // JPEGs have it, as the server begins
 
 void add(BenchReport& report, const std::string& name, double value, const std::string& unit,
          const Size& size) {
@@ -45,7 +45,7 @@ double rung_of(double width) {
   return found == std::end(rungs) ? rungs[3] : *found;
 }
 
-// What the keyframes of one visitor cost, who strolls with a page that draws by itself.
+// Holds what keyframes cost of one visitor, who strolls with a page that draws by itself.
 struct Drawn {
   Size size;
   CrowdSeen seen;
