@@ -46,7 +46,7 @@ double rung_of(double width) {
 }
 
 // Holds what keyframes cost of one visitor, who strolls with a page that draws by itself.
-struct Drawn {
+struct MeasuredSize {
   Size size;
   CrowdSeen seen;
   // Core-seconds of one, in the mean, each divided by its scale, as the server notes them.
@@ -54,12 +54,12 @@ struct Drawn {
   double mean_scale = 1, mean_reverse = 1, mean_square = 1;
 };
 
-Drawn measure_keyframes(const BenchOptions& options, const Size& size) {
-  Drawn drawn{size, measure_crowd(options, {.visitors = 1,
-                                            .width = size.width,
-                                            .height = size.height,
-                                            .local = true,
-                                            .seconds = options.quick ? 8.0 : 20.0})};
+MeasuredSize measure_keyframes(const BenchOptions& options, const Size& size) {
+  MeasuredSize drawn{size, measure_crowd(options, {.visitors = 1,
+                                                   .width = size.width,
+                                                   .height = size.height,
+                                                   .local = true,
+                                                   .seconds = options.quick ? 8.0 : 20.0})};
   CrowdSeen& seen = drawn.seen;
   // The server tells a mean for which a guess counts as so many keyframes.
   const char* name = "picture_drawn_seconds_a_megapixel";
@@ -84,9 +84,9 @@ Drawn measure_keyframes(const BenchOptions& options, const Size& size) {
 struct Line {
   double fixed = 0, a_pixel = 0;
 };
-Line fit(const std::vector<Drawn>& all) {
+Line fit(const std::vector<MeasuredSize>& all) {
   double uu = 0, uv = 0, vv = 0, u1 = 0, v1 = 0;
-  for (const Drawn& one : all) {
+  for (const MeasuredSize& one : all) {
     const double u = one.mean_reverse / one.cost, v = one.mean_scale * one.size.pixels() / one.cost;
     uu += u * u, uv += u * v, vv += v * v, u1 += u, v1 += v;
   }
@@ -96,7 +96,7 @@ Line fit(const std::vector<Drawn>& all) {
 
 // Returns the share of a keyframe that one core does alone, by how long it took on the cores
 // that other programs left.
-double serial_share(const Drawn& drawn, const Line& line, double cores) {
+double serial_share(const MeasuredSize& drawn, const Line& line, double cores) {
   const double work = line.fixed + line.a_pixel * drawn.size.pixels() * drawn.mean_square;
   const double seconds = 0.001 * drawn.seen.metrics.at("visitor_drawn_after_milliseconds");
   const double free = cores / (1 + drawn.seen.others);
@@ -153,11 +153,11 @@ void measure_plan_costs(BenchReport& report, const BenchOptions& options) {
   const double cores = std::max(1u, std::thread::hardware_concurrency());
   add(report, "cores", cores, "");
   measure_functions(report, options);
-  std::vector<Drawn> all;
+  std::vector<MeasuredSize> all;
   for (const Size& size : sizes) all.push_back(measure_keyframes(options, size));
   const Line line = fit(all);
   std::vector<double> serial, samples, wide, ticks, memory;
-  for (Drawn& one : all) {
+  for (MeasuredSize& one : all) {
     const Size& size = one.size;
     add(report, "draw", std::max(line.fixed + line.a_pixel * size.pixels(), 1e-6), "s", size);
     add(report, "keyframe_mean", one.cost, "s", size);
