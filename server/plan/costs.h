@@ -32,7 +32,7 @@ struct Costs {
   CostCurve draw;             // drawing a keyframe
   CostCurve warp;             // warping a picture from one
   CostCurve encode_keyframe;  // making its JPEG and depth
-  CostCurve encode_picture;   // of a finished picture's JPEG
+  CostCurve encode_picture;   // encoding a finished picture
   CostCurve keyframe_bytes, picture_bytes;
   CostCurve visitor_memory;           // bytes of a visitor's pictures
   double server_memory = 0;           // bytes of a server besides

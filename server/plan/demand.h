@@ -16,7 +16,7 @@ struct Demand {
   double pixels = 640 * 360;  // a picture has
   bool local = false;         // pages draw by themselves, of keyframes with depth
   double input_interval = 1 / 30.0;
-  double latency = 0;        // of a visitor's line, one way
+  double latency = 0;        // seconds that a visitor's line takes one way
   double bandwidth = 125e6;  // bytes a second of a visitor's line
   double stay = 0;           // a visit lasts, in the mean; then somebody else comes. 0: for ever
   bool operator==(const Demand&) const = default;

@@ -17,7 +17,7 @@ constexpr double line_share = 0.85, most_keyframes = 10, wide_share = 1 / 8.0;
 constexpr double soon = 0.3, smoothed = 0.1;
 constexpr double learning_rate = 1.5, rested_rate = 0.2, settled_seconds = 5;
 constexpr double standing_weight = 4, slice_seconds = 0.025;
-constexpr double credit_seconds = 1;  // of workers' time that is not lost while nobody asks
+constexpr double credit_seconds = 1;  // seconds of workers' time that are kept while nobody asks
 constexpr double least_samples = 1000, most_a_pixel = 0.5;
 constexpr int max_in_flight = 2;
 // The scripted stroll of the measurements: seconds ahead, and then in a turn.

@@ -2,7 +2,7 @@
 // Simulates the cores of one machine, which its tasks share. A task has a width: how many cores it
 // can use at once. While all widths together are more than there are cores, each task gets the same
 // part of its width, as a fair scheduler of threads gives it (processor sharing, Kleinrock 1976,
-// section 4.4). What the memory's bandwidth and caches take is in the measured costs.
+// section 4.4). The measured costs include what the memory's bandwidth and caches take.
 //
 // A task that cores share badly, of which `serial` is done by one core alone, is narrower
 // (Amdahl 1967).

@@ -23,7 +23,7 @@ struct Outcome {
   double most_bytes = 0;       // a second of whoever takes the most
   double total_bytes = 0;      // a second of all
   double renderer = 0, tick = 0, cores = 0, network = 0;  // shares that are busy
-  double line = 0;                                        // of the busiest visitor's line
+  double line = 0;                                        // share of the busiest visitor's line
   int most_connections = 0;                               // one server had
 };
 

@@ -92,8 +92,7 @@ Stroll stroll_through(const StrollPlan& plan, const std::function<void()>& count
       seen.repeated += picture == before;
       seen.arrivals.push_back(arrived - began - plan.warm_up);
       seen.bytes.push_back(double(message.bytes.size()));
-      if (packet->keyframe)
-        seen.scales.push_back(double(packet->keyframe->width) / plan.width);
+      if (packet->keyframe) seen.scales.push_back(double(packet->keyframe->width) / plan.width);
     }
     before = std::move(picture);
   }
