@@ -49,7 +49,7 @@ Refusal Workshop::prepare(const TraceOrder& order, double waited, Room*& room) {
                                          technique == stage.still_technique);
   if (!is_prepared || technique->begin_pass) return Refusal::technique;
   if (1000 * waited > order.worth_ms) return Refusal::late;
-  if (order.state == room->state) return Refusal::none;
+  if (!room->state.empty() && order.state == room->state) return Refusal::none;
   if (!put_world_state(order.state, room->show->stage, room->show->cast)) return Refusal::state;
   room->state = order.state;
   return Refusal::none;
