@@ -54,27 +54,26 @@ ReportPage load_plan_page() {
                                         {"keyframes", "keyframes a second of each"},
                                         {"keyframes_ratio", "said over it"},
                                         {"others", "other programs' threads"}};
-  return {"load.plan",
-          "How many machines does a museum need? `./wellspring plan --visitors N` says it by a "
-          "simulation (server/plan) with costs that are measured here with one visitor.",
-          {"The check: a stroll through the castle, from an input to its picture. The simulation "
-           "knows the costs, and how many threads of other programs wanted a core meanwhile.",
-           "Museums: so many at the peak, half of whose time is walked, at 1280x720 with the local "
-           "display; 3 keyframes a second and 1,000 ms (95th percentile) for whoever walks."},
-          {{.caption = "The check, on this machine",
-            .rows = {{"display", "display"}, {"size", "size"}, {"visitors", "visitors"}},
-            .columns = both,
-            .most_rows = 20},
-           {.caption = "What to buy; `gives out`: what has the least left with one visitor more",
-            .rows = {{"cores", "cores of a server"}, {"visitors", "visitors at the peak"}},
-            .columns = {{"servers", "servers"},
-                        {"each", "visitors of each, at most"},
-                        {"each", "gives out", 1, "", "gives_out"},
-                        {"memory", "memory of each"},
-                        {"museum_line", "line of the museum"},
-                        {"expected_p95", "expected, 95th percentile"},
-                        {"expected_keyframes", "keyframes a second"}},
-            .most_rows = 9}}};
+  return {
+      "load.plan",
+      "How many machines does a museum need? `./wellspring plan --visitors N` says it by a "
+      "simulation (server/plan) with costs that are measured here with one visitor.",
+      {"The check: a stroll through the castle, from an input to its picture.",
+       "Museums: half of the time is walked, at 1280x720, local; 3 keyframes a second, 1,000 ms."},
+      {{.caption = "The check, on this machine",
+        .rows = {{"display", "display"}, {"size", "size"}, {"visitors", "visitors"}},
+        .columns = both,
+        .most_rows = 20},
+       {.caption = "What to buy; `gives out`: what has the least left with one visitor more",
+        .rows = {{"cores", "cores of a server"}, {"visitors", "visitors at the peak"}},
+        .columns = {{"servers", "servers"},
+                    {"each", "visitors of each, at most"},
+                    {"each", "gives out", 1, "", "gives_out"},
+                    {"memory", "memory of each"},
+                    {"museum_line", "line of the museum"},
+                    {"expected_p95", "expected, 95th percentile"},
+                    {"expected_keyframes", "keyframes a second"}},
+        .most_rows = 9}}};
 }
 
 }  // namespace wellspring::test

@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "about/version.h"
 #include "base/log.h"
 #include "kiosk/face/expression.h"
 #include "kiosk/face/face_finder.h"
@@ -219,6 +220,7 @@ void tell(const std::string& name, double value, const std::string& unit, json f
 }  // namespace wellspring::test
 
 int main(int argc, char** argv) {
+  if (wellspring::about::answer_version(argc, argv)) return 0;
   CLI::App app{"Fits what the kiosk's eye reads from faces to figures with known expressions."};
   std::string pictures, weights;
   bool table = false;
