@@ -53,7 +53,7 @@ ReportPage load_plan_page() {
                                         {"p95_ratio", "said over it"},
                                         {"keyframes", "keyframes a second of each"},
                                         {"keyframes_ratio", "said over it"},
-                                        {"others", "other programs' threads"}};
+                                        {"load.plan.others", "other programs' threads"}};
   return {
       "load.plan",
       "How many machines does a museum need? `./wellspring plan --visitors N` says it by a "
