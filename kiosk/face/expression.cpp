@@ -59,6 +59,12 @@ std::optional<Fit> fit_onto(const FaceMesh& mesh, const FaceMesh& rest) {
   return fit;
 }
 
+FaceMesh moved_by(const Fit& fit, const FaceMesh& mesh) {
+  FaceMesh out = mesh;
+  for (vec3& point : out.points) point = fit.scale * (fit.turn * (point - fit.from)) + fit.to;
+  return out;
+}
+
 vec3 mean_of(const FaceMesh& mesh, std::initializer_list<size_t> points) {
   vec3 sum{0};
   for (size_t k : points) sum += mesh.points[k];
@@ -69,16 +75,13 @@ vec3 mean_of(const FaceMesh& mesh, std::initializer_list<size_t> points) {
 
 std::optional<FaceMesh> align(const FaceMesh& mesh, const FaceMesh& rest) {
   const auto fit = fit_onto(mesh, rest);
-  if (!fit) return {};
-  FaceMesh out = mesh;
-  for (vec3& point : out.points) point = fit->scale * (fit->turn * (point - fit->from)) + fit->to;
-  return out;
+  return fit ? std::optional(moved_by(*fit, mesh)) : std::nullopt;
 }
 
 std::optional<FaceMovement> measure_movement(const FaceMesh& rest, const FaceMesh& now) {
   const auto fit = fit_onto(now, rest);
   if (!fit) return {};
-  const FaceMesh face = *align(now, rest);
+  const FaceMesh face = moved_by(*fit, now);
   // Axes of the face at rest: to image right, up.
   const vec3 across =
       mean_of(rest, {right_eye[0], right_eye[1]}) - mean_of(rest, {left_eye[0], left_eye[1]});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What serving visitors costs on the machine that was measured: rows "load.plan.cost.*" of a file
-// that `./wellspring bench --only load.plan --json FILE` wrote. They are measured with one visitor,
-// mostly as processor time, so that other programs of the machine count for little.
+// Holds what serving visitors costs on the machine that was measured: rows "load.plan.cost.*" of a
+// file that `./wellspring bench --only load.plan --json FILE` wrote. They are measured with one
+// visitor, mostly as processor time, so that other programs of the machine count for little.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>

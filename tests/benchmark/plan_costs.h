@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a server's work costs on this machine, for plan/costs.h: of a server with one visitor, and
-// of single functions. No figure comes from servers with many visitors but one: what each visitor
-// adds to a tick.
+// Measures what a server's work costs on this machine, for plan/costs.h: of a server with one
+// visitor, and of single functions. No figure comes from servers with many visitors but one: what
+// each visitor adds to a tick.
 #pragma once
 #include "report.h"
 

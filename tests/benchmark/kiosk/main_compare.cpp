@@ -14,14 +14,6 @@
 
 namespace wellspring::test {
 
-void tell(const std::string& name, double value, const std::string& unit, nlohmann::json fields) {
-  if (std::isnan(value)) return;
-  nlohmann::json out{{"name", name}, {"value", value}, {"unit", unit}};
-  if (!fields.is_null()) out.update(fields);
-  std::puts(out.dump().c_str());
-  std::fflush(stdout);
-}
-
 double mean(const std::vector<double>& values) {
   return values.empty()
              ? NAN

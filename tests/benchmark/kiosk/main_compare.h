@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parts of wellspring_kiosk_compare; each prints its results by tell().
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "tell.h"
 
 namespace wellspring::test {
 
@@ -12,10 +13,6 @@ struct CompareOptions {
   bool quick = false;
 };
 
-// Prints a JSON object on a line: {"name","value","unit",...}. Values that are no numbers are left
-// out.
-void tell(const std::string& name, double value, const std::string& unit,
-          nlohmann::json fields = {});
 double mean(const std::vector<double>& values);  // NAN of none
 
 // One-euro filter and Kalman filter after the same raw poses.

@@ -16,7 +16,7 @@
 #include "base/log.h"
 #include "kiosk/face/expression.h"
 #include "kiosk/face/face_finder.h"
-#include "main_measure.h"
+#include "tell.h"
 
 namespace wellspring::test {
 namespace {
@@ -210,12 +210,6 @@ void run(const fs::path& folder, const fs::path& weights, bool table) {
 }
 
 }  // namespace
-
-void tell(const std::string& name, double value, const std::string& unit, json fields) {
-  if (!std::isfinite(value)) return;
-  fields["name"] = name, fields["value"] = value, fields["unit"] = unit;
-  std::cout << fields.dump() << '\n';
-}
 
 }  // namespace wellspring::test
 

@@ -18,6 +18,7 @@
 #include "kiosk/gesture/writer.h"
 #include "kiosk/observe.h"
 #include "unit/kiosk/hand/made_hand.h"
+#include "tell.h"
 
 namespace {
 
@@ -32,21 +33,6 @@ constexpr double usual_rate = 15;  // observations a second of a kiosk
 struct Options {
   std::string weights, data;
   bool quick = false;
-};
-
-void tell(const std::string& name, double value, const std::string& unit, json fields = {}) {
-  if (std::isnan(value)) return;
-  json out{{"name", name}, {"value", value}, {"unit", unit}};
-  if (!fields.is_null()) out.update(fields);
-  std::puts(out.dump().c_str());
-  std::fflush(stdout);
-}
-
-struct Mean {
-  double sum = 0;
-  int count = 0;
-  void add(double value) { sum += value, count++; }
-  double value() const { return count ? sum / count : NAN; }
 };
 
 double process_seconds() {

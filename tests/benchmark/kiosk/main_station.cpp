@@ -18,6 +18,7 @@
 #include "kiosk/station/box.h"
 #include "kiosk/station/code.h"
 #include "kiosk/station/station.h"
+#include "tell.h"
 
 namespace {
 
@@ -25,13 +26,6 @@ using namespace wellspring;
 using namespace wellspring::test;
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-void tell(const std::string& name, double value, const std::string& unit, const json& fields) {
-  json out{{"name", name}, {"value", value}, {"unit", unit}};
-  out.update(fields);
-  std::puts(out.dump().c_str());
-  std::fflush(stdout);
-}
 
 double process_ms() {
   timespec now;
