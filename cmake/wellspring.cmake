@@ -274,3 +274,13 @@ function(wellspring_embed layer template)
   configure_file(${PROJECT_SOURCE_DIR}/${template} ${CMAKE_BINARY_DIR}/embedded/${name} @ONLY)
   target_sources(${layer} PRIVATE ${CMAKE_BINARY_DIR}/embedded/${name})
 endfunction()
+
+# Gives a layer the number of the program's sources (program_number.cmake).
+function(wellspring_number_sources layer)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/server/*.h ${PROJECT_SOURCE_DIR}/server/*.cpp)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/program_number.cmake)
+  set(out ${CMAKE_BINARY_DIR}/embedded/program_number.cpp)
+  add_custom_command(OUTPUT ${out} DEPENDS ${sources} ${script} VERBATIM COMMAND ${CMAKE_COMMAND} -D OUT=${out}
+    -D ROOT=${PROJECT_SOURCE_DIR} -D "COMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" -P ${script})
+  target_sources(${layer} PRIVATE ${out})
+endfunction()

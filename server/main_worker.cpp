@@ -19,7 +19,6 @@
 #include "about/version.h"
 #include "base/clock.h"
 #include "base/log.h"
-#include "base/write_file.h"
 #include "show/exhibit/load/exhibit_load.h"
 #include "show/state/make_show.h"
 #include "show/workers/workshop.h"
@@ -27,6 +26,7 @@
 #include "workers/channel.h"
 #include "workers/crew.h"
 #include "workers/message.h"
+#include "workers/program_number.h"
 
 using namespace wellspring;
 using namespace wellspring::program;
@@ -35,7 +35,6 @@ namespace {
 
 constexpr size_t most_waiting = 1 << 17;  // requests
 constexpr double look_every = 0.02;       // seconds
-constexpr size_t most_parts = 16;         // parts of maps that wait
 
 std::atomic<bool> asked_to_stop = false;
 void stop(int) { asked_to_stop = true; }
@@ -44,6 +43,7 @@ struct Options {
   ChannelSettings channel;
   std::string content = "content", exhibit, cache = "build/cache", name, key_file, token_file;
   int cores = 0;
+  double fetch_most = 8;  // GiB
   ShowSettings show;
 };
 
@@ -94,36 +94,44 @@ std::string default_name() {
 
 // Returns the folders of the exhibits that are to be loaded.
 std::vector<std::string> folders(const Options& options) {
-  if (!options.exhibit.empty()) return {options.content + "/" + options.exhibit};
   std::vector<std::string> all;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(options.content, error))
-    if (std::filesystem::exists(entry.path() / "exhibit.json")) all.push_back(entry.path());
+    if (std::filesystem::exists(entry.path() / "exhibit.json") &&
+        (options.exhibit.empty() || entry.path().filename() == options.exhibit))
+      all.push_back(entry.path());
   std::ranges::sort(all);
   return all;
 }
 
-void load(const Options& options, Workshop& workshop) {
+LoadShow loader(const Options& options) {
   ShowSettings settings = options.show;
-  settings.cache = options.cache;
   settings.bakes = false;
   settings.weights.clear();
+  return [settings](const std::string& folder, const std::string& cache) {
+    ShowSettings own = settings;
+    own.cache = cache;
+    return make_show(load_exhibit(folder, cache), own);
+  };
+}
+
+void load(const Options& options, Workshop& workshop) {
   for (const std::string& folder : folders(options)) {
     try {
-      workshop.add(make_show(load_exhibit(folder, options.cache), settings));
+      workshop.add(folder, options.cache);
     } catch (const ExhibitError& error) {
       for (const Problem& problem : error.problems)
         if (problem.fatal) std::cerr << "error: " << to_string(problem) << "\n";
-      if (!options.exhibit.empty()) throw;
     }
   }
-  if (workshop.exhibits() == 0)
+  if (workshop.exhibits() == 0 && options.fetch_most == 0)
     throw std::runtime_error(options.content + ": no exhibit can be loaded");
 }
 
 void run(const Options& options) {
   const MessageKey key = make_message_key(read_token(options.key_file, "WELLSPRING_WORKERS_KEY"));
-  Workshop workshop(version_number(), options.name, options.cache);
+  Workshop workshop(program_number(version_number()), options.name, options.cache,
+                    uint64_t(options.fetch_most * (1 << 30)), loader(options));
   load(options, workshop);
   Orders orders;
   Channel* line = nullptr;
@@ -137,7 +145,7 @@ void run(const Options& options) {
                        RollCall call;
                        if (!read_message(message, key, call)) return void(refused_messages++);
                        const CallAnswer here{call.server,       call.number,
-                                             options.name,      version_number(),
+                                             options.name,      program_number(version_number()),
                                              instruction_set(), uint32_t(options.cores)};
                        send(reply_to, write_message(here, key));
                      }};
@@ -151,18 +159,20 @@ void run(const Options& options) {
             answers_subject(server),
             write_message(TraceAnswer{server, number, options.name, Refusal::busy, 0, 0, {}}, key));
       }};
-  const std::string parts_subject = fmt::format("wellspring.maps.{}-{}", options.name, getpid());
-  std::mutex mutex;
-  std::vector<MapPart> parts;
-  Subscription maps{parts_subject, "", [&](std::string_view message, std::string_view) {
-                      MapPart part;
-                      if (!read_message(message, key, part)) return void(refused_messages++);
-                      std::lock_guard lock(mutex);
-                      if (parts.size() < most_parts) parts.push_back(std::move(part));
-                    }};
+  const std::string parts_subject = fmt::format("wellspring.files.{}-{}", options.name, getpid());
+  const auto ask_for_files = [&] {
+    if (const auto question = workshop.fetch().ask(seconds_now()))
+      send(answers_subject(question->server), write_message(*question, key), parts_subject);
+  };
+  Subscription files{parts_subject, "", [&](std::string_view message, std::string_view) {
+                       FilePart part;
+                       if (!read_message(message, key, part)) return void(refused_messages++);
+                       workshop.fetch().take(part, seconds_now());
+                       ask_for_files();
+                     }};
   ChannelSettings settings = options.channel;
   settings.name = "wellspring worker " + options.name;
-  Channel channel(settings, {calls, work, maps});
+  Channel channel(settings, {calls, work, files});
   line = &channel, ready = true;
   std::cout << fmt::format("Wellspring worker {}: {} exhibits, {} cores, {}", options.name,
                            workshop.exhibits(), options.cores, instruction_set())
@@ -170,12 +180,8 @@ void run(const Options& options) {
   uint64_t samples = 0, refusals = 0;
   while (!asked_to_stop) {
     const std::optional<Orders::Waiting> next = orders.take();
-    std::unique_lock lock(mutex);
-    const std::vector<MapPart> came = std::exchange(parts, {});
-    lock.unlock();
-    for (const MapPart& part : came) workshop.take(part);
-    if (const auto question = workshop.ask_for_maps(seconds_now()))
-      send(answers_subject(question->server), write_message(*question, key), parts_subject);
+    workshop.advance();
+    ask_for_files();
     if (!next) continue;
     const TraceAnswer answer = workshop.answer(next->order, seconds_now() - next->came);
     samples += answer.samples.size();
@@ -200,8 +206,12 @@ int main(int argc, char** argv) {
   app.add_option("--nats", options.channel.url, "address of NATS, e.g. nats://10.0.0.5:4222")
       ->required();
   app.add_option("--content", options.content, "folder of exhibit packages, as the server's");
-  app.add_option("--exhibit", options.exhibit, "id of the only one that is loaded");
-  app.add_option("--cache", options.cache, "folder where illumination maps are kept");
+  app.add_option("--exhibit", options.exhibit, "id of the only one that is loaded at the start");
+  app.add_option("--cache", options.cache,
+                 "folder of kept illumination maps, and of exhibits that are fetched from servers");
+  app.add_option("--fetch-most", options.fetch_most,
+                 "GiB of an exhibit that may be fetched; 0: none is")
+      ->check(CLI::Range(0.0, 1024.0));
   app.add_option("--name", options.name, "of this worker; those of one name share its orders");
   app.add_option("--cores", options.cores, "that it may use; 0: all")->check(CLI::Range(0, 1024));
   app.add_option("--technique", options.show.technique, "as the server's");
@@ -232,8 +242,6 @@ int main(int argc, char** argv) {
     options.channel.token = read_token(options.token_file, "WELLSPRING_NATS_TOKEN");
     run(options);
     return 0;
-  } catch (const ExhibitError&) {
-    return 1;
   } catch (const std::exception& error) {
     std::cerr << "wellspring worker: " << error.what() << "\n";
     return 1;

@@ -11,6 +11,7 @@
 #include "config/config_file.h"
 #include "light/technique/technique.h"
 #include "store/piece_store.h"
+#include "workers/program_number.h"
 
 namespace wellspring::program {
 namespace {
@@ -193,7 +194,7 @@ int read_options(ServerOptions& options, int argc, char** argv) {
     workers.secret = read_token(words.workers_key_file, "WELLSPRING_WORKERS_KEY");
     workers.channel.token = read_token(words.nats_token_file, "WELLSPRING_NATS_TOKEN");
     workers.channel.name = "wellspring server";
-    workers.version = version_number();
+    workers.version = program_number(version_number());
     log::set_level(options.log_level);
     if (!options.log.empty()) log::send_to(options.log);
   } catch (const CLI::ParseError& error) {

@@ -7,9 +7,7 @@
 #include <random>
 
 #include "base/clock.h"
-#include "base/load_error.h"
 #include "base/log.h"
-#include "base/read_file.h"
 
 namespace wellspring::workers {
 namespace {
@@ -23,11 +21,16 @@ constexpr double refused_rest = 10, fetching_rest = 2, first_garbage_rest = 10,
                  most_garbage_rest = 600;                             // seconds
 constexpr int least_order = 64, least_part = 256, most_order = 2048;  // requests
 constexpr int most_unanswered = 3;                                    // orders
-constexpr size_t most_inbox_bytes = 64 << 20, most_members = 256, most_done = 1024;
+constexpr size_t most_inbox_bytes = 64 << 20, most_members = 1024, most_done = 1024,
+                 most_asked = 256;
 
 uint64_t random_number() {
   std::random_device random;
   return uint64_t(random()) << 32 | random();
+}
+
+bool is_passing(Refusal refusal) {
+  return refusal == Refusal::light || refusal == Refusal::fetching;
 }
 
 bool are_same(const Sample& a, const Sample& b) {
@@ -57,6 +60,7 @@ Crew::Crew(CrewSettings settings, std::string exhibit, uint64_t scene, SampleBou
       key_(make_message_key(settings_.secret)),
       server_(random_number()),
       answers_(answers_subject(server_)),
+      shelf_(settings_.package, settings_.maps),
       channel_(settings_.channel,
                {{answers_, "", [this](auto message, auto reply_to) { hear(message, reply_to); }}}) {
 }
@@ -89,16 +93,19 @@ void Crew::advance() {
   for (const Heard& heard : inbox) {
     CallAnswer here;
     TraceAnswer answer;
-    MapQuestion question;
+    FileQuestion question;
     if (read_message(heard.message, key_, here)) take_call_answer(here, heard.came);
     else if (read_message(heard.message, key_, answer)) take_answer(std::move(answer), heard.came);
-    else if (read_message(heard.message, key_, question)) answer_map(question, heard.reply_to);
-    else {
+    else if (read_message(heard.message, key_, question)) {
+      if (question.server == server_ && !heard.reply_to.empty() && asked_.size() < most_asked)
+        asked_.push_back({question, heard.reply_to});
+    } else {
       lock.lock();
       totals_.spoiled++;
       lock.unlock();
     }
   }
+  answer_questions();
   lock.lock();
   give_up(now);
   std::erase_if(members_, [&](const auto& one) {
@@ -111,24 +118,13 @@ void Crew::advance() {
   channel_.send(call_subject, answers_, write_message(call, key_));
 }
 
-// A file that cannot be read has no bytes.
-void Crew::answer_map(const MapQuestion& question, const std::string& reply_to) {
-  if (question.server != server_ || reply_to.empty()) return;
-  MapPart part{server_, question.light, question.which, 0, 0, {}};
-  if (question.which < settings_.map_files.size()) {
-    std::string& file = maps_[question.which];
-    if (question.offset == 0) {
-      try {
-        file = read_file(settings_.map_files[question.which], most_map_bytes);
-      } catch (const LoadError&) {
-        file.clear();
-      }
-    }
-    part.offset = std::min<uint64_t>(question.offset, file.size());
-    part.size = file.size();
-    part.bytes = file.substr(part.offset, most_part_bytes);
-  }
-  channel_.send(reply_to, "", write_message(part, key_));
+// Files are read on a thread of their own.
+void Crew::answer_questions() {
+  if (asked_.empty() || librarian_.busy()) return;
+  librarian_.run([this, asked = std::exchange(asked_, {})] {
+    for (const Asked& one : asked)
+      channel_.send(one.reply_to, "", write_message(shelf_.answer(one.question), key_));
+  });
 }
 
 void Crew::take_call_answer(const CallAnswer& answer, double now) {
@@ -165,7 +161,7 @@ void Crew::take_answer(TraceAnswer answer, double now) {
     // Who is merely late or busy is asked for less, others not at all.
     if (answer.refusal != Refusal::late && answer.refusal != Refusal::busy)
       rest(member, fmt::format("{} refuses: {}", order.worker, to_word(answer.refusal)),
-           now + (answer.refusal == Refusal::light ? fetching_rest : refused_rest));
+           now + (is_passing(answer.refusal) ? fetching_rest : refused_rest));
     return;
   }
   if (answer.samples.size() != size_t(order.requests) || !are_within(answer.samples, bounds_)) {

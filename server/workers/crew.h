@@ -15,10 +15,12 @@
 #include <string_view>
 #include <vector>
 
+#include "base/worker.h"
 #include "cache/broker.h"
 #include "workers/budget.h"
 #include "workers/channel.h"
 #include "workers/message.h"
+#include "workers/package/shelf.h"
 #include "workers/report.h"
 #include "workers/settings.h"
 
@@ -85,7 +87,7 @@ class Crew {
     std::string message, reply_to;
   };
   void hear(std::string_view message, std::string_view reply_to);
-  void answer_map(const MapQuestion& question, const std::string& reply_to);
+  void answer_questions();
   void take_call_answer(const CallAnswer& answer, double now);
   void take_answer(TraceAnswer answer, double now);
   void take_samples(Order order, std::vector<Sample> samples);
@@ -109,11 +111,16 @@ class Crew {
   std::map<uint64_t, Order> orders_;  // in flight, by number
   std::vector<CrewSamples> done_;
   CrewTotals totals_;
-  std::map<uint8_t, std::string>
-      maps_;  // files that workers ask for, as they were read; the tick's
+  struct Asked {
+    FileQuestion question;
+    std::string reply_to;
+  };
+  std::deque<Asked> asked_;  // the tick's
   uint64_t numbers_ = 0, calls_ = 0;
   double called_ = -1e9;
-  Channel channel_;  // the last member: its threads write into the others
+  PackageShelf shelf_;  // librarian_'s while it is busy
+  Channel channel_;     // its threads write into the others
+  Worker librarian_;    // the last member: its thread sends
 };
 
 // Subjects of NATS. The second is a worker's own, shared by all that have its name.

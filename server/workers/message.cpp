@@ -18,7 +18,7 @@ constexpr float most_place = 1e7f;  // metres from the scene's origin
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 constexpr uint32_t magic = 0x31575357;  // "WSW1"
-enum class Kind : uint8_t { order = 1, answer, call, call_answer, map_question, map_part };
+enum class Kind : uint8_t { order = 1, answer, call, call_answer, file_question, file_part };
 
 // Begins a message.
 ByteWriter begin(Kind kind) {
@@ -178,8 +178,9 @@ std::string instruction_set() {
 }
 
 const char* to_word(Refusal refusal) {
-  constexpr const char* words[refusals] = {"none",  "version", "instructions", "exhibit", "scene",
-                                           "light", "state",   "technique",    "late",    "busy"};
+  constexpr const char* words[refusals] = {"none",  "version", "instructions", "exhibit",
+                                           "scene", "light",   "state",        "technique",
+                                           "late",  "busy",    "fetching",     "disk"};
   return words[size_t(refusal)];
 }
 
@@ -305,32 +306,30 @@ bool read_message(std::string_view bytes, const MessageKey& key, CallAnswer& ans
   return in.ended() && is_worker_name(answer.worker);
 }
 
-std::string write_message(const MapQuestion& question, const MessageKey& key) {
-  ByteWriter out = begin(Kind::map_question);
-  out.put(question.server), out.put(question.light), out.put(question.which);
-  out.put(question.offset);
+std::string write_message(const FileQuestion& question, const MessageKey& key) {
+  ByteWriter out = begin(Kind::file_question);
+  out.put(question.server), out.put(question.hash), out.put(question.offset);
   return close(out, key);
 }
 
-bool read_message(std::string_view bytes, const MessageKey& key, MapQuestion& question) {
-  ByteReader in(open(bytes, key, Kind::map_question));
-  in.take(question.server), in.take(question.light), in.take(question.which);
-  in.take(question.offset);
-  return in.ended() && question.offset <= most_map_bytes;
+bool read_message(std::string_view bytes, const MessageKey& key, FileQuestion& question) {
+  ByteReader in(open(bytes, key, Kind::file_question));
+  in.take(question.server), in.take(question.hash), in.take(question.offset);
+  return in.ended() && question.offset <= most_file_bytes;
 }
 
-std::string write_message(const MapPart& part, const MessageKey& key) {
-  ByteWriter out = begin(Kind::map_part);
-  out.put(part.server), out.put(part.light), out.put(part.which);
+std::string write_message(const FilePart& part, const MessageKey& key) {
+  ByteWriter out = begin(Kind::file_part);
+  out.put(part.server), out.put(part.hash);
   out.put(part.offset), out.put(part.size), out.put_text(part.bytes);
   return close(out, key);
 }
 
-bool read_message(std::string_view bytes, const MessageKey& key, MapPart& part) {
-  ByteReader in(open(bytes, key, Kind::map_part));
-  in.take(part.server), in.take(part.light), in.take(part.which);
+bool read_message(std::string_view bytes, const MessageKey& key, FilePart& part) {
+  ByteReader in(open(bytes, key, Kind::file_part));
+  in.take(part.server), in.take(part.hash);
   in.take(part.offset), in.take(part.size), in.take_text(part.bytes, most_part_bytes);
-  in.need(part.size <= most_map_bytes && part.offset <= part.size &&
+  in.need(part.size <= most_file_bytes && part.offset <= part.size &&
           part.bytes.size() <= part.size - part.offset);
   return in.ended();
 }

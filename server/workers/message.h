@@ -16,6 +16,7 @@
 
 #include "light/sample.h"
 #include "light/transport_settings.h"
+#include "workers/package/package.h"
 #include "workers/report.h"
 
 namespace wellspring::workers {
@@ -67,19 +68,20 @@ struct CallAnswer {
   uint32_t cores = 0;
 };
 
-// Asks a server for the file of its illumination maps, from an offset on: it comes part by part.
-struct MapQuestion {
-  uint64_t server = 0, light = 0;  // as in the order that was refused
-  uint8_t which = 0;               // file that may have them, from 0
-  uint64_t offset = 0;             // bytes
+// Asks a server for a file of an exhibit's package by its hash, from an offset on: it comes part by
+// part. A hash of zeros asks for the hash of the list of files.
+struct FileQuestion {
+  uint64_t server = 0;  // as in the order that was refused
+  FileHash hash{};
+  uint64_t offset = 0;  // bytes
 };
-struct MapPart {
-  uint64_t server = 0, light = 0;
-  uint8_t which = 0;
-  uint64_t offset = 0, size = 0;  // bytes; size of the file, 0: there is none
-  std::string bytes;
+struct FilePart {
+  uint64_t server = 0;
+  FileHash hash{};
+  uint64_t offset = 0, size = 0;  // bytes; size of the file
+  std::string bytes;              // none: there is no such file any more
 };
-inline constexpr size_t most_part_bytes = 256 * 1024, most_map_bytes = 256 << 20;
+inline constexpr size_t most_part_bytes = 256 * 1024;
 
 // Holds the key that a secret makes; none: messages are not sealed.
 using MessageKey = std::optional<std::array<uint8_t, 32>>;
@@ -89,8 +91,8 @@ std::string write_message(const TraceOrder& order, const MessageKey& key);
 std::string write_message(const TraceAnswer& answer, const MessageKey& key);
 std::string write_message(const RollCall& call, const MessageKey& key);
 std::string write_message(const CallAnswer& answer, const MessageKey& key);
-std::string write_message(const MapQuestion& question, const MessageKey& key);
-std::string write_message(const MapPart& part, const MessageKey& key);
+std::string write_message(const FileQuestion& question, const MessageKey& key);
+std::string write_message(const FilePart& part, const MessageKey& key);
 
 // Return false if the bytes are no such message: cut off, too long, out of range, or not sealed by
 // the key. Samples are finite and in range by themselves; whether they fit their world, whoever
@@ -99,8 +101,8 @@ bool read_message(std::string_view bytes, const MessageKey& key, TraceOrder& ord
 bool read_message(std::string_view bytes, const MessageKey& key, TraceAnswer& answer);
 bool read_message(std::string_view bytes, const MessageKey& key, RollCall& call);
 bool read_message(std::string_view bytes, const MessageKey& key, CallAnswer& answer);
-bool read_message(std::string_view bytes, const MessageKey& key, MapQuestion& question);
-bool read_message(std::string_view bytes, const MessageKey& key, MapPart& part);
+bool read_message(std::string_view bytes, const MessageKey& key, FileQuestion& question);
+bool read_message(std::string_view bytes, const MessageKey& key, FilePart& part);
 
 // Returns whether the text can be a worker's name: 1 to 32 letters, digits, '-' and '_'.
 bool is_worker_name(std::string_view name);

@@ -21,8 +21,10 @@ enum class Refusal : uint8_t {
   technique,     // unknown, or one of passes over a picture
   late,          // the answer would not be worth having any more
   busy,          // too much waits here
+  fetching,      // its exhibit or maps are on their way from the server, or being loaded
+  disk,          // what it would fetch does not fit on its disk
 };
-inline constexpr int refusals = 10;
+inline constexpr int refusals = 12;
 const char* to_word(Refusal refusal);
 
 // Holds how a worker is, for who looks after it.

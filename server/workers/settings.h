@@ -2,7 +2,6 @@
 // Holds how a server or a worker reaches NATS, and what a server asks of its workers.
 #pragma once
 #include <string>
-#include <vector>
 
 #include "base/layers.h"
 
@@ -17,11 +16,11 @@ struct ChannelSettings {
 };
 
 struct CrewSettings {
-  ChannelSettings channel;             // no address: there are no workers
-  std::string secret;                  // shared with workers; empty: messages are not sealed
-  std::string version;                 // version of this program
-  std::vector<std::string> map_files;  // those that may hold the present illumination maps
-  bool verifies = false;               // requests are traced here, too, and compared bit by bit
+  ChannelSettings channel;    // no address: there are no workers
+  std::string secret;         // shared with workers; empty: messages are not sealed
+  std::string version;        // version of this program
+  std::string package, maps;  // folder of the exhibit; file of better maps, which may come to be
+  bool verifies = false;      // requests are traced here, too, and compared bit by bit
 };
 
 }  // namespace wellspring::workers

@@ -21,6 +21,7 @@
 #include "show/state/visitor_picture.h"
 #include "show/workers/world_state.h"
 #include "workers/crew.h"
+#include "workers/program_number.h"
 
 namespace wellspring::test {
 namespace {
@@ -147,7 +148,7 @@ double measure(int count, const Show& show, const std::string& url, const BenchO
   CrewSettings settings;
   settings.channel.url = url;
   settings.channel.name = "wellspring bench";
-  settings.version = version_number();
+  settings.version = program_number(version_number());
   Feeder feeder(show, std::move(settings));
   for (const double end = seconds_now() + longest_wait; seconds_now() < end;) {
     feeder.step();

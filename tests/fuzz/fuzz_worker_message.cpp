@@ -29,11 +29,17 @@ void fuzz_worker_message(Bytes bytes) {
     }
     are_within(answer.samples, {4, {1, 2}});
   }
-  MapQuestion question;
-  if (read_message(text, none, question)) require(question.offset <= most_map_bytes, "offset");
-  MapPart part;
+  FileQuestion question;
+  if (read_message(text, none, question)) require(question.offset <= most_file_bytes, "offset");
+  FilePart part;
   if (read_message(text, none, part))
     require(part.offset + part.bytes.size() <= part.size, "the part lies within its file");
+  PackageList list;
+  if (read_list(text, list)) {
+    for (const PackageFile& file : list)
+      require(file.path.front() != '/' && file.path.find("..") != 0, "paths stay inside");
+    require(write_list(list) == text, "what is read can be written");
+  }
   RollCall call;
   read_message(text, none, call);
   CallAnswer here;

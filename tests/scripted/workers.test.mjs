@@ -3,7 +3,8 @@
 // differs is refused by name, who answers nonsense is not asked, and whatever dies, pictures go on.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync,
+  writeFileSync } from 'node:fs';
 import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -73,10 +74,11 @@ class Nats {
   close() { this.socket.destroy(); }
 }
 
-function start_worker(name, { exhibits = content, words = [], key = '' } = {}) {
+function start_worker(name,
+    { exhibits = content, cache = join(folder, 'worker'), words = [], key = '' } = {}) {
   const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_worker'),
       ['--nats', `nats://127.0.0.1:${port}`, '--content', exhibits, '--exhibit', 'first-room',
-        '--cache', join(folder, 'worker'), '--name', name, '--cores', '1', ...words],
+        '--cache', cache, '--name', name, '--cores', '1', ...words],
       { stdio: ['ignore', 'pipe', 'inherit'],
         env: { ...process.env, WELLSPRING_WORKERS_KEY: key } });
   workers.set(name, child);
@@ -207,6 +209,25 @@ test('a worker without the illumination maps fetches them', { skip }, async () =
   await kill(workers.get('dark'), 'SIGTERM');
 });
 
+test('a worker without the exhibit fetches it, whole, and goes on after a kill', { skip },
+    async () => {
+      const cache = join(folder, 'bare'), files = join(cache, 'packages', 'files');
+      const bare = () => start_worker('bare', { exhibits: join(folder, 'nothing'), cache });
+      const halves = () => existsSync(files) && readdirSync(files).length > 0;
+      await bare();
+      await until(halves, 'the first file');
+      await kill(workers.get('bare'), 'SIGKILL');
+      await bare();
+      await until(async () => await metric('worker_samples_total', '{worker="bare"}') > 1000,
+          'samples by a fetched exhibit');
+      assert.equal(await metric('workers_differing_total'), 0);
+      assert.ok(await metric('workers_refused_total', '{reason="exhibit"}') > 0);
+      const [version] = readdirSync(join(cache, 'packages')).filter((name) => name !== 'files');
+      const place = join(cache, 'packages', version, 'first-room', 'scene.glb');
+      assert.deepEqual(readFileSync(place), readFileSync(join(content, 'first-room', 'scene.glb')));
+      await kill(workers.get('bare'), 'SIGTERM');
+    });
+
 test('a worker that has another scene is not asked, and told', { skip }, async () => {
   const exhibits = join(folder, 'content');
   cpSync(join(content, 'first-room'), join(exhibits, 'first-room'), { recursive: true });
@@ -215,7 +236,7 @@ test('a worker that has another scene is not asked, and told', { skip }, async (
   assert.ok(place > 0);
   scene[place + '"roughnessFactor":0.'.length] ^= 1;
   writeFileSync(file, scene);
-  await start_worker('other', { exhibits });
+  await start_worker('other', { exhibits, words: ['--fetch-most', '0'] });
   await until(async () => (await worker_state('other'))?.problem.includes('scene'),
       'refuses: scene');
   assert.ok(await metric('workers_refused_total', '{reason="scene"}') > 0);

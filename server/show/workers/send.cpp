@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "light/kept/map_file.h"
 #include "light/technique/technique.h"
 #include "picture/still/reconstruct_still.h"
 #include "show/state/visitor_picture.h"
@@ -35,9 +34,9 @@ void begin_workers(Show& show) {
   const CrewSettings& settings = show.settings.workers;
   if (settings.channel.url.empty()) return;
   CrewSettings own = settings;
-  own.map_files = {shipped_light(show.stage.exhibit.folder)};
+  own.package = show.stage.exhibit.folder;
   if (!show.settings.cache.empty())
-    own.map_files.push_back(show.settings.cache + "/" + show.stage.exhibit.id + ".maps");
+    own.maps = show.settings.cache + "/" + show.stage.exhibit.id + ".maps";
   show.drawing->workers.crew =
       std::make_unique<Crew>(std::move(own), show.stage.exhibit.id, number_scene(show.stage),
                              sample_bounds(*show.stage.world));

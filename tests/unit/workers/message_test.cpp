@@ -84,18 +84,23 @@ TEST(WorkerMessage, KeepsRefusalsAndCalls) {
   EXPECT_EQ(here.cores, 8u);
 }
 
-TEST(WorkerMessage, KeepsPartsOfMaps) {
-  MapQuestion question;
-  ASSERT_TRUE(read_message(write_message(MapQuestion{1, 2, 1, 4096}, none), none, question));
+TEST(WorkerMessage, KeepsPartsOfFiles) {
+  const FileHash hash = hash_bytes("abc");
+  FileQuestion question;
+  ASSERT_TRUE(read_message(write_message(FileQuestion{1, hash, 4096}, none), none, question));
   EXPECT_EQ(question.offset, 4096u);
-  MapPart part;
-  ASSERT_TRUE(read_message(write_message(MapPart{1, 2, 1, 4096, 4099, "abc"}, none), none, part));
+  EXPECT_EQ(question.hash, hash);
+  FilePart part;
+  const auto is_read = [&](uint64_t offset, uint64_t size, const std::string& bytes) {
+    return read_message(write_message(FilePart{1, hash, offset, size, bytes}, none), none, part);
+  };
+  ASSERT_TRUE(is_read(4096, 4099, "abc"));
   EXPECT_EQ(part.bytes, "abc");
   EXPECT_EQ(part.size, 4099u);
-  EXPECT_FALSE(read_message(write_message(MapPart{1, 2, 1, 4096, 4098, "abc"}, none), none, part));
-  EXPECT_FALSE(read_message(write_message(MapPart{1, 2, 1, 9, 4, ""}, none), none, part));
-  EXPECT_FALSE(
-      read_message(write_message(MapPart{1, 2, 0, 0, uint64_t(1) << 40, "abc"}, none), none, part));
+  EXPECT_FALSE(is_read(4096, 4098, "abc"));
+  EXPECT_FALSE(is_read(9, 4, ""));
+  EXPECT_FALSE(is_read(0, uint64_t(1) << 40, "abc"));
+  EXPECT_FALSE(is_read(0, 1 << 20, std::string(most_part_bytes + 1, 'a')));
 }
 
 TEST(WorkerMessage, RefusesWhatIsCutOffOrLonger) {

@@ -29,15 +29,18 @@ Exhibit make_lit_exhibit() {
 struct ServerAndWorker {
   ShowStage stage;
   Folder folder;
-  Workshop workshop{"1.2.3", "north", folder.path.string()};
+  ShowSettings settings;
+  Workshop workshop;
   TraceOrder order;
 
-  explicit ServerAndWorker(const std::string& technique = "direct") {
-    ShowSettings settings = settings_for(technique, 10);
+  explicit ServerAndWorker(const std::string& technique = "direct")
+      : settings(settings_for(technique, 10)),
+        workshop("1.2.3", "north", folder.path.string(), 0,
+                 [this](auto&, auto&) { return make_show(make_lit_exhibit(), settings); }) {
     stage.begin(make_lit_exhibit(), settings);
     stage.join(64, 48);
     stage.run(1);
-    workshop.add(make_show(make_lit_exhibit(), settings));
+    workshop.add("", "");
     const Show& show = *stage.show;
     order = {1,
              2,
