@@ -143,6 +143,9 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   app.add_option("--workers-key", words.workers_key_file,
                  "file of the secret that seals messages to workers and back; without it "
                  "WELLSPRING_WORKERS_KEY");
+  add_switch(app, "--workers-exact", show.workers.exact,
+             "workers whose processors have other instructions are not asked: their samples are of "
+             "the same light, but not the same bits");
   add_switch(
       app, "--verify-workers", show.workers.verifies,
       "traces here, too, what workers trace, and counts samples that differ: to find faults, "

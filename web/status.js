@@ -119,8 +119,10 @@ function show_workers({ workers }) {
   by_id('workers-section').hidden = workers.length === 0;
   fill(by_id('workers'), ['Worker', 'Exhibit', 'State', 'Cores', 'Samples/s', 'Samples', 'Line ms'],
       workers.map((one) => [one.name, one.exhibit,
-        { text: one.problem || 'traces', bad: one.problem !== '' }, number(one.cores),
-        number(one.samples_per_second), number(one.samples), number(one.line_ms)]));
+        { text: one.problem || (one.same_bits ? 'traces' : 'traces, other bits of the same light'),
+          bad: one.problem !== '' },
+        number(one.cores), number(one.samples_per_second), number(one.samples),
+        number(one.line_ms)]));
 }
 
 // Returns a reader of metrics over all exhibits: counts are added, of other values the largest is

@@ -2,6 +2,7 @@
 #include "workers/crew.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fmt/core.h>
 #include <random>
@@ -18,7 +19,8 @@ constexpr double call_every = 1, gone_after = 3.5;
 constexpr double worth_walking = 0.5, worth_resting = 2;
 // Seconds of rest: of who refuses, who fetches maps meanwhile, who answers nonsense.
 constexpr double refused_rest = 10, fetching_rest = 2, first_garbage_rest = 10,
-                 most_garbage_rest = 600;                             // seconds
+                 most_garbage_rest = 600;            // seconds
+constexpr uint64_t first_apart = uint64_t(1) << 63;  // numbers of visitors are smaller
 constexpr int least_order = 64, least_part = 256, most_order = 2048;  // requests
 constexpr int most_unanswered = 3;                                    // orders
 constexpr size_t most_inbox_bytes = 64 << 20, most_members = 1024, most_done = 1024,
@@ -135,6 +137,7 @@ void Crew::take_call_answer(const CallAnswer& answer, double now) {
   Member& member = members_[answer.worker];
   if (!known) log::info("worker {}: {} cores, {}", answer.worker, answer.cores, answer.version);
   member.cores = int(answer.cores);
+  member.same_bits = answer.instructions == instruction_set();
   member.heard = now;
   member.unanswered = 0;
   if (now >= member.rests_until) member.problem.clear();
@@ -174,17 +177,46 @@ void Crew::take_answer(TraceAnswer answer, double now) {
   note_answered(member.pace, order.requests, order.errand.rests, now - order.sent,
                 double(answer.waited), double(answer.traced));
   member.samples += answer.samples.size();
-  take_samples(std::move(order), std::move(answer.samples));
+  take_samples(std::move(order), std::move(answer.samples), member.same_bits);
 }
 
 // The lock is held.
-void Crew::take_samples(Order order, std::vector<Sample> samples) {
-  totals_.samples += samples.size();
-  for (size_t i = 0; i < order.expected.size(); i++) {
-    totals_.verified++;
-    totals_.differing += !are_same(order.expected[i], samples[i]);
+void Crew::verify(const std::vector<Sample>& here, const std::vector<Sample>& there,
+                  bool same_bits) {
+  for (size_t i = 0; i < here.size(); i++) {
+    if (same_bits) {
+      totals_.verified++;
+      totals_.differing += !are_same(here[i], there[i]);
+      continue;
+    }
+    const vec3 light = there[i].radiance();
+    const vec3 others = light - here[i].radiance();
+    const double off = double(others.x + others.y + others.z) / 3;
+    totals_.alike++;
+    totals_.alike_light += double(light.x + light.y + light.z) / 3;
+    totals_.alike_difference += off, totals_.alike_squares += off * off;
   }
-  if (done_.size() >= most_done) return;  // nobody takes them
+}
+
+double CrewTotals::alike_deviation() const {
+  const double count = double(alike);
+  if (count < 2) return 0;
+  const double mean = alike_difference / count;
+  const double variance = std::max(alike_squares / count - mean * mean, 0.0);
+  return variance > 0 ? mean / std::sqrt(variance / count) : 0;
+}
+
+// The lock is held.
+void Crew::take_samples(Order order, std::vector<Sample> samples, bool same_bits) {
+  totals_.samples += samples.size();
+  if (!order.expected.empty()) verify(order.expected, samples, same_bits);
+  std::vector<CrewSamples>* done = &done_;
+  if (order.errand.asker >= first_apart) {
+    const auto apart = apart_.find(order.errand.asker);
+    if (apart == apart_.end()) return;
+    done = &apart->second;
+  }
+  if (done->size() >= most_done) return;  // nobody takes them
   CrewSamples delivery{order.errand.asker, order.errand.rests, {}};
   auto next = samples.begin();
   for (cache::Piece& piece : order.pieces) {
@@ -192,7 +224,7 @@ void Crew::take_samples(Order order, std::vector<Sample> samples) {
     delivery.answers.push_back({std::move(piece), order.errand.pose, {next, end}});
     next = end;
   }
-  done_.push_back(std::move(delivery));
+  done->push_back(std::move(delivery));
 }
 
 // The lock is held.
@@ -227,6 +259,9 @@ int Crew::send(Broker& broker, const Errand& errand, int most, const TraceHere& 
   if (!channel_.connected()) return 0;
   const double now = seconds_now();
   std::lock_guard lock(mutex_);
+  // Workers have one set of maps.
+  if (errand.asker < first_apart) light_ = errand.light;
+  else if (light_ != 0 && light_ != errand.light) return 0;
   const auto room = [&](const Member& member) {
     return is_asked(member, now) ? room_for(member.pace, errand.rests) : 0;
   };
@@ -275,6 +310,8 @@ bool Crew::send_order(Broker& broker, const Errand& errand, const std::string& n
   order.worth_ms = uint32_t(1000 * worth);
   order.exhibit = exhibit_;
   order.same = {settings_.version, instruction_set(), scene_, errand.light};
+  order.exact = settings_.exact;
+  order.plain = errand.plain;
   order.technique = job.technique->name;
   order.transport = job.transport;
   order.state = errand.state;
@@ -295,6 +332,24 @@ std::vector<CrewSamples> Crew::take() {
   return std::exchange(done_, {});
 }
 
+uint64_t Crew::begin_apart() {
+  std::lock_guard lock(mutex_);
+  const uint64_t asker = first_apart + ++numbers_;
+  apart_[asker];
+  return asker;
+}
+
+void Crew::end_apart(uint64_t asker) {
+  std::lock_guard lock(mutex_);
+  apart_.erase(asker);
+}
+
+std::vector<CrewSamples> Crew::take_apart(uint64_t asker) {
+  std::lock_guard lock(mutex_);
+  const auto found = apart_.find(asker);
+  return found == apart_.end() ? std::vector<CrewSamples>() : std::exchange(found->second, {});
+}
+
 CrewReport Crew::report() const {
   CrewReport report;
   report.used = true;
@@ -306,6 +361,7 @@ CrewReport Crew::report() const {
   for (const auto& [name, member] : members_) {
     WorkerReport one{name,
                      member.problem,
+                     member.same_bits,
                      member.cores,
                      member.pace.rate,
                      member.pace.line,

@@ -33,6 +33,7 @@ struct Errand {
   uint64_t pose = 0;   // Answer::pose of what comes
   std::string state;   // TraceOrder::state
   uint64_t light = 0;  // Sameness::light
+  bool plain = false;  // TraceOrder::plain
 };
 
 // Holds what a worker has answered of an errand, piece by piece.
@@ -59,14 +60,20 @@ class Crew {
   // out.
   using TraceHere = std::function<std::vector<Sample>(const cache::Piece&)>;
   int send(Broker& broker, const Errand& errand, int most, const TraceHere& trace);
-  // Returns all that has come since the last call.
+  // Returns all that has come since the last call, but for whom it comes apart.
   std::vector<CrewSamples> take();
+  // Returns the number of a new asker who takes what comes for itself, on any thread, and who is
+  // asked for while its maps are those that others show.
+  uint64_t begin_apart();
+  void end_apart(uint64_t asker);
+  std::vector<CrewSamples> take_apart(uint64_t asker);
   CrewReport report() const;
 
  private:
   struct Member {
     WorkerPace pace;
     int cores = 0;
+    bool same_bits = true;
     double heard = -1e9;        // when it last answered
     double rests_until = -1e9;  // not asked before
     double rest = 0;            // seconds of its last rest for garbage
@@ -90,7 +97,8 @@ class Crew {
   void answer_questions();
   void take_call_answer(const CallAnswer& answer, double now);
   void take_answer(TraceAnswer answer, double now);
-  void take_samples(Order order, std::vector<Sample> samples);
+  void take_samples(Order order, std::vector<Sample> samples, bool same_bits);
+  void verify(const std::vector<Sample>& here, const std::vector<Sample>& there, bool same_bits);
   void rest(Member& member, const std::string& problem, double until);
   void give_up(double now);
   bool is_asked(const Member& member, double now) const;
@@ -110,6 +118,8 @@ class Crew {
   std::map<std::string, Member, std::less<>> members_;
   std::map<uint64_t, Order> orders_;  // in flight, by number
   std::vector<CrewSamples> done_;
+  std::map<uint64_t, std::vector<CrewSamples>> apart_;  // by asker
+  uint64_t light_ = 0;  // maps of the last errand that is not apart; 0: there was none
   CrewTotals totals_;
   struct Asked {
     FileQuestion question;

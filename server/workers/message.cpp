@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "workers/bytes.h"
+#include "world/native_rays.h"
 
 namespace wellspring::workers {
 namespace {
@@ -167,8 +168,8 @@ std::string instruction_set() {
   add("avx512f");
 #endif
   // Embree chooses its own instructions by the processor.
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) add("on avx512");
-  else if (__builtin_cpu_supports("avx2")) add("on avx2");
+  const int rays = world::native_rays();
+  add(rays == 16 ? "on avx512" : rays == 8 ? "on avx" : "on sse");
 #elif defined(__aarch64__)
   add("aarch64");
 #else
@@ -206,8 +207,8 @@ std::string write_message(const TraceOrder& order, const MessageKey& key) {
   out.put(order.server), out.put(order.number), out.put(order.worth_ms);
   out.put_text(order.exhibit);
   out.put_text(order.same.version), out.put_text(order.same.instructions);
-  out.put(order.same.scene), out.put(order.same.light);
-  out.put_text(order.technique);
+  out.put(order.same.scene), out.put(order.same.light), out.put(uint8_t(order.exact));
+  out.put_text(order.technique), out.put(uint8_t(order.plain));
   out.put(int32_t(order.transport.max_depth)), out.put(order.transport.clamp);
   out.put(uint8_t(order.transport.sees_volumes));
   out.put_text(order.state);
@@ -228,14 +229,18 @@ bool read_message(std::string_view bytes, const MessageKey& key, TraceOrder& ord
   in.take_text(order.exhibit, most_name_bytes);
   in.take_text(order.same.version, most_name_bytes);
   in.take_text(order.same.instructions, most_name_bytes);
-  in.take(order.same.scene), in.take(order.same.light);
+  uint8_t exact = 0;
+  in.take(order.same.scene), in.take(order.same.light), in.take(exact);
   in.take_text(order.technique, most_name_bytes);
   int32_t depth = 0;
-  uint8_t volumes = 0;
+  uint8_t volumes = 0, plain = 0;
+  in.take(plain);
   in.take(depth), in.take(order.transport.clamp), in.take(volumes);
   in.need(order.worth_ms <= longest_worth_ms && depth >= 1 && depth <= 64 && volumes <= 1 &&
-          order.transport.clamp >= 0 && order.transport.clamp < most_light);
+          exact <= 1 && plain <= 1 && order.transport.clamp >= 0 &&
+          order.transport.clamp < most_light);
   order.transport.max_depth = depth, order.transport.sees_volumes = volumes;
+  order.exact = exact, order.plain = plain;
   in.take_text(order.state, most_state_bytes);
   order.requests.resize(in.take_count(most_requests, least_request_bytes));
   const Request first;

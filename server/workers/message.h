@@ -43,7 +43,10 @@ struct TraceOrder {
   uint32_t worth_ms = 0;  // milliseconds after arrival for which an answer is worth having
   std::string exhibit;    // id
   Sameness same;
+  // Other instructions, whose samples are others of the same light, will not do.
+  bool exact = false;
   std::string technique;
+  bool plain = false;  // diffuse light is traced, not told in multiples of the maps (Lights::maps)
   // Fields that techniques with passes over a picture read are not sent: these stay at home.
   TransportSettings transport;
   std::string state;              // state of the world (show/workers/world_state.h)

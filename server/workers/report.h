@@ -30,6 +30,7 @@ const char* to_word(Refusal refusal);
 // Holds how a worker is, for who looks after it.
 struct WorkerReport {
   std::string name, problem;  // why it is not asked at the moment; empty: it is
+  bool same_bits = true;      // it has the server's instructions
   int cores = 0;
   double samples_per_second = 0, line = 0, share = 1;  // budget.h
   uint64_t in_flight = 0, samples = 0;                 // requests sent; samples that came
@@ -44,7 +45,14 @@ struct CrewTotals {
   uint64_t late = 0;                     // samples that came after that
   uint64_t spoiled = 0;                  // messages that were none, or whose samples cannot be
   uint64_t verified = 0, differing = 0;  // samples compared; those that differ
-  uint64_t refused[refusals] = {};       // requests, by reason
+  // Samples of workers with other instructions, which differ in bits: how many were compared, the
+  // sum of their light, and of its differences from ours and of the squares of these.
+  uint64_t alike = 0;
+  double alike_light = 0, alike_difference = 0, alike_squares = 0;
+  // Returns by how many standard errors the mean difference is off zero: a test that their light is
+  // the same (paired t-test).
+  double alike_deviation() const;
+  uint64_t refused[refusals] = {};  // requests, by reason
 };
 
 struct CrewReport {

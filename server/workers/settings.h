@@ -20,6 +20,7 @@ struct CrewSettings {
   std::string secret;         // shared with workers; empty: messages are not sealed
   std::string version;        // version of this program
   std::string package, maps;  // folder of the exhibit; file of better maps, which may come to be
+  bool exact = false;         // workers with other instructions are not asked
   bool verifies = false;      // requests are traced here, too, and compared bit by bit
 };
 

@@ -14,6 +14,7 @@
 #include "world/mesh_finish.h"
 #include "world/one_ray.h"
 #include "world/surface.h"
+#include "world/native_rays.h"
 #include "world/world_impl.h"
 
 namespace wellspring::world {
@@ -159,7 +160,7 @@ void check_mesh(const Mesh& mesh, size_t material_count) {
 
 RTCDevice shared_device() {
   static RTCDevice device = [] {
-    RTCDevice made = rtcNewDevice(nullptr);
+    RTCDevice made = rtcNewDevice(std::getenv("WELLSPRING_EMBREE"));
     if (!made) throw std::runtime_error("Embree cannot start on this machine");
     rtcSetDeviceErrorFunction(
         made,
@@ -171,6 +172,15 @@ RTCDevice shared_device() {
     return made;
   }();
   return device;
+}
+
+int native_rays() {
+  const auto has = [](RTCDeviceProperty width) {
+    return rtcGetDeviceProperty(shared_device(), width) != 0;
+  };
+  return has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+         : has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                                                          : 4;
 }
 
 // Builds the scene's tree. Embree asks for cancelling from whichever thread builds.

@@ -53,6 +53,8 @@ ReportPage load_plan_page() {
                                         {"p95_ratio", "said over it"},
                                         {"keyframes", "keyframes a second of each"},
                                         {"keyframes_ratio", "said over it"},
+                                        {"pictures", "pictures a second of each"},
+                                        {"pictures_ratio", "said over it"},
                                         {"load.plan.others", "other programs' threads"}};
   return {
       "load.plan",

@@ -51,6 +51,7 @@ void check(BenchReport& report, const BenchOptions& options, const Costs& costs,
   both("p50", quantile(seen.latencies, 0.5), 1000 * said.latency.quantile(0.5), "ms");
   both("p95", quantile(seen.latencies, 0.95), 1000 * said.latency.quantile(0.95), "ms");
   both("keyframes", seen.keyframes, said.keyframes, "1/s");
+  both("pictures", seen.pictures, said.pictures, "1/s");
   report.add("load.plan.others", seen.others, "", where);
 }
 

@@ -75,12 +75,12 @@ class Nats {
 }
 
 function start_worker(name,
-    { exhibits = content, cache = join(folder, 'worker'), words = [], key = '' } = {}) {
+    { exhibits = content, cache = join(folder, 'worker'), words = [], key = '', embree = '' } = {}) {
   const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_worker'),
       ['--nats', `nats://127.0.0.1:${port}`, '--content', exhibits, '--exhibit', 'first-room',
         '--cache', cache, '--name', name, '--cores', '1', ...words],
       { stdio: ['ignore', 'pipe', 'inherit'],
-        env: { ...process.env, WELLSPRING_WORKERS_KEY: key } });
+        env: { ...process.env, WELLSPRING_WORKERS_KEY: key, WELLSPRING_EMBREE: embree } });
   workers.set(name, child);
   return new Promise((resolve, reject) => {
     child.stdout.once('data', () => resolve(child));
@@ -144,10 +144,30 @@ test('samples come from all workers, with the same bits', { skip }, async () => 
   assert.ok(await metric('workers_verified_total') > 4000);
   assert.equal(await metric('workers_differing_total'), 0);
   assert.equal(await metric('workers_spoiled_total'), 0);
+  await until(async () => (await worker_state('north')).problem === '', 'north is asked');
   const north = await worker_state('north');
-  assert.equal(north.problem, '');
   assert.equal(north.cores, 1);
   assert.ok(north.samples_per_second > 0);
+});
+
+test('a finished picture over HTTP has samples of workers, of the same bits', { skip }, async () => {
+  clearInterval(walks);
+  await visitor.close();
+  const total = () => metric('workers_samples_total');
+  let before;  // what was on its way to the visitor has come
+  do {
+    before = await total();
+    await sleep(500);
+  } while (await total() !== before);
+  const still = await fetch(`${server.url}/api/v1/exhibits/first-room/still.jpg?`
+      + 'width=320&height=180&seconds=4&denoise=0');
+  assert.equal(still.status, 200);
+  assert.ok(Number(still.headers.get('still-samples')) >= 1);
+  assert.ok(await total() > before);
+  assert.equal(await metric('workers_differing_total'), 0);
+  visitor = new Visitor(server);
+  await visitor.hello();
+  begin_to_walk();
 });
 
 // Reads where fields of an order lie (server/workers/message.cpp).
@@ -159,10 +179,10 @@ function places_of(order) {
     places[name] = at + 4;
     at += 4 + order.readUInt32LE(at);
   }
-  places.scene = at, places.light = at + 8;
-  at += 16;
+  places.scene = at, places.light = at + 8, places.exact = at + 16;
+  at += 17;
   places.technique = at + 4;
-  at += 4 + order.readUInt32LE(at) + 9;
+  at += 4 + order.readUInt32LE(at) + 10;
   places.state = at + 4;
   return places;
 }
@@ -183,6 +203,7 @@ test('an order of another version, scene or light is refused by name', { skip },
     const other = Buffer.from(order);
     other.writeUInt32LE(++number, places.number);
     other[places[name]] ^= 1;
+    other[places.exact] = 1;
     line.send('wellspring.orders.north', other);
     await until(() => answers.has(number), `an answer to another ${name}`);
     assert.equal(answers.get(number), name);
@@ -196,6 +217,17 @@ test('an order of another version, scene or light is refused by name', { skip },
   await until(() => answers.has(number), 'an answer to the order itself');
   line.close();
 });
+
+test('a worker with other instructions finds the same light, if not the same bits', { skip },
+    async () => {
+      await start_worker('old', { embree: 'isa=sse2' });
+      await until(async () => await metric('workers_alike_total') > 10000, 'samples of old');
+      assert.equal((await worker_state('old')).same_bits, false);
+      assert.ok(Math.abs(await metric('workers_alike_deviation')) < 5);
+      assert.ok(Math.abs(await metric('workers_alike_difference')) < 0.01);
+      assert.equal(await metric('workers_differing_total'), 0);
+      await kill(workers.get('old'), 'SIGTERM');
+    });
 
 test('a worker without the illumination maps fetches them', { skip }, async () => {
   const exhibits = join(folder, 'content');

@@ -79,6 +79,13 @@ void per_worker(std::string& out, const CrewReport& report) {
              double(totals.verified));
   add_metric(out, "workers_differing_total", "Those that were not the same bits",
              double(totals.differing));
+  add_metric(out, "workers_alike_total",
+             "Samples that were traced here, too, of workers with other instructions",
+             double(totals.alike));
+  add_metric(out, "workers_alike_deviation",
+             "Their mean light less that of ours, in standard errors", totals.alike_deviation());
+  add_metric(out, "workers_alike_difference", "The same, as a share of their light",
+             totals.alike_light > 0 ? totals.alike_difference / totals.alike_light : 0);
   begin_metric(out, "workers_refused_total", "Requests that workers refused");
   for (int i = 1; i < refusals; i++)
     add_sample(out, "workers_refused_total", {{"reason", to_word(Refusal(i))}},

@@ -24,7 +24,10 @@
 #include "show/exhibit/pieces/exhibit_volumes.h"
 #include "show/lawns/lit_lawns.h"
 #include "show/lens/lens.h"
+#include "show/state/renderer.h"
 #include "show/state/show.h"
+#include "show/workers/away_still.h"
+#include "show/workers/world_state.h"
 #include "wire/limits.h"
 
 namespace wellspring::show {
@@ -46,6 +49,7 @@ struct StillRoom::Scenery {
   Scenery(const Show& show, std::function<double()> clock);
   std::optional<Frame> trace(const View& view, const StillJob& order, double seconds,
                              const std::function<bool()>& given_up, StillCosts& costs) const;
+  std::vector<Sample> trace_piece(const cache::Piece& piece) const;
   View view_of(const StillJob& order) const;
   std::optional<Frame> render(const StillJob& order, const View& view,
                               const std::function<bool()>& given_up, double denoise_seconds,
@@ -67,6 +71,7 @@ struct StillRoom::Scenery {
   std::string weights;
   std::unique_ptr<World> world;
   Lights lights;
+  AwayScene away;  // what workers are told
   std::function<double()> clock;
   mutable LitVolumes volumes;
   LitLawns lawns;
@@ -112,6 +117,8 @@ StillRoom::Scenery::Scenery(const Show& show, std::function<double()> given_cloc
   if (const auto& all = show.stage.switches.all.known; all && !levels.empty())
     lights.known = relit(*all, find_layer_colors(exhibit.scene, levels));
   if (!lights.known) transport.clamp = 0;  // it is the reference
+  away = {show.drawing->workers.crew.get(), write_world_state(show.stage, show.cast, {}),
+          number_light(known_maps(show.stage).get())};
   volumes.begin(exhibit, lights, *technique, *world), place_scans(exhibit, *world);
   lawns.begin(show.stage.lawns), lawns.light(*world, lights, *technique);
 }
@@ -145,17 +152,33 @@ std::optional<Frame> StillRoom::Scenery::trace(const View& view, const StillJob&
     const double fit = each > 0 ? (seconds - each) / each : most;
     const int more = int(std::clamp(fit, 0.0, double(most - 1)));
     if (more > 0) {
+      static const AwayScene nobody;
+      const bool as_at_first = order.pieces.empty() && !order.lens.at;
+      AwayStill elsewhere(as_at_first ? away : nobody, view, {technique, transport},
+                          most - 1 - more,
+                          [&](const cache::Piece& piece) { return trace_piece(piece); });
+      settings.progress = [&](double) {
+        if (given_up && given_up()) throw GivenUp{};
+        elsewhere.ask();
+      };
       settings.spp = more;
       settings.seed++;
       const Frame others = render_still(*technique, *world, lights, view, settings);
       for (size_t i = 0; i < frame.color.size(); i++)
         frame.color[i] = (frame.color[i] + float(more) * others.color[i]) / float(1 + more);
+      costs.elsewhere = int(elsewhere.add_to(frame, 1 + more)) - (1 + more);
     }
     costs.spp = 1 + more;
   } catch (const GivenUp&) {}
   costs.trace_seconds = clock() - began;
   if (costs.spp == 0) return {};
   return frame;
+}
+
+std::vector<Sample> StillRoom::Scenery::trace_piece(const cache::Piece& piece) const {
+  std::vector<Sample> samples(piece.requests.size());
+  light::trace(*technique, *world, lights, piece.order.transport, piece.requests, samples);
+  return samples;
 }
 
 View StillRoom::Scenery::view_of(const StillJob& order) const {
@@ -203,7 +226,7 @@ std::optional<Frame> StillRoom::Scenery::reconstruct(const StillJob& order, cons
                                                      StillPicture& picture) const {
   auto frame = trace(view, order, order.seconds - denoise_seconds, given_up, costs);
   if (!frame) return {};
-  picture.spp = costs.spp;
+  picture.spp = costs.spp + costs.elsewhere;
   if (!order.denoise) return frame;
   const double began = clock();
   std::string problem;

@@ -50,6 +50,7 @@ struct StillPicture {
 struct StillCosts {
   double trace_seconds = 0, denoise_seconds = 0;  // the latter without samples: guides, network
   int spp = 0;                                    // samples a pixel in the former
+  int elsewhere = 0;                              // samples a pixel that workers traced besides
 };
 
 class StillRoom {

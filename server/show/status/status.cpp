@@ -87,6 +87,7 @@ void put_workers(json& status, const Standing& one) {
                                  {"exhibit", one.exhibit},
                                  {"cores", worker.cores},
                                  {"problem", worker.problem},
+                                 {"same_bits", worker.same_bits},
                                  {"samples", worker.samples},
                                  {"samples_per_second", std::round(worker.samples_per_second)},
                                  {"line_ms", std::round(1000 * worker.line)}});

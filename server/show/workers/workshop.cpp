@@ -49,7 +49,7 @@ void Workshop::add_room(std::unique_ptr<Show> show, std::string from) {
 
 Refusal Workshop::prepare(const TraceOrder& order, double waited, Room*& room) {
   if (order.same.version != version_) return Refusal::version;
-  if (order.same.instructions != instruction_set()) return Refusal::instructions;
+  if (order.exact && order.same.instructions != instruction_set()) return Refusal::instructions;
   const auto is_of = [&](const Room& one) { return one.show->stage.exhibit.id == order.exhibit; };
   const auto found = std::ranges::find_if(
       rooms_, [&](const Room& one) { return is_of(one) && one.scene == order.same.scene; });
@@ -145,8 +145,10 @@ TraceAnswer Workshop::answer(const TraceOrder& order, double waited) {
   if (answer.refusal != Refusal::none) return answer;
   const double began = seconds_now();
   answer.samples.resize(order.requests.size());
-  trace(*find_technique(order.technique), *room->show->stage.world, room->show->stage.lights,
-        order.transport, order.requests, answer.samples);
+  Lights lights = room->show->stage.lights;
+  if (order.plain) lights.maps.reset();
+  trace(*find_technique(order.technique), *room->show->stage.world, lights, order.transport,
+        order.requests, answer.samples);
   answer.traced = float(seconds_now() - began);
   return answer;
 }

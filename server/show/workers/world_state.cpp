@@ -115,7 +115,7 @@ bool fits(const WorldState& state, const ExhibitStage& stage, const ShowCast& ca
     if (!is_choice(exhibit.pieces[i], state.shown.choices[i])) return false;
   const std::string& language = state.shown.language;
   if (!language.empty() && !std::ranges::count(exhibit.piece_languages, language)) return false;
-  if (by.times.size() != cast.movers.posed.size() && !by.times.empty()) return false;
+  if (by.times.size() != cast.movers.posed.size()) return false;
   if (!are_usual(by) || by.held.prop >= int(exhibit.props.size()) ||
       by.shown_model >= int(cast.held.size()))
     return false;
@@ -157,7 +157,8 @@ std::string write_world_state(const ExhibitStage& stage, const ShowCast& cast,
   out.put(by.time), out.put(uint32_t(by.storyteller)), out.put(uint8_t(by.visible));
   put_pose(by.pose, out);
   out.put(by.placement), out.put(int32_t(by.held.prop)), out.put(by.held.size);
-  out.put(by.held.glow), out.put(by.held.to_world), out.put_all(by.times);
+  out.put(by.held.glow), out.put(by.held.to_world);
+  out.put_all(by.times.empty() ? cast.movers.posed : by.times);  // empty: as they first are
   out.put(int32_t(by.shown_model)), out.put(by.shown.to_world), out.put(by.shown.size);
   out.put(by.shown.flame);
   return std::move(out).bytes();
@@ -175,8 +176,7 @@ bool put_world_state(std::string_view bytes, ExhibitStage& stage, ShowCast& cast
   teller.pose = std::move(by.pose);
   teller.storyteller.placement = by.placement;
   teller.held = by.held;
-  pose_world(stage, cast, by.time, teller, by.times.empty() ? cast.movers.posed : by.times,
-             {by.shown_model, by.shown});
+  pose_world(stage, cast, by.time, teller, by.times, {by.shown_model, by.shown});
   return true;
 }
 

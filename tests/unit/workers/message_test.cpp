@@ -23,7 +23,9 @@ TEST(WorkerMessage, KeepsAnOrder) {
   EXPECT_EQ(read.worth_ms, order.worth_ms);
   EXPECT_EQ(read.exhibit, order.exhibit);
   EXPECT_EQ(read.same, order.same);
+  EXPECT_EQ(read.exact, order.exact);
   EXPECT_EQ(read.technique, order.technique);
+  EXPECT_EQ(read.plain, order.plain);
   EXPECT_EQ(read.transport.max_depth, 6);
   EXPECT_EQ(read.transport.clamp, 4);
   EXPECT_TRUE(read.transport.sees_volumes);
@@ -82,6 +84,18 @@ TEST(WorkerMessage, KeepsRefusalsAndCalls) {
   ASSERT_TRUE(
       read_message(write_message(CallAnswer{3, 4, "a", "0.1.0", "avx2", 8}, none), none, here));
   EXPECT_EQ(here.cores, 8u);
+}
+
+TEST(CrewTotals, TellOtherLightFromOtherBits) {
+  CrewTotals totals;
+  const auto add = [&](double off) {
+    totals.alike++, totals.alike_difference += off, totals.alike_squares += off * off;
+  };
+  EXPECT_EQ(totals.alike_deviation(), 0);
+  for (int i = 0; i < 5000; i++) add(i % 2 ? 0.1 : -0.1), add(0);
+  EXPECT_LT(std::abs(totals.alike_deviation()), 3);
+  for (int i = 0; i < 10000; i++) add(i % 100 == 0 ? 0.4 : 0);
+  EXPECT_GT(totals.alike_deviation(), 3);
 }
 
 TEST(WorkerMessage, KeepsPartsOfFiles) {

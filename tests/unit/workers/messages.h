@@ -6,8 +6,8 @@
 namespace wellspring::test {
 
 inline TraceOrder make_order() {
-  TraceOrder order{7,        41, 500,     "castle", {"0.1.0", "x86-64 avx2", 11, 13},
-                   "gather", {}, "lamps", {}};
+  TraceOrder order{7,    41, 500,     "castle", {"0.1.0", "x86-64 avx2", 11, 13}, true, "gather",
+                   true, {}, "lamps", {}};
   order.transport.max_depth = 6;
   order.transport.clamp = 4;
   order.transport.sees_volumes = true;

@@ -48,7 +48,9 @@ struct ServerAndWorker {
              show.stage.exhibit.id,
              {"1.2.3", instruction_set(), number_scene(show.stage),
               number_light(known_maps(show.stage).get())},
+             false,
              technique,
+             false,
              show.settings.transport,
              {},
              {}};
@@ -127,7 +129,9 @@ TEST(Workshop, RefusesByName) {
   const auto nothing = [](TraceOrder&) {};
   EXPECT_EQ(refusal(nothing), Refusal::none);
   EXPECT_EQ(refusal([](TraceOrder& o) { o.same.version = "1.2.4"; }), Refusal::version);
-  EXPECT_EQ(refusal([](TraceOrder& o) { o.same.instructions = "none"; }), Refusal::instructions);
+  EXPECT_EQ(refusal([](TraceOrder& o) { o.same.instructions = "none"; }), Refusal::none);
+  EXPECT_EQ(refusal([](TraceOrder& o) { o.same.instructions = "none", o.exact = true; }),
+            Refusal::instructions);
   EXPECT_EQ(refusal([](TraceOrder& o) { o.exhibit = "elsewhere"; }), Refusal::exhibit);
   EXPECT_EQ(refusal([](TraceOrder& o) { o.same.scene++; }), Refusal::scene);
   EXPECT_EQ(refusal([](TraceOrder& o) { o.same.light++; }), Refusal::light);
