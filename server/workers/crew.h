@@ -69,7 +69,7 @@ class Crew {
     double rests_until = -1e9;  // not asked before
     double rest = 0;            // seconds of its last rest for garbage
     std::string problem;
-    uint64_t samples = 0;
+    uint64_t samples = 0, lost = 0;
     int unanswered = 0;  // orders lost in a row
   };
   struct Order {
@@ -90,6 +90,7 @@ class Crew {
   void take_answer(TraceAnswer answer, double now);
   void take_samples(Order order, std::vector<Sample> samples);
   void rest(Member& member, const std::string& problem, double until);
+  void lose(Member& member, const Order& order);
   void give_up(double now);
   bool is_asked(const Member& member, double now) const;
   bool send_order(Broker& broker, const Errand& errand, const std::string& name, Member& member,
