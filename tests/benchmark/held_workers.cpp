@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double longest_wait = 120;  // seconds
+constexpr double nats_wait = 120;  // seconds
 
 void write_word(const fs::path& file, const std::string& word) {
   std::ofstream out(file);
@@ -23,7 +23,7 @@ void write_word(const fs::path& file, const std::string& word) {
 }
 
 std::string find_url(const std::string& folder) {
-  for (double end = seconds_now() + longest_wait; seconds_now() < end;) {
+  for (double end = seconds_now() + nats_wait; seconds_now() < end;) {
     for (const auto& entry : fs::directory_iterator(folder)) {
       std::ifstream in(entry.path());
       const auto ports = nlohmann::json::parse(in, nullptr, false);
@@ -41,9 +41,15 @@ Hold::Hold(pid_t process, double cores) {
   const bool first = fs::exists(root / "cpu/cpu.shares");
   folder_ = (first ? root / "cpu" : root) / fmt::format("wellspring-bench-{}", process);
   fs::create_directory(folder_);
+  // What else runs on the machine gives way, so that the process has all of its share.
   const int quota = int(100000 * cores);
-  if (first) write_word(folder_ / "cpu.cfs_quota_us", std::to_string(quota));
-  else write_word(folder_ / "cpu.max", fmt::format("{} 100000", quota));
+  if (first) {
+    write_word(folder_ / "cpu.cfs_quota_us", std::to_string(quota));
+    write_word(folder_ / "cpu.shares", "100000");
+  } else {
+    write_word(folder_ / "cpu.max", fmt::format("{} 100000", quota));
+    write_word(folder_ / "cpu.weight", "10000");
+  }
   write_word(folder_ / "cgroup.procs", std::to_string(process));
 }
 

@@ -17,9 +17,9 @@ namespace wellspring::test {
 namespace {
 
 constexpr double worker_share = 0.25, resting_share = 0.25, walking_share = 0.5;  // cores
-constexpr double longest_wait = 180, settle = 3;                                  // seconds
-constexpr int width = 640, height = 360;
-const std::string exhibit = "first-room", viewpoint = "vase";
+constexpr double trace_wait = 180, settling = 3;                                  // seconds
+constexpr int small_width = 640, small_height = 360;
+const std::string measured_exhibit = "first-room", measured_viewpoint = "vase";
 
 BenchOptions with_workers(BenchOptions options, const std::string& url) {
   options.server_words = {"--no-bake"};
@@ -38,11 +38,11 @@ bool are_measured(uint16_t port, int workers) {
 // Looks until the server knows its workers.
 void know_workers(WsClient& client, uint16_t port, int workers) {
   const auto nothing = [](const WsMessage&) {};
-  for (const double end = seconds_now() + longest_wait; !are_measured(port, workers);) {
+  for (const double end = seconds_now() + trace_wait; !are_measured(port, workers);) {
     if (seconds_now() > end) throw std::runtime_error("not all workers trace");
     look_until(client, seconds_now() + 0.5, nothing);
   }
-  look_until(client, seconds_now() + settle, nothing);
+  look_until(client, seconds_now() + settling, nothing);
 }
 
 struct Shown {
@@ -53,19 +53,20 @@ struct Shown {
 // Leaps to a viewpoint and stands there for so long.
 std::vector<Shown> look_at_rest(const BenchOptions& options, const std::string& url, int count,
                                 double seconds) {
-  const std::vector<HeldWorker> workers = hold_workers(options, exhibit, url, count, worker_share);
-  const ServerProcess server(with_workers(options, count ? url : ""), exhibit);
+  const std::vector<HeldWorker> workers =
+      hold_workers(options, measured_exhibit, url, count, worker_share);
+  const ServerProcess server(with_workers(options, count ? url : ""), measured_exhibit);
   WsClient client;
-  join_visit(client, server.port, width, height);
+  join_visit(client, server.port, small_width, small_height);
   StorytellerOrder away;
   away.visible = false;
   client.send_text(write_message(away));
   know_workers(client, server.port, count);
   const Hold hold(server.id(), resting_share);
-  look_until(client, seconds_now() + settle, [](const WsMessage&) {});
-  Screen screen(width, height);
+  look_until(client, seconds_now() + settling, [](const WsMessage&) {});
+  Screen screen(small_width, small_height);
   std::vector<Shown> shown;
-  client.send_text(write_message(ViewpointTo{1, viewpoint}));
+  client.send_text(write_message(ViewpointTo{1, measured_viewpoint}));
   const double began = seconds_now();
   look_until(client, began + seconds, [&](const WsMessage& message) {
     const auto packet = read_packet(message.bytes);
@@ -101,10 +102,10 @@ double time_to(const std::vector<Judged>& judged, double flip) {
 }
 
 enum class Line { none, good, far, stalled, stopped, killed };
-constexpr const char* names[] = {"none",           "2",          "2, 200 ms away",
-                                 "2, lines stall", "2, stopped", "2, killed"};
+constexpr const char* line_names[] = {"none",           "2",          "2, 200 ms away",
+                                      "2, lines stall", "2, stopped", "2, killed"};
 
-Stroll walk(const BenchOptions& options, const OwnNats& nats, Line line) {
+Stroll walk_with(const BenchOptions& options, const OwnNats& nats, Line line) {
   const int count = line == Line::none ? 0 : 2;
   std::optional<ShapedLine> between;
   std::string url = nats.url();
@@ -112,18 +113,19 @@ Stroll walk(const BenchOptions& options, const OwnNats& nats, Line line) {
     between.emplace(options, nats.port(), 1000, line == Line::far ? 400 : 0, size_t(1) << 24);
     url = fmt::format("nats://127.0.0.1:{}", between->port);
   }
-  const std::vector<HeldWorker> workers = hold_workers(options, exhibit, url, count, worker_share);
-  const ServerProcess server(with_workers(options, count ? nats.url() : ""), exhibit);
+  const std::vector<HeldWorker> workers =
+      hold_workers(options, measured_exhibit, url, count, worker_share);
+  const ServerProcess server(with_workers(options, count ? nats.url() : ""), measured_exhibit);
   {
     WsClient client;
-    join_visit(client, server.port, width, height);
+    join_visit(client, server.port, small_width, small_height);
     know_workers(client, server.port, count);
     client.close();
   }
   const Hold hold(server.id(), walking_share);
   StrollPlan plan;
   plan.port = server.port;
-  plan.width = width, plan.height = height;
+  plan.width = small_width, plan.height = small_height;
   plan.warm_up = 4, plan.seconds = options.quick ? 8 : 20;
   return stroll_through(plan, [&] {
     if (line == Line::stalled) kill(between->id(), SIGSTOP);
@@ -137,10 +139,10 @@ Stroll walk(const BenchOptions& options, const OwnNats& nats, Line line) {
 
 void measure_rest(BenchReport& report, const BenchOptions& options, const OwnNats& nats) {
   const double seconds = options.quick ? 20 : 40;
-  const ShowTruth truth(options, exhibit, options.visit_spp > 0 ? options.visit_spp : 32);
+  const ShowTruth truth(options, measured_exhibit, options.visit_spp > 0 ? options.visit_spp : 32);
   const Exhibit& loaded = truth.exhibit();
-  const Viewpoint& at = loaded.viewpoints[size_t(find_viewpoint(loaded, viewpoint))].view;
-  const Converged wanted = truth.converge(truth.view(at, width, height));
+  const Viewpoint& at = loaded.viewpoints[size_t(find_viewpoint(loaded, measured_viewpoint))].view;
+  const Converged wanted = truth.converge(truth.view(at, small_width, small_height));
   constexpr int counts[] = {0, 1, 3};
   std::vector<double> until[3], ratios[3], flips[3][5];
   constexpr double moments[] = {2, 5, 10, 20, 40};
@@ -177,7 +179,7 @@ void measure_walks(BenchReport& report, const BenchOptions& options, const OwnNa
   Figures all[std::size(lines)];
   for (int round = 0; round < (options.quick ? 1 : 3); round++)
     for (size_t i = 0; i < std::size(lines); i++) {
-      const Stroll seen = walk(options, nats, lines[i]);
+      const Stroll seen = walk_with(options, nats, lines[i]);
       Figures& one = all[i];
       one.p50.push_back(quantile(seen.latencies, 0.5));
       one.p95.push_back(quantile(seen.latencies, 0.95));
@@ -186,7 +188,7 @@ void measure_walks(BenchReport& report, const BenchOptions& options, const OwnNa
       one.p95_over.push_back(one.p95.back() / all[0].p95.back());
     }
   for (size_t i = 0; i < std::size(lines); i++) {
-    const nlohmann::json fields = {{"line", names[i]}};
+    const nlohmann::json fields = {{"line", line_names[i]}};
     report.add("workers.walk_p50", quantile(all[i].p50, 0.5), "ms", fields);
     report.add("workers.walk_p95", quantile(all[i].p95, 0.5), "ms", fields);
     report.add("workers.walk_p50_over", quantile(all[i].p50_over, 0.5), "", fields);
