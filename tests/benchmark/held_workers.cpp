@@ -41,7 +41,7 @@ Hold::Hold(pid_t process, double cores) {
   const bool first = fs::exists(root / "cpu/cpu.shares");
   folder_ = (first ? root / "cpu" : root) / fmt::format("wellspring-bench-{}", process);
   fs::create_directory(folder_);
-  // What else runs on the machine gives way, so that the process has all of its share.
+  // All else on the machine gives way, so that the process has all of its share.
   const int quota = int(100000 * cores);
   if (first) {
     write_word(folder_ / "cpu.cfs_quota_us", std::to_string(quota));

@@ -138,21 +138,22 @@ Stroll walk_with(const BenchOptions& options, const OwnNats& nats, Line line) {
 }  // namespace
 
 void measure_rest(BenchReport& report, const BenchOptions& options, const OwnNats& nats) {
-  const double seconds = options.quick ? 20 : 40;
+  const double seconds = options.quick ? 30 : 60;
   const ShowTruth truth(options, measured_exhibit, options.visit_spp > 0 ? options.visit_spp : 32);
   const Exhibit& loaded = truth.exhibit();
   const Viewpoint& at = loaded.viewpoints[size_t(find_viewpoint(loaded, measured_viewpoint))].view;
   const Converged wanted = truth.converge(truth.view(at, small_width, small_height));
   constexpr int counts[] = {0, 1, 3};
-  std::vector<double> until[3], ratios[3], flips[3][5];
-  constexpr double moments[] = {2, 5, 10, 20, 40};
+  std::vector<double> until[3], ratios[3], pictures[3], flips[3][5];
+  constexpr double moments[] = {3, 6, 12, 25, 50};
   for (int round = 0; round < (options.quick ? 1 : 3); round++) {
     double goal = 0, alone = 0;
     for (size_t i = 0; i < std::size(counts); i++) {
       const auto judged = judge_all(look_at_rest(options, nats.url(), counts[i], seconds), wanted);
-      if (i == 0) goal = judged.back().flip;
+      if (i == 0) goal = flip_at(judged, seconds / 2);
       const double time = time_to(judged, goal);
       if (i == 0) alone = time;
+      pictures[i].push_back(double(judged.size()));
       until[i].push_back(time), ratios[i].push_back(time / alone);
       for (size_t k = 0; k < std::size(moments); k++)
         flips[i][k].push_back(flip_at(judged, moments[k]));
@@ -165,6 +166,7 @@ void measure_rest(BenchReport& report, const BenchOptions& options, const OwnNat
       where["seconds"] = moments[k];
       report.add("workers.rest_flip", quantile(flips[i][k], 0.5), "FLIP", where);
     }
+    report.add("workers.rest_pictures", quantile(pictures[i], 0.5), "", fields);
     report.add("workers.rest_until", quantile(until[i], 0.5), "s", fields);
     report.add("workers.rest_ratio", quantile(ratios[i], 0.5), "", fields);
   }

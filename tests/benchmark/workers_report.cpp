@@ -120,8 +120,8 @@ ReportPage workers_page() {
        "of Wald et al. (2002, table 1) showed 0.4, 0.8, 1.6, 3.2 and 5.3 pictures a second with "
        "1, 2, 4, 8 and 16 clients: an efficiency of 1, and of 0.83 where its server was full.",
        "At rest: a server of a quarter of a core; FLIP against the converged picture so long after "
-       "a visitor has leapt to a viewpoint and stands, and the time until it is as low as in the "
-       "end without workers.",
+       "a visitor has leapt to a viewpoint and stands, and the time until it is as low as without "
+       "workers at half the time that is measured.",
        "Walking: a server of half a core; the time from an input to the picture that shows it. "
        "What is wrong with both workers' lines goes wrong when the walk begins. Over: the time "
        "over that without workers in the same round, the median of rounds."},
@@ -132,9 +132,9 @@ ReportPage workers_page() {
         .rows = {{"workers", "workers"}},
         .columns = {{"rest_flip", "FLIP"}},
         .across = "seconds"},
-       {.caption = "At rest: until as good as without workers in the end",
+       {.caption = "At rest: until as good as without workers at half the time",
         .rows = {{"workers", "workers"}},
-        .columns = {{"rest_until", "time"}, {"rest_ratio", "over"}}},
+        .columns = {{"rest_until", "time"}, {"rest_ratio", "over"}, {"rest_pictures", "pictures"}}},
        {.caption = "Walking: input to picture",
         .rows = {{"line", "workers"}},
         .columns = {{"walk_p50", "p50"},
