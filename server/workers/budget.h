@@ -4,6 +4,8 @@
 // ask of it. Pure functions of what is given; no clock.
 #pragma once
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "base/layers.h"
 
@@ -24,6 +26,17 @@ inline constexpr double ahead_walking = 0.2, ahead_resting = 0.6;
 
 // Returns how many more requests may be sent now; `rests`: of pictures at rest.
 int room_for(const WorkerPace& pace, bool rests);
+
+// Says how many requests one order has, and whose it is.
+struct OrderPlan {
+  size_t worker = 0;  // place in `rooms`
+  int requests = 0;
+};
+inline constexpr int least_order = 64;  // requests
+// Shares at most `most` requests out to workers that have so much room, so that all have some: who
+// has most room is next, and the others keep theirs for what comes soon. Takes O(workers + orders *
+// log(workers)).
+std::vector<OrderPlan> share_out(std::span<const int> rooms, int most);
 
 // Note what was sent, and what became of it. Times are seconds: from sending to the answer's
 // arrival, of waiting at the worker, of tracing there.

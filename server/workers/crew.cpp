@@ -21,8 +21,7 @@ constexpr double worth_walking = 0.5, worth_resting = 2;
 constexpr double refused_rest = 10, fetching_rest = 2, first_garbage_rest = 10,
                  most_garbage_rest = 600;            // seconds
 constexpr uint64_t first_apart = uint64_t(1) << 63;  // numbers of visitors are smaller
-constexpr int least_order = 64, least_part = 256, most_order = 2048;  // requests
-constexpr int most_unanswered = 3;                                    // orders
+constexpr int most_unanswered = 3;                   // orders
 constexpr size_t most_inbox_bytes = 64 << 20, most_members = 1024, most_done = 1024,
                  most_asked = 256;
 
@@ -154,7 +153,10 @@ void Crew::take_answer(TraceAnswer answer, double now) {
   Order order = std::move(found->second);
   orders_.erase(found);
   auto who = members_.find(order.worker);
-  if (who == members_.end()) return;
+  if (who == members_.end()) {
+    totals_.lost += uint64_t(order.requests);
+    return;
+  }
   Member& member = who->second;
   member.heard = now;
   member.unanswered = 0;
@@ -169,7 +171,7 @@ void Crew::take_answer(TraceAnswer answer, double now) {
   }
   if (answer.samples.size() != size_t(order.requests) || !are_within(answer.samples, bounds_)) {
     totals_.spoiled++;
-    note_unanswered(member.pace, order.requests, order.errand.rests);
+    lose(member, order);
     member.rest = std::clamp(2 * member.rest, first_garbage_rest, most_garbage_rest);
     rest(member, fmt::format("{} answers what cannot be", order.worker), now + member.rest);
     return;
@@ -228,6 +230,13 @@ void Crew::take_samples(Order order, std::vector<Sample> samples, bool same_bits
 }
 
 // The lock is held.
+void Crew::lose(Member& member, const Order& order) {
+  totals_.lost += uint64_t(order.requests);
+  member.lost += uint64_t(order.requests);
+  note_unanswered(member.pace, order.requests, order.errand.rests);
+}
+
+// The lock is held.
 void Crew::give_up(double now) {
   for (auto it = orders_.begin(); it != orders_.end();) {
     const Order& order = it->second;
@@ -235,9 +244,10 @@ void Crew::give_up(double now) {
       ++it;
       continue;
     }
-    totals_.lost += uint64_t(order.requests);
-    if (auto who = members_.find(order.worker); who != members_.end()) {
-      note_unanswered(who->second.pace, order.requests, order.errand.rests);
+    if (auto who = members_.find(order.worker); who == members_.end()) {
+      totals_.lost += uint64_t(order.requests);
+    } else {
+      lose(who->second, order);
       if (++who->second.unanswered == most_unanswered)
         who->second.problem = fmt::format("{} does not answer", order.worker);
     }
@@ -262,23 +272,19 @@ int Crew::send(Broker& broker, const Errand& errand, int most, const TraceHere& 
   // Workers have one set of maps.
   if (errand.asker < first_apart) light_ = errand.light;
   else if (light_ != 0 && light_ != errand.light) return 0;
-  const auto room = [&](const Member& member) {
-    return is_asked(member, now) ? room_for(member.pace, errand.rests) : 0;
-  };
-  const int asked = int(std::ranges::count_if(
-      members_, [&](const auto& one) { return room(one.second) >= least_order; }));
-  if (asked == 0) return 0;
-  const int part = std::clamp(most / asked, least_part, most_order);
+  std::vector<std::pair<const std::string, Member>*> asked;
+  std::vector<int> rooms;
+  for (auto& one : members_) {
+    if (!is_asked(one.second, now)) continue;
+    asked.push_back(&one);
+    rooms.push_back(room_for(one.second.pace, errand.rests));
+  }
   int left = most;
-  while (left >= least_order) {
-    // Who has most room is next, so that the others keep theirs for what comes soon.
-    const auto next =
-        std::ranges::max_element(members_, {}, [&](const auto& one) { return room(one.second); });
-    auto& [name, member] = *next;
-    if (room(member) < least_order) break;
+  for (const OrderPlan& plan : share_out(rooms, most)) {
+    auto& [name, member] = *asked[plan.worker];
     const uint64_t before = member.pace.in_flight;
-    const int size = std::min({room(member), left, part});
-    if (!send_order(broker, errand, name, member, size, trace)) break;
+    const int size = std::min(left, plan.requests);
+    if (size <= 0 || !send_order(broker, errand, name, member, size, trace)) break;
     left -= int(member.pace.in_flight - before);
   }
   return most - left;
@@ -315,13 +321,13 @@ bool Crew::send_order(Broker& broker, const Errand& errand, const std::string& n
   order.technique = job.technique->name;
   order.transport = job.transport;
   order.state = errand.state;
+  totals_.requests += uint64_t(sent.requests);
   if (!channel_.send(orders_subject(name), answers_, write_message(order, key_))) {
     totals_.lost += uint64_t(sent.requests);
     return false;
   }
   sent.until = now + worth + member.pace.line;
   totals_.orders++;
-  totals_.requests += uint64_t(sent.requests);
   note_sent(member.pace, sent.requests, errand.rests);
   orders_.emplace(order.number, std::move(sent));
   return true;
@@ -367,7 +373,8 @@ CrewReport Crew::report() const {
                      member.pace.line,
                      member.pace.share,
                      member.pace.in_flight,
-                     member.samples};
+                     member.samples,
+                     member.lost};
     if (one.problem.empty() && now - member.heard >= gone_after) one.problem = name + " is gone";
     report.workers.push_back(std::move(one));
   }

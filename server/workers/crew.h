@@ -78,7 +78,7 @@ class Crew {
     double rests_until = -1e9;  // not asked before
     double rest = 0;            // seconds of its last rest for garbage
     std::string problem;
-    uint64_t samples = 0;
+    uint64_t samples = 0, lost = 0;
     int unanswered = 0;  // orders lost in a row
   };
   struct Order {
@@ -100,6 +100,7 @@ class Crew {
   void take_samples(Order order, std::vector<Sample> samples, bool same_bits);
   void verify(const std::vector<Sample>& here, const std::vector<Sample>& there, bool same_bits);
   void rest(Member& member, const std::string& problem, double until);
+  void lose(Member& member, const Order& order);
   void give_up(double now);
   bool is_asked(const Member& member, double now) const;
   bool send_order(Broker& broker, const Errand& errand, const std::string& name, Member& member,

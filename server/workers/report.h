@@ -34,13 +34,15 @@ struct WorkerReport {
   int cores = 0;
   double samples_per_second = 0, line = 0, share = 1;  // budget.h
   uint64_t in_flight = 0, samples = 0;                 // requests sent; samples that came
+  uint64_t lost = 0;                                   // requests without a good answer in time
 };
 
 // Counts since the beginning.
 struct CrewTotals {
+  // Each request becomes a sample, is lost or is refused; the others are on the way.
   uint64_t orders = 0, requests = 0;     // sent
   uint64_t samples = 0;                  // samples that came, were right and in time
-  uint64_t lost = 0;                     // requests without an answer in time
+  uint64_t lost = 0;                     // requests without a good answer in time
   uint64_t dropped = 0;                  // messages that the line did not take
   uint64_t late = 0;                     // samples that came after that
   uint64_t spoiled = 0;                  // messages that were none, or whose samples cannot be

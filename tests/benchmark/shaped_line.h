@@ -16,7 +16,8 @@ class ShapedLine {
   ShapedLine(const BenchOptions& options, uint16_t server, double mbit, double trip_ms,
              size_t queue = 64 * 1024);
   void set_rate(double mbit);
-  uint16_t port = 0;  // the near end's
+  pid_t id() const { return node_.id(); }  // the program's process
+  uint16_t port = 0;                       // the near end's
 
  private:
   Child node_;

@@ -20,6 +20,7 @@ namespace wellspring::test {
 class ServerProcess {
  public:
   ServerProcess(const BenchOptions& options, const std::string& exhibit);
+  pid_t id() const { return process_->id(); }
   double resident() const;      // memory in bytes
   double core_seconds() const;  // processor time so far
   uint16_t port = 0;

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures how samples a second grow with the number of workers, each held to a quarter of a core.
 #include <chrono>
-#include <filesystem>
-#include <fmt/core.h>
-#include <fstream>
-#include <memory>
 #include <stdexcept>
 #include <thread>
 
 #include "about/version.h"
-#include "base/child.h"
 #include "base/clock.h"
+#include "held_workers.h"
 #include "light/technique/technique.h"
-#include "own_folder.h"
 #include "picture/still/reconstruct_still.h"
 #include "report.h"
 #include "reports.h"
@@ -26,65 +21,9 @@
 namespace wellspring::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int counts[] = {1, 2, 4, 6};
 constexpr double share = 0.25;                    // share of a core that each worker has
 constexpr double longest_wait = 120, settle = 4;  // seconds
-
-void write_word(const fs::path& file, const std::string& word) {
-  std::ofstream out(file);
-  out << word << std::flush;
-  if (!out) throw std::runtime_error(file.string() + " cannot be written");
-}
-
-// Holds a process to a share of a core by a control group of its own, of either version.
-class Hold {
- public:
-  Hold(pid_t process, double cores) {
-    const fs::path root = "/sys/fs/cgroup";
-    const bool first = fs::exists(root / "cpu/cpu.shares");
-    folder_ = (first ? root / "cpu" : root) / fmt::format("wellspring-bench-{}", process);
-    fs::create_directory(folder_);
-    const int quota = int(100000 * cores);
-    if (first) write_word(folder_ / "cpu.cfs_quota_us", std::to_string(quota));
-    else write_word(folder_ / "cpu.max", fmt::format("{} 100000", quota));
-    write_word(folder_ / "cgroup.procs", std::to_string(process));
-  }
-  ~Hold() {
-    std::error_code ignored;
-    for (int i = 0; i < 50 && !fs::remove(folder_, ignored); i++)  // until the process has ended
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  Hold(const Hold&) = delete;
-  Hold& operator=(const Hold&) = delete;
-
- private:
-  fs::path folder_;
-};
-
-struct HeldWorker {
-  std::unique_ptr<Hold> hold;  // ends after the process
-  std::unique_ptr<Child> program;
-};
-
-// A NATS server on a port that it chooses itself.
-struct OwnNats {
-  OwnFolder folder;
-  Child program{
-      {.words = {"nats-server", "-a", "127.0.0.1", "-p", "-1", "--ports_file_dir", folder.path()}}};
-  std::string url() const {
-    for (double end = seconds_now() + longest_wait; seconds_now() < end;) {
-      for (const auto& entry : fs::directory_iterator(folder.path())) {
-        std::ifstream in(entry.path());
-        const auto ports = nlohmann::json::parse(in, nullptr, false);
-        if (ports.is_object() && ports.contains("nats")) return ports["nats"][0];
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    throw std::runtime_error("nats-server does not answer");
-  }
-};
 
 // Gives a crew as much to trace as it takes.
 class Feeder {
@@ -135,16 +74,8 @@ int measured_workers(const CrewReport& report) {
 }
 
 double measure(int count, const Show& show, const std::string& url, const BenchOptions& options) {
-  std::vector<HeldWorker> workers;
-  for (int i = 0; i < count; i++) {
-    HeldWorker worker;
-    worker.program = std::make_unique<Child>(ChildSettings{
-        .words = {(fs::path(options.programs) / "wellspring_worker").string(), "--nats", url,
-                  "--content", options.content, "--exhibit", show.stage.exhibit.id, "--cache",
-                  truths_folder(options), "--cores", "1", "--name", fmt::format("bench-{}", i)}});
-    worker.hold = std::make_unique<Hold>(worker.program->id(), share);
-    workers.push_back(std::move(worker));
-  }
+  const std::vector<HeldWorker> workers =
+      hold_workers(options, show.stage.exhibit.id, url, count, share);
   CrewSettings settings;
   settings.channel.url = url;
   settings.channel.name = "wellspring bench";
@@ -177,16 +108,41 @@ void bench_workers(BenchReport& report, const BenchOptions& options) {
     report.add("workers.samples", rate, "1/s", fields);
     report.add("workers.efficiency", rate / (one * count), "", fields);
   }
+  measure_rest(report, options, nats);
+  measure_walks(report, options, nats);
 }
 
 ReportPage workers_page() {
-  return {"workers",
-          "How do samples a second grow with the number of workers? Each is held to a quarter of a "
-          "core by a control group, on the machine of the server, over NATS.",
-          {"Efficiency: samples a second over those of one worker, over their number."},
-          {{.caption = "",
-            .rows = {{"workers", "workers"}},
-            .columns = {{"samples", "samples a second", 1, "1/s"}, {"efficiency", "efficiency"}}}}};
+  return {
+      "workers",
+      "What are workers good for, and can they do harm? Each is held to a quarter of a core by a "
+      "control group, on the machine of the server, over NATS.",
+      {"Efficiency: samples a second over those of one worker, over their number. The renderer "
+       "of Wald et al. (2002, table 1) showed 0.4, 0.8, 1.6, 3.2 and 5.3 pictures a second with "
+       "1, 2, 4, 8 and 16 clients: an efficiency of 1, and of 0.83 where its server was full.",
+       "At rest: a server of a quarter of a core; FLIP against the converged picture so long after "
+       "a visitor has leapt to a viewpoint and stands, and the time until it is as low as without "
+       "workers at half the time that is measured.",
+       "Walking: a server of half a core; the time from an input to the picture that shows it. "
+       "What is wrong with both workers' lines goes wrong when the walk begins. Over: the time "
+       "over that without workers in the same round, the median of rounds."},
+      {{.caption = "Samples",
+        .rows = {{"workers", "workers"}},
+        .columns = {{"samples", "samples a second", 1, "1/s"}, {"efficiency", "efficiency"}}},
+       {.caption = "At rest: FLIP after seconds",
+        .rows = {{"workers", "workers"}},
+        .columns = {{"rest_flip", "FLIP"}},
+        .across = "seconds"},
+       {.caption = "At rest: until as good as without workers at half the time",
+        .rows = {{"workers", "workers"}},
+        .columns = {{"rest_until", "time"}, {"rest_ratio", "over"}, {"rest_pictures", "pictures"}}},
+       {.caption = "Walking: input to picture",
+        .rows = {{"line", "workers"}},
+        .columns = {{"walk_p50", "p50"},
+                    {"walk_p95", "p95"},
+                    {"walk_p50_over", "p50 over"},
+                    {"walk_p95_over", "p95 over"},
+                    {"walk_fps", "pictures a second", 1, "1/s"}}}}};
 }
 
 }  // namespace wellspring::test

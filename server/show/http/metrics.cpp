@@ -68,7 +68,7 @@ void per_worker(std::string& out, const CrewReport& report) {
   add_metric(out, "workers_requests_total", "Requests sent to workers", double(totals.requests));
   add_metric(out, "workers_samples_total", "Samples that workers traced in time",
              double(totals.samples));
-  add_metric(out, "workers_lost_total", "Requests to workers without an answer in time",
+  add_metric(out, "workers_lost_total", "Requests to workers without a good answer in time",
              double(totals.lost));
   add_metric(out, "workers_dropped_total", "Messages that the line to NATS did not take",
              double(totals.dropped));
@@ -100,6 +100,8 @@ void per_worker(std::string& out, const CrewReport& report) {
        [](const WorkerReport& one) { return one.problem.empty(); });
   each("worker_samples_total", "Samples that came from it",
        [](const WorkerReport& one) { return one.samples; });
+  each("worker_lost_total", "Requests to it without a good answer in time",
+       [](const WorkerReport& one) { return one.lost; });
   each("worker_samples_per_second", "As it traces; 0: not known",
        [](const WorkerReport& one) { return one.samples_per_second; });
   each("worker_line_milliseconds", "The line there and back, without waiting and tracing",

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+#include <random>
+
 namespace wellspring::test {
 namespace {
 
@@ -84,6 +88,131 @@ TEST(WorkerBudget, CallsMeasureTheLine) {
   EXPECT_NEAR(pace.line, 0.4, 0.01);
   note_called(pace, -3);  // a clock that jumped
   EXPECT_GE(pace.line, 0);
+}
+
+int total(const std::vector<OrderPlan>& plan) {
+  return std::accumulate(plan.begin(), plan.end(), 0,
+                         [](int sum, const OrderPlan& one) { return sum + one.requests; });
+}
+
+TEST(ShareOut, GivesWhoHasMostRoomTheMost) {
+  const std::vector<OrderPlan> plan = share_out(std::vector{1000, 5000, 63, 0}, 4000);
+  EXPECT_EQ(total(plan), 4000);
+  for (const OrderPlan& one : plan) EXPECT_EQ(one.worker, 1u);  // its room stays the largest
+}
+
+TEST(ShareOut, StaysWithinEachRoomAndWithinWhatThereIs) {
+  const std::vector<int> rooms{700, 300, 100, 64, 0, 10};
+  std::vector<int> given(rooms.size());
+  for (const OrderPlan& one : share_out(rooms, 100000)) given[one.worker] += one.requests;
+  for (size_t i = 0; i < rooms.size(); i++) {
+    EXPECT_LE(given[i], rooms[i]);
+    EXPECT_GT(given[i], rooms[i] - least_order);
+  }
+  EXPECT_LE(total(share_out(rooms, 500)), 500);
+  EXPECT_TRUE(share_out(rooms, least_order - 1).empty());
+  EXPECT_TRUE(share_out({}, 500).empty());
+}
+
+// A thousand workers, each with its own speed and line, on a clock that the test turns: what is
+// sent them, what they have before them, and what comes back.
+class ThousandWorkers {
+ public:
+  static constexpr double step = 0.02, span = 20;  // seconds
+  struct Order {
+    double sent = 0, arrives = 0, begins = 0, ends = 0;
+    int requests = 0;
+  };
+  struct Worker {
+    double rate = 0, line = 0;  // samples a second; seconds one way
+    double free_at = 0, idle = 0;
+    bool dead = false;
+    WorkerPace pace;
+    std::vector<Order> orders;
+  };
+  std::vector<Worker> workers{1000};
+  double now = 0;
+  uint64_t sent = 0, answered = 0, lost = 0;
+
+  ThousandWorkers() {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> speed(20e3, 200e3), delay(0.0005, 0.2);
+    for (Worker& one : workers) one.rate = speed(random), one.line = delay(random);
+  }
+  void run(double seconds) {
+    for (const double end = now + seconds; now < end; now += step) advance();
+  }
+  uint64_t on_the_way() const {
+    return std::accumulate(
+        workers.begin(), workers.end(), uint64_t(0),
+        [](uint64_t sum, const Worker& one) { return sum + one.pace.in_flight; });
+  }
+
+ private:
+  void advance() {
+    for (Worker& one : workers) {
+      std::erase_if(one.orders, [&](const Order& order) { return land(one, order); });
+    }
+    std::vector<int> rooms;
+    for (const Worker& one : workers) rooms.push_back(room_for(one.pace, true));
+    for (const OrderPlan& plan : share_out(rooms, 1 << 26)) {
+      Worker& one = workers[plan.worker];
+      Order order{now, now + one.line, 0, 0, plan.requests};
+      order.begins = std::max(order.arrives, one.free_at);
+      order.ends = order.begins + plan.requests / one.rate;
+      if (now > span / 2) one.idle += order.begins - std::max(one.free_at, span / 2);
+      one.free_at = order.ends;
+      note_sent(one.pace, plan.requests, true);
+      sent += uint64_t(plan.requests);
+      one.orders.push_back(order);
+    }
+  }
+  bool land(Worker& one, const Order& order) {
+    if (one.dead) {
+      if (now < order.sent + 2 + one.pace.line) return false;
+      lost += uint64_t(order.requests);
+      note_unanswered(one.pace, order.requests, true);
+      return true;
+    }
+    const double came = order.ends + one.line;
+    if (now < came) return false;
+    answered += uint64_t(order.requests);
+    note_answered(one.pace, order.requests, true, now - order.sent, order.begins - order.arrives,
+                  order.ends - order.begins);
+    return true;
+  }
+};
+
+TEST(ThousandWorkers, AllAreBusyAndNoneHasMoreThanItCanDoSoon) {
+  ThousandWorkers all;
+  all.run(ThousandWorkers::span);
+  double idle = 0;
+  for (const auto& one : all.workers) {
+    idle += one.idle;
+    EXPECT_LE(double(one.pace.in_flight), 1.1 * one.rate * (2 * one.line + ahead_resting) + 2048);
+  }
+  EXPECT_LT(idle / double(all.workers.size()), 0.02 * ThousandWorkers::span / 2);
+  EXPECT_EQ(all.sent, all.answered + all.lost + all.on_the_way());
+  EXPECT_EQ(all.lost, 0u);
+}
+
+TEST(ThousandWorkers, ThoseThatDieTakeOnlyTheirOwnShare) {
+  ThousandWorkers all;
+  all.run(5);
+  uint64_t theirs = 0;
+  for (size_t i = 0; i < all.workers.size(); i += 10) {
+    all.workers[i].dead = true;
+    theirs += all.workers[i].pace.in_flight;
+  }
+  std::vector<double> shares;
+  for (const auto& one : all.workers) shares.push_back(one.pace.share);
+  all.run(6);
+  EXPECT_GE(all.lost, theirs);
+  EXPECT_EQ(all.sent, all.answered + all.lost + all.on_the_way());
+  for (size_t i = 0; i < all.workers.size(); i++) {
+    if (all.workers[i].dead) EXPECT_LT(all.workers[i].pace.share, 0.5 * shares[i]);
+    else EXPECT_GE(all.workers[i].pace.share, shares[i]);
+  }
 }
 
 }  // namespace
