@@ -30,12 +30,15 @@ namespace {
 
 constexpr double save_every = 60, look_every = 1, say_elsewhere = 10;  // seconds
 
+constexpr size_t nodes_a_gather = BakeSettings{}.direct_nodes / BakeSettings{}.gather_nodes;
+
 std::atomic<bool> interrupted = false;
 void interrupt(int) { interrupted = true; }
 
 struct Options {
   std::string package, time = "10m", cache = "build/cache", out;
   Shard shard;
+  size_t nodes = BakeSettings{}.direct_nodes;
   uint64_t passes = 0;  // to be reached; 0: as many as there is time for
   std::vector<std::string> merge;
   bool resume = false, add = false, scene_number = false;
@@ -128,8 +131,9 @@ Bake begin(const Bakery& bakery, const Options& options, const BakeSettings& set
   if (found != KeyedFile::read) {
     bake = begin_bake(bakery.world, eye_places(bakery.exhibit), settings);
     bake.source = options.package;
-  } else if (bake.settings.shard != settings.shard || bake.settings.shards != settings.shards) {
-    throw Failure(bakery.file + ": is of another shard");
+  } else if (bake.settings.shard != settings.shard || bake.settings.shards != settings.shards ||
+             bake.settings.direct_nodes != settings.direct_nodes) {
+    throw Failure(bakery.file + ": is of another shard, or of other --nodes");
   }
   return bake;
 }
@@ -233,6 +237,9 @@ int main(int argc, char** argv) {
                  "how many, instead of a time: the same bits on all machines of one kind")
       ->check(CLI::Range(1, 1000000))
       ->excludes(time);
+  app.add_option("--nodes", options.nodes, "places of direct light at most, about: size and time")
+      ->check(CLI::Range(1000, 100'000'000))
+      ->capture_default_str();
   app.add_flag("--resume", options.resume, "goes on where the last one ended");
   app.add_flag("--add", options.add,
                "keeps the light of light.maps where things stand as they did, and finds that of "
@@ -264,6 +271,8 @@ int main(int argc, char** argv) {
     std::cerr << "--time " << options.time << ": a time such as 90s, 10m or 8h is expected\n";
     return 2;
   }
+  settings.direct_nodes = options.nodes;
+  settings.gather_nodes = options.nodes / nodes_a_gather;
   settings.shard = options.shard.index, settings.shards = options.shard.count;
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);

@@ -199,6 +199,7 @@ int fetch_job(JobLine& line, const JobState& job, const JobFolders& folders,
         beside ? fs::path(out) : home / fmt::format("shard-{}", shard.shard + 1);
     shards.push_back(folder);
     for (const ShardFile& file : shard.files) {
+      if (command.merge == JobMerge::bake && !file.name.ends_with(".bake")) continue;
       files.push_back(folder / file.name);
       line.get_file(file, files.back());
       std::cerr << fmt::format("{}: {} bytes\n", files.back(), file.size);

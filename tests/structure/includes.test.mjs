@@ -89,6 +89,7 @@ const may_enter = {
   },
   workers: {
     '': [],
+    jobs: [''],
   },
   kiosk: {
     frame: [],

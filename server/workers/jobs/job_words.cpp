@@ -34,7 +34,7 @@ constexpr int any_number = 4096;
 const std::vector<Program>& programs() {
   using enum Value;
   static const std::vector<Program> all{
-      {"bake", "", 1, 1, JobMerge::bake, {{"--passes", number}}, "--passes"},
+      {"bake", "", 1, 1, JobMerge::bake, {{"--passes", number}, {"--nodes", number}}, "--passes"},
       {"import",
        "picture",
        1,

@@ -99,11 +99,13 @@ struct JobLine::Handles {
 
 // Calls until it goes well. `call` gives a natsStatus, and a jsErrCode.
 void JobLine::need(const std::string& what, const std::function<int(int*)>& call) {
-  while (true) {
+  for (bool told = false;;) {
     int code = 0;
     const auto status = natsStatus(call(&code));
     if (status == NATS_OK) return;
     if (is_for_want_of_server(status, code) && settings_.goes_on()) {
+      if (!std::exchange(told, true))
+        log::warn("{}: {}; it is tried again and again", what, natsStatus_GetText(status));
       std::this_thread::sleep_for(try_every);
       continue;
     }
@@ -121,6 +123,7 @@ JobLine::JobLine(LineSettings settings)
   nats_->options = make_options(settings_.channel);
   natsOptions_SetRetryOnFailedConnect(nats_->options.get(), false, nullptr, nullptr);
   natsOptions_DisableNoResponders(nats_->options.get(), false);
+  natsOptions_SetDisconnectedCB(nats_->options.get(), nullptr, nullptr);  // need() tells it
   need(settings_.channel.url + ": no NATS server answers",
        [&](int*) { return natsConnection_Connect(&nats_->connection, nats_->options.get()); });
   jsOptions options;
