@@ -38,7 +38,7 @@ struct Options {
   int spp = 16, columns = 8, sheet_rate = 4;
   double from = 0;
   bool close = false, calm = false;
-  Shard shard;                     // of the pictures
+  Shard shard;                     // which pictures are drawn
   std::vector<std::string> merge;  // folders of all shards' pictures
 };
 

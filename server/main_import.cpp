@@ -38,7 +38,7 @@ struct Options {
   double width = 0;  // metres; 0: unknown
   int quality = 90;
   bool overwrite = false;
-  Shard shard;         // of the files
+  Shard shard;         // which files are read
   bool merge = false;  // all are made: their pieces are printed
 };
 

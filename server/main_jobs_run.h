@@ -17,12 +17,12 @@ namespace wellspring::program {
 struct JobFolders {
   std::string inputs = ".";            // below it all paths of jobs lie
   std::string scratch = "build/jobs";  // for files of shards while they are worked on
-  std::string cache = "build/cache";   // of bakes
+  std::string cache = "build/cache";   // folder that keeps bakes
 };
 
 struct ProgramEnd {
   int status = 0;            // exit code, or minus the signal that ended it
-  std::string last_lines;    // of stderr, without lines of progress
+  std::string last_lines;    // last lines of stderr, but for progress
   bool was_stopped = false;  // as `goes_on` wished
 };
 // Runs a program of this folder, `wellspring_NAME`, which does not outlive this one. Its stdout and

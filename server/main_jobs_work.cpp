@@ -185,7 +185,7 @@ class Worker {
     try {
       run_shard(taken, order, command);
     } catch (const LineError& error) {
-      refuse(taken, error.what());  // what was found stays here
+      refuse(taken, error.what());  // its files stay here
     } catch (const std::exception& error) {
       fail(taken, error.what());
     }

@@ -37,7 +37,7 @@ struct Options {
   std::string package, csv, html, json;
   std::string picture;  // a picture of many bands
   int places = 1024;
-  Shard shard;  // of their pairs
+  Shard shard;  // which pairs of them are compared
   std::string out;
   std::vector<std::string> merge;
   std::vector<std::string> pigments, lamp_files, glasses;

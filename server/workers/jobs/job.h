@@ -17,7 +17,7 @@ inline constexpr size_t most_job_words = 512, most_word_bytes = 512, most_shard_
 
 struct JobOrder {
   std::string job;                    // name, is_job_name()
-  std::string version, instructions;  // of the program and processors, as in Sameness
+  std::string version, instructions;  // as in Sameness
   uint64_t inputs = 0;                // number of all that it reads; the same on all machines
   uint32_t shards = 1;
   std::vector<std::string> words;  // "bake", "content/ID", "--passes", "64"
@@ -49,14 +49,14 @@ struct JobEvent {
   uint32_t shard = 0;
   JobNews news = JobNews::waits;
   uint64_t place = 0, delivery = 0;
-  float share = 0;               // of the shard's work that is done, while it works
+  float share = 0;               // share of its work that is done, while it works
   std::string worker;            // name
   std::string reason;            // why it was refused, failed or is dead
-  float seconds = 0;             // that a done shard took
-  std::vector<ShardFile> files;  // of a done shard
+  float seconds = 0;             // time that a done shard took
+  std::vector<ShardFile> files;  // made by a done shard
 };
 
-// Returns whether `a` tells more recent things of a shard than `b`. What is done stays so.
+// Returns whether `a` tells more recent things of a shard than `b`. A done shard stays done.
 bool is_later(const JobEvent& a, const JobEvent& b);
 
 // Holds a job and the last that is known of each shard.
@@ -64,9 +64,9 @@ struct JobState {
   JobOrder order;
   std::vector<JobEvent> shards;
   explicit JobState(JobOrder order);
-  void take(const JobEvent& event);  // of another job, or of no shard of it: is dropped
+  void take(const JobEvent& event);  // is dropped if it is of another job
   size_t count(JobNews news) const;
-  double share() const;  // of all its work that is done, 0 to 1
+  double share() const;  // share of all its work that is done
 };
 
 // Returns whether the text can be a job's name: 1 to 64 letters, digits and '-'.

@@ -28,7 +28,7 @@ struct LineError : std::runtime_error {
 struct LineSettings {
   ChannelSettings channel;
   MessageKey key;
-  double store_gib = 4;  // that files of shards may take on the NATS server
+  double store_gib = 4;  // room for files of shards on the NATS server
   // Whether what fails for want of a connection is tried again; called every half second.
   std::function<bool()> goes_on = [] { return false; };
 };

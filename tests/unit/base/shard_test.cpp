@@ -9,7 +9,7 @@ namespace {
 TEST(Shard, IsReadFromWords) {
   EXPECT_EQ(parse_shard("1/3")->index, 0);
   EXPECT_EQ(parse_shard("3/3")->index, 2);
-  EXPECT_EQ(parse_shard("0/3")->index, 2);  // of those who count from 0
+  EXPECT_EQ(parse_shard("0/3")->index, 2);  // array jobs count from 0
   EXPECT_EQ(to_text(*parse_shard("2/3")), "2/3");
   EXPECT_TRUE(parse_shard("1/1")->is_whole());
   for (const char* text :
