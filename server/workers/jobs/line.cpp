@@ -112,6 +112,9 @@ void JobLine::need(const std::string& what, const std::function<int(int*)>& call
     natsStatus last = NATS_OK;
     const char* said = code != 0 ? nats_GetLastError(&last) : nullptr;
     std::string why = said ? said : natsStatus_GetText(status);
+    if (why.starts_with('(')) why.erase(0, why.find(": ") + 2);  // a line of the library's source
+    if (why.find("maximum bytes") != std::string::npos)
+      why += ": the store is full (--store), remove old jobs";
     if (status == NATS_NO_RESPONDERS || code == JSNotEnabledErr)
       why = "NATS runs without JetStream: start nats-server with -js";
     throw LineError(what + ": " + why);
