@@ -6,7 +6,7 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME server)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # packing builds nothing: not the tests, above all
 set(server_programs wellspring_server wellspring_voice wellspring_render wellspring_avatar
   wellspring_clip wellspring_speak wellspring_check wellspring_new wellspring_import wellspring_bake
-  wellspring_nebula wellspring_worker wellspring_compare wellspring_lamps)
+  wellspring_nebula wellspring_worker wellspring_jobs wellspring_compare wellspring_lamps)
 install(TARGETS ${server_programs} DESTINATION libexec/wellspring COMPONENT server)
 install(TARGETS wellspring_kiosk wellspring_station DESTINATION libexec/wellspring COMPONENT kiosk)
 install(PROGRAMS deploy/wellspring.sh DESTINATION bin RENAME wellspring)

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <charconv>
 #include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <fmt/core.h>
@@ -19,6 +18,7 @@
 #include "light/kept/complete_map.h"
 #include "light/kept/finish_bake.h"
 #include "light/kept/map_file.h"
+#include "main_shard.h"
 #include "show/exhibit/load/exhibit_load.h"
 #include "show/exhibit/exhibit_objects.h"
 #include "show/exhibit/pieces/exhibit_volumes.h"
@@ -30,13 +30,18 @@ namespace {
 
 constexpr double save_every = 60, look_every = 1, say_elsewhere = 10;  // seconds
 
+constexpr size_t nodes_a_gather = BakeSettings{}.direct_nodes / BakeSettings{}.gather_nodes;
+
 std::atomic<bool> interrupted = false;
 void interrupt(int) { interrupted = true; }
 
 struct Options {
-  std::string package, time = "10m", shard, cache = "build/cache", out;
+  std::string package, time = "10m", cache = "build/cache", out;
+  Shard shard;
+  size_t nodes = BakeSettings{}.direct_nodes;
+  uint64_t passes = 0;  // to be reached; 0: as many as there is time for
   std::vector<std::string> merge;
-  bool resume = false, add = false;
+  bool resume = false, add = false, scene_number = false;
 };
 
 // Reads seconds from "90", "90s", "10m", "2h"; below 0: the text is no duration.
@@ -46,16 +51,6 @@ double parse_duration(const std::string& text) {
   std::string unit(end, text.data() + text.size());
   double scale = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : -1;
   return error == std::errc() && std::isfinite(value) && value > 0 ? value * scale : -1;
-}
-
-bool parse_shard(const std::string& text, BakeSettings& settings) {
-  int shard = 0, shards = 0, used = 0;
-  if (std::sscanf(text.c_str(), "%d/%d%n", &shard, &shards, &used) != 2 ||
-      size_t(used) != text.size() || shards < 1 || shards > 4096 || shard < 0 || shard > shards)
-    return false;
-  settings.shard = (shard + shards - 1) % shards;  // i counts from 1, or from 0
-  settings.shards = shards;
-  return true;
 }
 
 using Failure = std::runtime_error;  // The input is wrong: printed on stderr, exit status 1
@@ -119,6 +114,7 @@ Bake merge(const Bakery& bakery, const Options& options) {
   if (whole.settings.shards > 1)
     throw Failure("shards are missing: " + std::to_string(whole.shards_done.size()) + " of " +
                   std::to_string(whole.settings.shards) + " are there");
+  whole.source = options.package;  // shards may have been baked elsewhere
   return whole;
 }
 
@@ -135,27 +131,43 @@ Bake begin(const Bakery& bakery, const Options& options, const BakeSettings& set
   if (found != KeyedFile::read) {
     bake = begin_bake(bakery.world, eye_places(bakery.exhibit), settings);
     bake.source = options.package;
-  } else if (bake.settings.shard != settings.shard || bake.settings.shards != settings.shards) {
-    throw Failure(bakery.file + ": is of another shard");
+  } else if (bake.settings.shard != settings.shard || bake.settings.shards != settings.shards ||
+             bake.settings.direct_nodes != settings.direct_nodes) {
+    throw Failure(bakery.file + ": is of another shard, or of other --nodes");
   }
   return bake;
 }
 
-void go_on_for(double seconds, const Bakery& bakery, Bake& bake) {
+// Goes on for so long, or up to a number of passes: then the bits are the same wherever it is
+// baked, and however often it is interrupted.
+void go_on_for(double seconds, uint64_t passes, const Bakery& bakery, Bake& bake) {
+  if (passes > 0 && (bake.passes > passes || (bake.passes == passes && bake.cursor > 0)))
+    throw Failure(fmt::format("{}: has more than {} passes", bakery.file, passes));
+  const auto is_done = [&](double now, double until) {
+    return interrupted || (passes > 0 ? bake.passes >= passes : now >= until);
+  };
   const BakeScene scene = make_bake_scene(bakery.world, eye_places(bakery.exhibit));
   const double began = seconds_now();
   double saved = began;
   Progress progress("bake", say_elsewhere);
-  for (double now = began; !interrupted && bake.charts.tiles > 0 && now - began < seconds;
+  for (double now = began; bake.charts.tiles > 0 && !is_done(now, began + seconds);
        now = seconds_now()) {
-    const double until = std::min(now + look_every, began + seconds);
-    go_on(scene, bake, [&] { return interrupted || seconds_now() >= until; });
-    progress.tell((now - began) / seconds,
+    const double until = std::min(now + look_every, passes > 0 ? 1e300 : began + seconds);
+    go_on(scene, bake, [&] { return seconds_now() >= until || is_done(now, until); });
+    const double part = bake.charts.tiles > 0 ? double(bake.cursor) / bake.charts.tiles : 0,
+                 share = passes > 0
+                             ? (double(bake.passes) + (bake.pilot() ? 0 : part)) / double(passes)
+                             : (now - began) / seconds;
+    progress.tell(share,
                   fmt::format("{} passes, error {:.1f} %", bake.passes, 100 * bake_error(bake)));
     if (now - saved < save_every) continue;
     bakery.keep(bake);
     saved = now;
   }
+  if (!interrupted || passes == 0 || bake.passes >= passes) return;
+  bakery.keep(bake);
+  throw Failure(
+      fmt::format("interrupted after {} of {} passes: --resume goes on", bake.passes, passes));
 }
 
 // Adds what light.maps lacks.
@@ -192,13 +204,17 @@ void add_to_map(const Bakery& bakery, const BakeSettings& settings, double secon
 
 void run(const Options& options, const BakeSettings& settings, double seconds) {
   const Bakery bakery(options, settings);
+  if (options.scene_number) {
+    std::cout << fmt::format("{:016x}\n", bakery.key);
+    return;
+  }
   if (options.add) return add_to_map(bakery, settings, seconds);
   Bake bake;
   if (!options.merge.empty()) {
     bake = merge(bakery, options);
   } else {
     bake = begin(bakery, options, settings);
-    go_on_for(seconds, bakery, bake);
+    go_on_for(seconds, options.passes, bakery, bake);
     const size_t texels = bake.direct.nodes(), layers = size_t(bake.direct.layers);
     std::cout << bake.charts.surfaces.size() << " charts, " << texels << " texels, " << layers
               << " layers: " << texels * 4 * layers << " bytes, " << vertex_bytes(bake)
@@ -216,14 +232,22 @@ int main(int argc, char** argv) {
   CLI::App app{"Bakes illumination maps: the diffuse light of what stands still."};
   Options options;
   app.add_option("package", options.package, "folder of the exhibit, e.g. content/castle");
-  app.add_option("--time", options.time, "how long: 90s, 10m, 8h");
+  CLI::Option* time = app.add_option("--time", options.time, "how long: 90s, 10m, 8h");
+  app.add_option("--passes", options.passes,
+                 "how many, instead of a time: the same bits on all machines of one kind")
+      ->check(CLI::Range(1, 1000000))
+      ->excludes(time);
+  app.add_option("--nodes", options.nodes, "places of direct light at most, about: size and time")
+      ->check(CLI::Range(1000, 100'000'000))
+      ->capture_default_str();
   app.add_flag("--resume", options.resume, "goes on where the last one ended");
   app.add_flag("--add", options.add,
                "keeps the light of light.maps where things stand as they did, and finds that of "
                "new things and what is near them");
-  app.add_option("--shard", options.shard,
-                 "i/N: every N-th part, for N machines; merge afterwards");
+  add_shard(app, options.shard, "i/N: every N-th part, for N machines; merge afterwards");
   app.add_option("--merge", options.merge, "files of all shards: one bake is made of them");
+  app.add_flag("--scene-number", options.scene_number,
+               "prints the number of the scene, by which files of its light know it");
   app.add_option("--cache", options.cache, "folder where servers look for it");
   app.add_option("--out", options.out, "file, instead of one in that folder");
   try {
@@ -247,10 +271,9 @@ int main(int argc, char** argv) {
     std::cerr << "--time " << options.time << ": a time such as 90s, 10m or 8h is expected\n";
     return 2;
   }
-  if (!options.shard.empty() && !parse_shard(options.shard, settings)) {
-    std::cerr << "--shard " << options.shard << ": i/N is expected, i from 1 to N\n";
-    return 2;
-  }
+  settings.direct_nodes = options.nodes;
+  settings.gather_nodes = options.nodes / nodes_a_gather;
+  settings.shard = options.shard.index, settings.shards = options.shard.count;
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   try {

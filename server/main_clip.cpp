@@ -3,6 +3,7 @@
 // subtitles into a folder, with a sheet of some moments to look at; and a film, if ffmpeg is
 // installed.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <fmt/core.h>
@@ -16,12 +17,18 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "base/read_file.h"
 #include "base/write_file.h"
 #include "frame/picture_file.h"
+#include "image/image.h"
+#include "main_shard.h"
 #include "show/storyteller/story_clip.h"
 
 namespace wellspring::program {
 namespace {
+
+constexpr double say_elsewhere = 10;  // seconds
+constexpr size_t most_picture_bytes = 64 << 20;
 
 struct Options {
   std::string figure, story, out = "clip", size = "240x320";
@@ -31,6 +38,8 @@ struct Options {
   int spp = 16, columns = 8, sheet_rate = 4;
   double from = 0;
   bool close = false, calm = false;
+  Shard shard;                     // which pictures are drawn
+  std::vector<std::string> merge;  // folders of all shards' pictures
 };
 
 // Copies a picture into a sheet, as far as it fits.
@@ -55,19 +64,17 @@ bool make_film(const std::string& folder, double fps) {
   }
 }
 
-int run(Options& options) {
+// Holds a clip as it is to be drawn.
+struct Clip {
+  Character character;
   PortraitShot shot;
-  char rest = 0;
-  bool sized =
-      std::sscanf(options.size.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 &&
-      shot.width >= 16 && shot.height >= 16 && shot.width <= 2048 && shot.height <= 2048;
-  if (!sized) {
-    std::cerr << "--size wants WIDTHxHEIGHT, 16 to 2048 each\n";
-    return 2;
-  }
-  shot.spp = options.spp;
-  shot.close = options.close;
-  Character character = load_character(options.figure);
+  std::vector<StoryLine> lines;
+  std::vector<std::shared_ptr<const Speech>> spoken;
+  std::vector<StoryMoment> moments;
+};
+
+Clip load_clip(Options& options, const PortraitShot& shot) {
+  Clip clip{load_character(options.figure), shot, {}, {}, {}};
   StoryText story;
   story.id = std::filesystem::path(options.story).stem().string();
   StoryScript script = load_story(options.story);
@@ -77,18 +84,57 @@ int run(Options& options) {
   options.voice.lang = options.clip.lang;
   options.clip.humanlike = !options.calm;
   SpeechProcess process;
-  auto spoken = speak_lines(process, script.lines, options.voice, options.story);
+  clip.spoken = speak_lines(process, script.lines, options.voice, options.story);
   story.text[options.clip.lang] = script.lines;
-  std::filesystem::create_directories(options.out);
-
-  double seconds = options.clip.seconds;
-  options.clip.seconds += options.from;
-  auto moments = act_story(Exhibit{}, character, mat4(1), story, spoken, options.clip);
-  std::erase_if(moments,
+  ClipSettings settings = options.clip;
+  settings.seconds += options.from;
+  clip.moments = act_story(Exhibit{}, clip.character, mat4(1), story, clip.spoken, settings);
+  std::erase_if(clip.moments,
                 [&](const StoryMoment& moment) { return moment.time < options.from - 1e-9; });
-  if (moments.empty()) throw LoadError(options.story, "", "ends before --from");
+  if (clip.moments.empty()) throw LoadError(options.story, "", "ends before --from");
+  clip.lines = std::move(script.lines);
+  return clip;
+}
 
-  // Sound follows the pictures.
+std::string picture_name(size_t i) { return fmt::format("{:04}.png", i); }
+
+// Draws the pictures of the shard.
+void draw_pictures(const Options& options, const Clip& clip) {
+  const auto [begin, end] = options.shard.stretch(clip.moments.size());
+  std::vector<std::string> warnings;
+  Progress progress("clip", options.shard.is_whole() ? 0 : say_elsewhere);
+  for (size_t i = begin; i < end; i++) {
+    progress.tell(double(i - begin) / double(end - begin),
+                  fmt::format("{} of {} pictures", i - begin, end - begin));
+    Frame frame = render_portrait(clip.character, clip.moments[i].pose, clip.shot, warnings);
+    Image8 picture;
+    tonemap(frame, Tonemap{}, picture);
+    save_image8(options.out + "/" + picture_name(i), picture);
+  }
+}
+
+// Brings the pictures of all shards into one folder.
+void gather_pictures(const Options& options, const Clip& clip) {
+  namespace fs = std::filesystem;
+  for (size_t i = 0; i < clip.moments.size(); i++) {
+    const fs::path to = fs::path(options.out) / picture_name(i);
+    const auto has = [&](const std::string& folder) {
+      return fs::exists(fs::path(folder) / picture_name(i));
+    };
+    const auto from = std::ranges::find_if(options.merge, has);
+    if (from == options.merge.end())
+      throw LoadError(to.string(), "", "is missing: its shard is not done");
+    std::error_code error;
+    const fs::path found = fs::path(*from) / picture_name(i);
+    if (!fs::equivalent(found, to, error))
+      fs::copy_file(found, to, fs::copy_options::overwrite_existing);
+  }
+}
+
+// Sound follows the pictures.
+void write_sound(const Options& options, const Clip& clip) {
+  const auto& moments = clip.moments;
+  const auto& spoken = clip.spoken;
   int rate = spoken.front()->rate;
   std::vector<int16_t> sound(size_t(double(moments.size()) / options.clip.fps * rate));
   for (size_t i = 0; i < moments.size(); i++) {
@@ -101,32 +147,59 @@ int run(Options& options) {
     }
   }
   write_file(options.out + "/sound.wav", encode_wav(sound, rate));
-  write_file(options.out + "/subtitles.vtt",
-             write_subtitles(join_lines(script.lines, spoken).cues));
+  write_file(options.out + "/subtitles.vtt", write_subtitles(join_lines(clip.lines, spoken).cues));
+}
 
+Image8 read_picture(const std::string& path) {
+  const auto bytes = read_file<std::vector<uint8_t>>(path, most_picture_bytes);
+  const ImageCodes codes = decode_png(bytes, int64_t(largest_side) * largest_side, path);
+  Image8 picture{codes.width, codes.height, {}};
+  for (size_t i = 0; i < codes.codes8.size(); i++)
+    if (i % 4 != 3) picture.rgb.push_back(codes.codes8[i]);
+  return picture;
+}
+
+void write_sheet(const Options& options, const Clip& clip) {
+  const size_t all = clip.moments.size();
   size_t every = size_t(std::max(1.0, options.clip.fps / options.sheet_rate));
-  int shown = int((moments.size() + every - 1) / every);
+  int shown = int((all + every - 1) / every);
   int columns = std::min(options.columns, shown), rows = (shown + columns - 1) / columns;
-  Image8 sheet{columns * shot.width, rows * shot.height, {}};
+  Image8 sheet{columns * clip.shot.width, rows * clip.shot.height, {}};
   sheet.rgb.resize(size_t(sheet.width) * size_t(sheet.height) * 3);
-  std::vector<std::string> warnings;
-  Progress progress("clip");
-  for (size_t i = 0; i < moments.size(); i++) {
-    progress.tell(double(i) / double(moments.size()),
-                  fmt::format("{} of {} pictures", i, moments.size()));
-    Frame frame = render_portrait(character, moments[i].pose, shot, warnings);
-    Image8 picture;
-    tonemap(frame, Tonemap{}, picture);
-    save_image8(options.out + fmt::format("/{:04}.png", i), picture);
-    int place = int(i / every);
-    if (i % every == 0)
-      paste(picture, sheet, place % columns * shot.width, place / columns * shot.height);
+  for (size_t i = 0; i < all; i += every) {
+    const int place = int(i / every);
+    paste(read_picture(options.out + "/" + picture_name(i)), sheet,
+          place % columns * clip.shot.width, place / columns * clip.shot.height);
   }
-  progress.clear();
   save_image8(options.out + "/sheet.png", sheet);
+}
+
+int run(Options& options) {
+  PortraitShot shot;
+  char rest = 0;
+  bool sized =
+      std::sscanf(options.size.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 &&
+      shot.width >= 16 && shot.height >= 16 && shot.width <= 2048 && shot.height <= 2048;
+  if (!sized) {
+    std::cerr << "--size wants WIDTHxHEIGHT, 16 to 2048 each\n";
+    return 2;
+  }
+  shot.spp = options.spp;
+  shot.close = options.close;
+  const Clip clip = load_clip(options, shot);
+  std::filesystem::create_directories(options.out);
+  if (options.merge.empty()) draw_pictures(options, clip);
+  else gather_pictures(options, clip);
+  if (!options.shard.is_whole()) {
+    std::cout << fmt::format("pictures of shard {} in {}\n", to_text(options.shard), options.out);
+    return 0;
+  }
+  write_sound(options, clip);
+  write_sheet(options, clip);
   bool film = make_film(options.out, options.clip.fps);
   std::cout << fmt::format("{} pictures of {:.1f} s, sheet.png, sound.wav, subtitles.vtt{} in {}\n",
-                           moments.size(), seconds, film ? ", clip.mp4" : "", options.out);
+                           clip.moments.size(), options.clip.seconds, film ? ", clip.mp4" : "",
+                           options.out);
   return 0;
 }
 
@@ -161,6 +234,11 @@ int main(int argc, char** argv) {
   app.add_flag("--calm", options.calm, "without human-like noise");
   app.add_option("--sheet-rate", options.sheet_rate, "pictures of the sheet a second")
       ->check(CLI::Range(1, 60));
+  CLI::Option* shard =
+      add_shard(app, options.shard, "i/N: a stretch of the pictures, for N machines");
+  app.add_option("--merge", options.merge,
+                 "folders of the pictures of all shards: the clip is made of them")
+      ->excludes(shard);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

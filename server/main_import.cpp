@@ -20,6 +20,7 @@
 #include "main_import_bands.h"
 #include "main_import_scan.h"
 #include "main_import_volume.h"
+#include "main_shard.h"
 #include "store/bands/bands.h"
 #include "store/open/open_picture.h"
 #include "volume/format/raw_json.h"
@@ -37,6 +38,8 @@ struct Options {
   double width = 0;  // metres; 0: unknown
   int quality = 90;
   bool overwrite = false;
+  Shard shard;         // which files are read
+  bool merge = false;  // all are made: their pieces are printed
 };
 
 // Shows how far vips has come, by what it writes: "vips temp-3: 34% complete".
@@ -72,9 +75,20 @@ void run_vips(const std::string& file, const std::string& made, int quality) {
                                   : "vips cannot turn it into a TIFF; its reason stands above");
 }
 
+fs::path made_of(const Options& options, const std::string& file) {
+  return fs::path(options.out) / fs::path(file).stem().concat(".tif");
+}
+
+void print_picture(const Options& options, const fs::path& made) {
+  std::cout << "{\"id\": \"" << made.stem().string() << "\", \"kind\": \"picture\", \"source\": \""
+            << made.filename().string()
+            << "\", \"width_m\": " << (options.width > 0 ? options.width : 1)
+            << ", \"place\": {\"position\": [0, 1.5, 0], \"yaw_deg\": 0}}\n";
+}
+
 void import_picture(const Options& options, const std::string& file) {
   if (!fs::is_regular_file(file)) throw LoadError(file, "", "is no file");
-  const fs::path made = fs::path(options.out) / fs::path(file).stem().concat(".tif");
+  const fs::path made = made_of(options, file);
   std::error_code error;
   if (fs::exists(made) && (!options.overwrite || fs::equivalent(made, file, error)))
     throw LoadError(made.string(), "", "is there already; --overwrite replaces it");
@@ -93,10 +107,22 @@ void import_picture(const Options& options, const std::string& file) {
     fs::remove(half, error);
     throw;
   }
-  std::cout << "{\"id\": \"" << made.stem().string() << "\", \"kind\": \"picture\", \"source\": \""
-            << made.filename().string()
-            << "\", \"width_m\": " << (options.width > 0 ? options.width : 1)
-            << ", \"place\": {\"position\": [0, 1.5, 0], \"yaw_deg\": 0}}\n";
+  print_picture(options, made);
+}
+
+// Imports the files of a shard; or, when all shards are done, prints what each would have printed.
+void import_pictures(const Options& options) {
+  fs::create_directories(options.out);
+  for (size_t i = 0; i < options.files.size(); i++) {
+    if (!options.merge) {
+      if (options.shard.has(i)) import_picture(options, options.files[i]);
+      continue;
+    }
+    const fs::path made = made_of(options, options.files[i]);
+    if (!fs::exists(made)) throw LoadError(made.string(), "", "is missing: its shard is not done");
+    open_picture(made.string());
+    print_picture(options, made);
+  }
 }
 
 // Several imports have the next three options.
@@ -156,6 +182,9 @@ int main(int argc, char** argv) {
   add_width(picture, options.width);
   add_quality(picture, options.quality, "of JPEG tiles")->capture_default_str();
   add_overwrite(picture, options.overwrite);
+  add_shard(picture, options.shard, "i/N: every N-th file, for N machines");
+  picture.add_flag("--merge", options.merge,
+                   "all shards are done: prints the pieces that one import would have printed");
   VolumeImport scan;
   CLI::App& volume = *app.add_subcommand(
       "volume", "a scan, for an exhibit: checks it, copies it, prints a piece for exhibit.json");
@@ -217,8 +246,7 @@ int main(int argc, char** argv) {
     if (volume.parsed()) return import_volume(scan), 0;
     if (points.parsed()) return import_scan(place), 0;
     if (!bands.path.empty()) return import_bands(bands), 0;
-    fs::create_directories(options.out);
-    for (const std::string& file : options.files) import_picture(options, file);
+    import_pictures(options);
     return 0;
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";

@@ -4,13 +4,20 @@
 // many bands look alike under one of them and unlike under another. Exit status: 0 done, 1 the
 // input is wrong, 2 the command line is wrong.
 #include <CLI/CLI.hpp>
+#include <bit>
 #include <filesystem>
+#include <fmt/core.h>
 #include <iostream>
+#include <ranges>
+#include <sstream>
 
 #include "about/version.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "base/read_file.h"
+#include "base/rng.h"
 #include "base/write_file.h"
+#include "main_shard.h"
 #include "show/exhibit/load/exhibit_load.h"
 #include "spectrum/read/dispersion_file.h"
 #include "spectrum/read/spectra_file.h"
@@ -24,10 +31,15 @@ using namespace wellspring::program;
 
 namespace {
 
+constexpr size_t most_shard_bytes = 1 << 30;
+
 struct Options {
   std::string package, csv, html, json;
   std::string picture;  // a picture of many bands
   int places = 1024;
+  Shard shard;  // which pairs of them are compared
+  std::string out;
+  std::vector<std::string> merge;
   std::vector<std::string> pigments, lamp_files, glasses;
   std::vector<std::string> lamps;
   Adaptation adaptation = Adaptation::cat16;
@@ -125,29 +137,95 @@ LampReport make_report(const Options& options) {
   return report;
 }
 
-// Prints which places of a picture match under one lamp alone.
-void print_places(const Options& options) {
-  std::vector<SpectraNote> notes;
-  std::vector<LampSpectrum> lamps = find_lamps(options, notes);
-  if (std::ranges::find(lamps, daylight_name, &LampSpectrum::name) == lamps.end())
-    lamps.insert(lamps.begin(), *find_lamp(daylight_name));
-  const BandSource source(options.picture);
-  weigh_bands(options.picture, source.bands(), {});  // refuses bands that tell no colours
+// Holds places of a picture of many bands that are compared, and the lamps.
+struct PlaceTask {
+  std::vector<LampSpectrum> lamps;
+  LampReportSettings settings;
+  std::vector<double> nm;
   std::vector<std::string> names;
   std::vector<std::vector<double>> spectra;
+};
+
+PlaceTask load_places(const Options& options) {
+  PlaceTask task;
+  std::vector<SpectraNote> notes;
+  task.lamps = find_lamps(options, notes);
+  if (std::ranges::find(task.lamps, daylight_name, &LampSpectrum::name) == task.lamps.end())
+    task.lamps.insert(task.lamps.begin(), *find_lamp(daylight_name));
+  const BandSource source(options.picture);
+  weigh_bands(options.picture, source.bands(), {});  // refuses bands that tell no colours
+  task.nm = source.bands().nm;
   for (BandPlace& place : sample_places(source, options.places)) {
-    names.push_back(std::to_string(place.x) + ", " + std::to_string(place.y));
-    spectra.push_back(std::move(place.reflectances));
+    task.names.push_back(std::to_string(place.x) + ", " + std::to_string(place.y));
+    task.spectra.push_back(std::move(place.reflectances));
   }
-  const LampReportSettings settings{.adaptation = options.adaptation, .most_pairs = 12};
+  task.settings = {.adaptation = options.adaptation, .most_pairs = 12};
+  return task;
+}
+
+// Returns the first line of a shard's file: what was compared, as a number, and by whom.
+std::string shard_title(const PlaceTask& task, const Shard& shard) {
+  uint64_t number = uint64_t(task.settings.adaptation);
+  const auto add = [&](double value) { number = mix64(number ^ std::bit_cast<uint64_t>(value)); };
+  std::ranges::for_each(task.nm, add);
+  for (const std::vector<double>& spectrum : task.spectra) std::ranges::for_each(spectrum, add);
+  for (const LampSpectrum& lamp : task.lamps) {
+    std::ranges::for_each(lamp.power, add);
+  }
+  return fmt::format("places {:016x} {}", number, to_text(shard));
+}
+
+void write_shard(const Options& options, const PlaceTask& task) {
+  std::string text = shard_title(task, options.shard) + "\n";
+  for (const auto& [first, second] :
+       find_unlike_places(task.nm, task.spectra, task.lamps, task.settings, options.shard))
+    text += fmt::format("{} {}\n", first, second);
+  write_file(options.out, std::span<const char>(text));
+}
+
+// Reads the pairs of all shards. Throws LoadError.
+std::vector<Places> read_shards(const Options& options, const PlaceTask& task) {
+  std::vector<Places> pairs;
+  const int count = int(options.merge.size());
+  std::vector<char> is_there(size_t(count), 0);
+  for (const std::string& file : options.merge) {
+    std::istringstream lines(read_file(file, most_shard_bytes));
+    std::string title;
+    std::getline(lines, title);
+    const auto is_title = [&](int i) { return title == shard_title(task, {i, count}); };
+    const auto range = std::views::iota(0, count);
+    const auto shard = std::ranges::find_if(range, is_title);
+    if (shard == range.end())
+      throw LoadError(file, "", fmt::format("is no shard of {} of these places", count));
+    if (is_there[size_t(*shard)]++)
+      throw LoadError(file, "", fmt::format("is shard {} again", *shard + 1));
+    size_t first = 0, second = 0;
+    for (int line = 2; lines >> first; line++) {
+      if (!(lines >> second) || first >= second || second >= task.spectra.size())
+        throw LoadError(file, fmt::format("line {}", line), "is no pair of places");
+      pairs.emplace_back(first, second);
+    }
+    if (!lines.eof()) throw LoadError(file, "", "holds what is no pair of places");
+  }
+  return pairs;
+}
+
+// Prints which places of a picture match under one lamp alone.
+void print_places(const Options& options) {
+  const PlaceTask task = load_places(options);
+  if (!options.out.empty()) return write_shard(options, task);
+  const std::vector<Places> unlike =
+      options.merge.empty() ? find_unlike_places(task.nm, task.spectra, task.lamps, task.settings)
+                            : read_shards(options, task);
   const std::vector<PlacePair> pairs =
-      find_place_pairs(source.bands().nm, spectra, lamps, settings);
+      choose_place_pairs(task.nm, task.spectra, task.lamps, task.settings, unlike);
   std::cout << options.picture << ": CIEDE2000 between places, column and row of texels, of "
-            << names.size() << " that were compared\n";
+            << task.names.size() << " that were compared\n";
   if (pairs.empty())
-    std::cout << "  no two of them are nearer than " << settings.near_de00
-              << " under one lamp and farther than " << settings.far_de00 << " under another\n";
-  else std::cout << place_pairs_text(pairs, names, lamps);
+    std::cout << "  no two of them are nearer than " << task.settings.near_de00
+              << " under one lamp and farther than " << task.settings.far_de00
+              << " under another\n";
+  else std::cout << place_pairs_text(pairs, task.names, task.lamps);
 }
 
 // Writes a report to a file that was asked for.
@@ -185,6 +263,11 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--places", o.places, "of the picture that are compared, at most")
       ->check(CLI::Range(2, 10'000))
       ->capture_default_str();
+  CLI::Option* out = app.add_option("--out", o.out, "file of a shard's pairs of such places");
+  CLI::Option* shard = add_shard(app, o.shard, "i/N: a part of those pairs, for N machines");
+  shard->needs(out), out->needs(shard);
+  app.add_option("--merge", o.merge, "files of all shards: the table is made of them")
+      ->excludes(shard);
   app.add_flag("--list-lamps", o.list, "list lamps that have names");
 }
 
@@ -203,6 +286,8 @@ int main(int argc, char** argv) {
         std::cout << name << "  " << find_lamp(name)->about << "\n";
       return 0;
     }
+    if (options.picture.empty() && (!options.out.empty() || !options.merge.empty()))
+      throw CLI::RequiredError("--picture");
     if (!options.picture.empty()) print_places(options);
     if (options.package.empty() && options.pigments.empty() && options.glasses.empty()) {
       if (!options.picture.empty()) return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Connects to a NATS server; the library libnats is known here alone. Nobody who sends waits:
+// Connects to a NATS server, by libnats, which connect.h shows. Nobody who sends waits:
 // messages go through a bounded queue to a thread of their own, and are dropped while there is no
 // connection. A lost connection comes back by itself, however long that takes. Messages of others
 // are handed over on the library's threads.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sodium.h>
 #include <utility>
 
 #include "workers/bytes.h"
@@ -29,31 +28,20 @@ ByteWriter begin(Kind kind) {
 }
 
 std::string close(ByteWriter& out, const MessageKey& key) {
-  std::string bytes = std::move(out).bytes();
-  if (!key) return bytes;
-  std::array<uint8_t, crypto_auth_BYTES> seal;
-  crypto_auth(seal.data(), reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(),
-              key->data());
-  bytes.append(reinterpret_cast<const char*>(seal.data()), seal.size());
-  return bytes;
+  return seal(std::move(out).bytes(), key);
 }
 
 // Returns what is to be read of a message of that kind; nothing, if it is not one, or not sealed.
 std::string_view open(std::string_view bytes, const MessageKey& key, Kind kind) {
   if (bytes.size() > most_message_bytes) return {};
-  if (key) {
-    if (bytes.size() < crypto_auth_BYTES) return {};
-    const auto* begin = reinterpret_cast<const uint8_t*>(bytes.data());
-    const size_t size = bytes.size() - crypto_auth_BYTES;
-    if (crypto_auth_verify(begin + size, begin, size, key->data()) != 0) return {};
-    bytes.remove_suffix(crypto_auth_BYTES);
-  }
-  ByteReader in(bytes);
+  const std::optional<std::string_view> open = unseal(bytes, key);
+  if (!open) return {};
+  ByteReader in(*open);
   uint32_t found_magic = 0;
   Kind found{};
   in.take(found_magic), in.take(found);
   if (!in.good() || found_magic != magic || found != kind) return {};
-  return bytes.substr(sizeof magic + sizeof kind);
+  return open->substr(sizeof magic + sizeof kind);
 }
 
 // Says which fields of a ray or sample follow, as others have their usual values.
@@ -183,15 +171,6 @@ const char* to_word(Refusal refusal) {
                                            "scene", "light",   "state",        "technique",
                                            "late",  "busy",    "fetching",     "disk"};
   return words[size_t(refusal)];
-}
-
-MessageKey make_message_key(const std::string& secret) {
-  if (secret.empty()) return std::nullopt;
-  std::array<uint8_t, 32> key;
-  static_assert(crypto_auth_KEYBYTES == 32);
-  crypto_generichash(key.data(), key.size(), reinterpret_cast<const uint8_t*>(secret.data()),
-                     secret.size(), nullptr, 0);
-  return key;
 }
 
 bool is_worker_name(std::string_view name) {

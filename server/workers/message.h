@@ -18,6 +18,7 @@
 #include "light/transport_settings.h"
 #include "workers/package/package.h"
 #include "workers/report.h"
+#include "workers/sealed.h"
 
 namespace wellspring::workers {
 
@@ -85,10 +86,6 @@ struct FilePart {
   std::string bytes;              // none: there is no such file any more
 };
 inline constexpr size_t most_part_bytes = 256 * 1024;
-
-// Holds the key that a secret makes; none: messages are not sealed.
-using MessageKey = std::optional<std::array<uint8_t, 32>>;
-MessageKey make_message_key(const std::string& secret);  // a secret of any length; empty: no key
 
 std::string write_message(const TraceOrder& order, const MessageKey& key);
 std::string write_message(const TraceAnswer& answer, const MessageKey& key);

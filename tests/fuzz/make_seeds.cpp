@@ -18,6 +18,7 @@
 #include "unit/store/format/pictures.h"
 #include "unit/volume/format/volume_files.h"
 #include "unit/workers/messages.h"
+#include "workers/jobs/job_message.h"
 
 namespace wellspring::test {
 namespace {
@@ -300,6 +301,39 @@ void write_worker_messages(const Corpus& corpus) {
              write_message(CallAnswer{3, 4, "north", "0.1.0", "x86-64 avx2", 8}, none));
 }
 
+void write_job_messages(const Corpus& corpus) {
+  const MessageKey none;
+  corpus.put("job_message", "order",
+             write_job(JobOrder{"bake-hall-01",
+                                "0.1.0",
+                                "x86-64 avx2",
+                                77,
+                                8,
+                                {"bake", "content/hall", "--passes", "64"}},
+                       none));
+  corpus.put("job_message", "lamps",
+             write_job(JobOrder{"lamps-01",
+                                "0.1.0",
+                                "x86-64 avx2",
+                                77,
+                                1,
+                                {"lamps", "--lamp-file", "a.csv", "b.csv", "--picture", "p.tif"}},
+                       none));
+  corpus.put("job_message", "task", write_job(ShardTask{"bake-hall-01", 3, 1}, none));
+  corpus.put("job_message", "done",
+             write_job(JobEvent{"bake-hall-01",
+                                3,
+                                JobNews::done,
+                                9,
+                                2,
+                                1,
+                                "north",
+                                "",
+                                20,
+                                {{"4.bake", {1, 2, 3}, 4096}}},
+                       none));
+}
+
 }  // namespace
 }  // namespace wellspring::test
 
@@ -321,5 +355,6 @@ int main(int argc, char** argv) {
   write_many_bands(corpus);
   write_volumes(corpus);
   write_worker_messages(corpus);
+  write_job_messages(corpus);
   return 0;
 }

@@ -89,6 +89,7 @@ const may_enter = {
   },
   workers: {
     '': [],
+    jobs: [''],
   },
   kiosk: {
     frame: [],
@@ -157,11 +158,12 @@ const heavy = [
   [/^(dnnl|omp)/, ['denoise']],
   [/^sqlite3/, ['ledger']],
   [/^yaml-cpp/, ['spectrum']],
+  [/^nats\//, ['workers']],
 ];
 
 // The one header of a folder through which its own files reach a heavy library; no other folder may
 // see it.
-const gateways = ['server/stream/asio.h', 'server/world/embree.h'];
+const gateways = ['server/stream/asio.h', 'server/workers/connect.h', 'server/world/embree.h'];
 
 function* sources(folder, kind = /\.(h|cpp)$/) {
   for (const entry of readdirSync(folder, { withFileTypes: true })) {

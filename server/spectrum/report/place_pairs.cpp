@@ -68,23 +68,35 @@ bool repeats(const PlacePair& pair, const PlacePair& before, const PlaceLooks& l
 
 }  // namespace
 
-std::vector<PlacePair> find_place_pairs(const std::vector<double>& nm,
-                                        const std::vector<std::vector<double>>& places,
-                                        const std::vector<LampSpectrum>& lamps,
-                                        const LampReportSettings& settings) {
+std::vector<Places> find_unlike_places(const std::vector<double>& nm,
+                                       const std::vector<std::vector<double>>& places,
+                                       const std::vector<LampSpectrum>& lamps,
+                                       const LampReportSettings& settings, const Shard& shard) {
   const PlaceLooks looks = look_at(nm, places, lamps, settings.adaptation);
-  std::vector<std::vector<PlacePair>> found(places.size());
+  std::vector<std::vector<Places>> found(places.size());
   parallel_ranges(int(places.size()), 8, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++)
-      for (size_t k = i + 1; k < places.size(); k++) {
-        PlacePair pair = compare_places(looks, i, k);
+      for (size_t k = i + 1; k < places.size() && shard.has(i); k++) {
+        const PlacePair pair = compare_places(looks, i, k);
         if (pair.de00[pair.near_lamp] <= settings.near_de00 &&
             pair.de00[pair.far_lamp] >= settings.far_de00)
-          found[i].push_back(std::move(pair));
+          found[i].emplace_back(i, k);
       }
   });
+  std::vector<Places> all;
+  for (const std::vector<Places>& some : found) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
+std::vector<PlacePair> choose_place_pairs(const std::vector<double>& nm,
+                                          const std::vector<std::vector<double>>& places,
+                                          const std::vector<LampSpectrum>& lamps,
+                                          const LampReportSettings& settings,
+                                          std::vector<Places> unlike) {
+  const PlaceLooks looks = look_at(nm, places, lamps, settings.adaptation);
+  std::ranges::sort(unlike);
   std::vector<PlacePair> all;
-  for (std::vector<PlacePair>& some : found) std::ranges::move(some, std::back_inserter(all));
+  for (const auto& [first, second] : unlike) all.push_back(compare_places(looks, first, second));
   std::ranges::stable_sort(all, std::greater(), gap_of);
   std::vector<PlacePair> pairs;
   for (PlacePair& pair : all) {

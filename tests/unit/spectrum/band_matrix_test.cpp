@@ -64,7 +64,9 @@ TEST(PlacePairs, APaintAndItsRetouchingAreFound) {
   const std::vector<LampSpectrum> lamps = {*find_lamp("D65"), *find_lamp("A"), *find_lamp("FL11")};
   const LampReportSettings settings{.near_de00 = 1, .far_de00 = 2};
   // The retouching is there twice: the second pair tells nothing new.
-  const auto pairs = find_place_pairs(nm, {paint, other, retouching, retouching}, lamps, settings);
+  const std::vector<std::vector<double>> places{paint, other, retouching, retouching};
+  const auto unlike = find_unlike_places(nm, places, lamps, settings);
+  const auto pairs = choose_place_pairs(nm, places, lamps, settings, unlike);
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].first, 0u);
   EXPECT_EQ(pairs[0].second, 2u);
@@ -83,7 +85,16 @@ TEST(PlacePairs, APaintAndItsRetouchingAreFound) {
   }
   const std::string text = place_pairs_text(pairs, {"1, 1", "2, 2", "3, 3", "4, 4"}, lamps);
   EXPECT_NE(text.find("1, 1    3, 3        0.0"), std::string::npos) << text;
-  EXPECT_TRUE(find_place_pairs(nm, {paint, other}, lamps, settings).empty());
+  EXPECT_TRUE(find_unlike_places(nm, {paint, other}, lamps, settings).empty());
+  // Shards find them together, each pair once.
+  auto second = find_unlike_places(nm, places, lamps, settings, {1, 2});
+  const auto first = find_unlike_places(nm, places, lamps, settings, {0, 2});
+  EXPECT_LT(first.size(), unlike.size());
+  second.insert(second.end(), first.begin(), first.end());
+  EXPECT_EQ(second.size(), unlike.size());
+  const auto merged = choose_place_pairs(nm, places, lamps, settings, second);
+  ASSERT_EQ(merged.size(), 1u);
+  EXPECT_EQ(merged[0].de00, pairs[0].de00);
 }
 
 }  // namespace
