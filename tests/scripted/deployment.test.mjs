@@ -5,15 +5,16 @@
 // WELLSPRING_NODES_VISITORS: how many there are (6).
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { appendFileSync, cpSync, existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync }
-  from 'node:fs';
+import { appendFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, symlinkSync,
+  writeFileSync } from 'node:fs';
 import net from 'node:net';
-import { dirname, join } from 'node:path';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { deadline, run, sleep, source, until } from '../server.mjs';
+import { load_module, run, source, until } from '../server.mjs';
 import { Machine, add_address, enter_own_namespaces, here, make_net, network, read_unit }
   from './machines.mjs';
+import { start_name_server } from './name_server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 import { ReturningPage, all_come_back } from './returning_page.mjs';
 
@@ -28,7 +29,7 @@ const names = ['node1', 'node2', 'node3'], workers = ['worker1', 'worker2'];
 const front = { url: `http://${network(9)}/`, ws: `ws://${network(9)}` };
 const machines = new Map();
 const pages = [];
-let walker, walks, admin;
+let walker, walks, admin, name_server;
 
 // A unit of Debian's, where it is installed, with ours over it.
 function unit(name) {
@@ -54,12 +55,14 @@ function read_socket(place, words = '') {
   });
 }
 
-// What HAProxy thinks of a server: the column of its row.
-async function thought(name, column) {
-  const rows = (await read_socket({ path: join(folder, 'haproxy.sock') }, 'show stat\n'))
+// What HAProxy thinks of its servers: {name: {column: text}}.
+async function thoughts(asked = 'haproxy.sock') {
+  const [head, ...rows] = (await read_socket({ path: join(folder, asked) }, 'show stat\n'))
       .split('\n').map((row) => row.split(','));
-  return rows.find((row) => row[1] === name)[rows[0].indexOf(column)];
+  return Object.fromEntries(rows.filter((row) => row[0] === 'nodes').map((row) =>
+    [row[1], Object.fromEntries(head.map((column, i) => [column, row[i]]))]));
 }
+const thought = async (name, column) => (await thoughts())[name][column];
 const served = (name) => until(async () => await healthy(name)
     && (await thought(name, 'status')).startsWith('UP'), () => machines.get(name).said('server'));
 
@@ -74,9 +77,11 @@ async function metrics(name) {
 
 function make_machines() {
   const last = { nats: 5, proxy: 9, node1: 1, node2: 2, node3: 3, worker1: 11, worker2: 12 };
-  make_net(folder, Object.fromEntries(Object.entries(last).map(([name, at]) => [name, network(at)])));
+  make_net(folder,
+      Object.fromEntries(Object.entries(last).map(([name, at]) => [name, network(at)])));
   for (const [name, at] of Object.entries(last)) machines.set(name, new Machine(folder, name, at));
-  const made = spawnSync('sh', [deploy('secrets.sh'), join(folder, 'secrets')], { encoding: 'utf8' });
+  const made = spawnSync('sh', [deploy('secrets.sh'), join(folder, 'secrets')],
+      { encoding: 'utf8' });
   assert.equal(made.status, 0, made.stderr);
   // This test judges no picture: the cores are for as many visitors as it asks for.
   const little_light = ['technique = direct', 'still-technique = direct'];
@@ -101,29 +106,31 @@ function make_machines() {
 // HAProxy with the words of haproxy.env; `asked`: where this test asks it what it thinks.
 function start_proxy(words, asked) {
   const machine = machines.get('proxy');
+  rmSync(join(folder, asked), { force: true });
   machine.configure('haproxy-nodes.cfg', deploy('haproxy-nodes.cfg'),
-      ['global', `  stats socket ${join(folder, asked)} level user`]);
+      ['global', `  stats socket ${join(folder, asked)} level operator`]);
   writeFileSync(join(machine.root, 'etc/wellspring/haproxy.env'),
       Object.entries(words).map(([key, value]) => `${key}=${value}\n`).join(''));
-  return machine.start(asked, unit('haproxy'));
+  machine.start(asked, unit('haproxy'));
+  return until(() => existsSync(join(folder, asked)), () => machine.said(asked));
 }
 
 before(async () => {
   if (skip) return;
   mkdirSync(join(folder, 'content'));
-  await run('wellspring_new', ['giza', write_pyramid(folder), '--content', join(folder, 'content')]);
+  await run('wellspring_new',
+      ['giza', write_pyramid(folder), '--content', join(folder, 'content')]);
   make_machines();
   start_nats();
   names.forEach(start_server);
   for (const name of workers) machines.get(name).start('worker', unit('wellspring-worker'));
-  start_proxy({ MUSEUM: ':80', ...Object.fromEntries(names.map((name) =>
+  await start_proxy({ MUSEUM: ':80', ...Object.fromEntries(names.map((name) =>
     [name.toUpperCase(), `${machines.get(name).address}:8080`])) }, 'haproxy.sock');
-  for (const name of names) await until(() => healthy(name), () => machines.get(name).said('server'));
-  await until(() => existsSync(join(folder, 'haproxy.sock')), () => machines.get('proxy').said('haproxy.sock'));
   for (const name of names) await served(name);
 });
 after(async () => {
   clearInterval(walks);
+  name_server?.close();
   await Promise.all([walker, ...pages].map((page) => page?.leave()));
   for (const machine of machines.values())
     for (const name of machine.processes.keys()) await machine.stop(name, 'SIGKILL');
@@ -132,8 +139,8 @@ after(async () => {
 const on = (name) => pages.filter((page) => page.cookie === name);
 const lines_of = (some) => some.map((page) => page.lines);
 const seconds = (ms) => `${(ms / 1000).toFixed(1)} s`;
-const tell = (context, came, since) => context.diagnostic(`${came.length} visits have a picture of ` +
-    `the same pose again after ${seconds(came[came.length >> 1] - since)} (median), ` +
+const tell = (context, came, since) => context.diagnostic(`${came.length} visits have a picture ` +
+    `of the same pose again after ${seconds(came[came.length >> 1] - since)} (median), ` +
     `${seconds(came.at(-1) - since)} (all)`);
 
 test('each server weighs what it says that it serves', { skip }, async () => {
@@ -171,7 +178,8 @@ const pictures_go_on = async () => { for (let k = 0; k < 3; k++) await walker.li
 
 test('samples come from both workers, and Prometheus is told', { skip }, async () => {
   await begin_to_walk();
-  const some = (all, name) => [...all].filter(([series]) => series.startsWith(`wellspring_${name}{`));
+  const some = (all, name) => [...all]
+      .filter(([series]) => series.startsWith(`wellspring_${name}{`));
   await until(async () => {
     const busy = some(await metrics(walker.cookie), 'worker_samples_total')
         .filter(([, samples]) => samples > 100);
@@ -231,7 +239,50 @@ test('one server after the other is upgraded: no visit is lost', { skip }, async
   }
   await pictures_go_on();
   const gaps = pages.flatMap((page) => page.gaps).sort((a, b) => a - b);
-  context.diagnostic(`three servers upgraded in ${seconds(performance.now() - since)}; ${gaps.length} ` +
-      `times a visit moved, without a picture for ${gaps[gaps.length >> 1].toFixed(1)} s (median), ` +
-      `${gaps.at(-1).toFixed(1)} s (longest)`);
+  context.diagnostic(`three servers upgraded in ${seconds(performance.now() - since)}; ` +
+      `${gaps.length} times a visit moved, without a picture for ` +
+      `${gaps[gaps.length >> 1].toFixed(1)} s (median), ${gaps.at(-1).toFixed(1)} s (longest)`);
+});
+
+test('where DNS names the servers, they come and go by it', { skip }, async () => {
+  // HAProxy's environment is that of its pod in Kubernetes.
+  const [container] = load_module('yaml').parseAllDocuments(
+      readFileSync(deploy('kubernetes/proxy.yaml'), 'utf8')).map((one) => one.toJS())
+      .find(({ kind }) => kind === 'Deployment').spec.template.spec.containers;
+  const words = Object.fromEntries(container.env.filter(({ value }) => value)
+      .map(({ name, value }) => [name, value.replace('$(NAMESPACE)', 'museum')]));
+  const address = (name) => machines.get(name).address;
+  const there = new Set(names.slice(0, 2).map(address));
+  name_server = await start_name_server(here, { [words.NODES.split(':')[0]]: there });
+  await start_proxy(words, 'dns.sock');
+  const up = async (...wanted) => {
+    const found = Object.values(await thoughts('dns.sock'))
+        .filter((one) => one.status.startsWith('UP') && one.addr).map(({ addr }) => addr);
+    return wanted.every((name) => found.includes(`${address(name)}:8080`))
+        && found.length === wanted.length;
+  };
+  const say = () => machines.get('proxy').said('dns.sock');
+  await until(() => up('node1', 'node2'), say);
+  const place = `${network(9)}${words.MUSEUM}`, own = [];
+  for (let k = 0; k < 4; k++) {
+    const page = new ReturningPage({ url: `http://${place}/`, ws: `ws://${place}` },
+        { position: [0, 1.6, 0.2 * k], yaw: 0.1 * k, pitch: 0 }, here);
+    pages.push(page);
+    own.push(page);
+    await page.enter();
+  }
+  const cookies = new Set(own.map(({ cookie }) => cookie));
+  assert.equal(cookies.size, 2, 'a cookie for each server');
+  // As a rollout goes: a new server is named; an old one drains, ends, and is named no more.
+  there.add(address('node3'));
+  await until(() => up('node1', 'node2', 'node3'), say);
+  const { cookie } = Object.values(await thoughts('dns.sock'))
+      .find(({ addr }) => addr === `${address('node1')}:8080`);
+  const lost = own.filter((page) => page.cookie === cookie), lines = lines_of(lost);
+  assert.ok(lost.length > 0 && lost.length < own.length);
+  assert.equal(await machines.get('node1').stop('server'), 0);
+  there.delete(address('node1'));
+  await all_come_back(lost, lines);
+  await until(() => up('node2', 'node3'), say);
+  for (const page of own) assert.equal(page.closes.length, lost.includes(page) ? 1 : 0);
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A visitor as the page is one (web/connection.js): it keeps its cookie and the text that tells where
-// its visit is, and comes back by itself, later each time.
+// A visitor as the page is one (web/connection.js): it keeps its cookie and the text that tells
+// where its visit is, and comes back by itself, later each time.
 import assert from 'node:assert/strict';
 import http from 'node:http';
 import { Visitor, deadline, read_picture, sleep } from '../server.mjs';

@@ -80,7 +80,8 @@ const composed = ['compose.yaml', 'compose.museum.yaml']
 
 test('the compose files are of compose\'s schema, and a damaged one is not', () => {
   const ajv = new Ajv({ unknownFormats: 'ignore', logger: false });
-  const fits = ajv.compile({ ...schema, $schema: undefined });  // a later draft; nothing of it is used
+  // The schema names a later draft, of which it uses nothing.
+  const fits = ajv.compile({ ...schema, $schema: undefined });
   for (const [name, file] of composed) {
     assert.ok(fits(file), `${name}: ${ajv.errorsText(fits.errors)}`);
     for (const damage of [(one) => { one.comand = []; }, (one) => { one.mem_limit = {}; },
@@ -114,7 +115,8 @@ test('compose names targets, services and files that there are', () => {
       }
     }
   const { volumes } = composed[0][1].services.server;
-  assert.deepEqual(volumes.map((one) => one.split(':')[1]), JSON.parse(steps('server', 'VOLUME')[0]));
+  assert.deepEqual(volumes.map((one) => one.split(':')[1]),
+      JSON.parse(steps('server', 'VOLUME')[0]));
 });
 
 test('a composed museum speaks to its parts as their files say', () => {
@@ -125,7 +127,7 @@ test('a composed museum speaks to its parts as their files say', () => {
   assert.equal(proxy.ports[0].split(':').at(-1), proxy.environment.MUSEUM.slice(1));
   for (const address of [value('server.conf', 'workers'), value('worker.conf', 'nats')])
     assert.equal(address, `nats://nats:${nats.environment.NATS_LISTEN.split(':')[1]}`);
-  assert.ok(nats.ports.every((port) => port.startsWith('${NATS_ADDRESS:-127.0.0.1}:')), 'not for all');
+  assert.ok(nats.ports.every((port) => port.startsWith('${NATS_ADDRESS:-127.0.0.1}:')));
   for (const [one, file] of [[server, 'server.conf'], [worker, 'worker.conf'], [nats, 'nats.conf'],
     [proxy, 'haproxy-nodes.cfg']])
     assert.ok(one.volumes.includes(`../deploy/${file}:/etc/wellspring/${file}:ro`), file);

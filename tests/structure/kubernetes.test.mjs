@@ -151,8 +151,8 @@ test('files and secrets that pods mount are made', () => {
   const { status, stderr } = spawnSync('sh', [join(deploy, 'secrets.sh'), folder],
       { encoding: 'utf8' });
   assert.equal(status, 0, stderr);
-  const keys = [...readFileSync(join(folder, 'secrets.env'), 'utf8').matchAll(/^(\w+)=[a-z]\w{47,}$/gm)]
-      .map(([, key]) => key);
+  const keys = [...readFileSync(join(folder, 'secrets.env'), 'utf8')
+      .matchAll(/^(\w+)=[a-z]\w{47,}$/gm)].map(([, key]) => key);
   assert.equal(keys.length, 3);
   assert.equal(readFileSync(join(folder, 'seal.key')).length, 32);
   const told = new Map([...read('deploy/kubernetes/namespace.yaml')
@@ -168,8 +168,8 @@ test('files and secrets that pods mount are made', () => {
     const known = new Map([...volumes.map((volume) => [volume.name, volume]),
       ...claims.map(({ metadata }) => [metadata.name, {}])]);
     for (const { env = [], envFrom = [], volumeMounts = [], args } of containers) {
-      for (const { valueFrom } of env)
-        if (valueFrom?.secretKeyRef) secret(valueFrom.secretKeyRef.name, valueFrom.secretKeyRef.key);
+      for (const { name, key } of env.map((one) => one.valueFrom?.secretKeyRef).filter(Boolean))
+        secret(name, key);
       for (const { secretRef } of envFrom) secret(secretRef.name);
       for (const { name, subPath, mountPath } of volumeMounts) {
         const volume = known.get(name) ?? assert.fail(`${app_of(one)} has no volume ${name}`);
@@ -189,11 +189,13 @@ const config_of = async (program, file) => {
   const { status, stdout, stderr } = await run(program, ['--config', join(deploy, file),
     '--print-config']);
   assert.equal(status, 0, stderr);
-  return new Map([...stdout.matchAll(/^([a-z-]+) = (.*)$/gm)].map(([, key, value]) => [key, value]));
+  return new Map([...stdout.matchAll(/^([a-z-]+) = (.*)$/gm)]
+      .map(([, key, value]) => [key, value]));
 };
 
 test('the programs know what they are told, and it is what the manifests say', async () => {
-  for (const [name, program] of [['server', 'wellspring_server'], ['worker', 'wellspring_worker']]) {
+  for (const name of ['server', 'worker']) {
+    const program = `wellspring_${name}`;
     const { stdout } = await run(program, ['--help']);
     const [{ args, env = [] }] = pod_of(named('Deployment', name)).containers;
     for (const word of args.filter((one) => one.startsWith('-')))
@@ -226,7 +228,8 @@ const environment = (container) => Object.fromEntries(container.env.map(({ name,
 test('HAProxy and NATS take their files with the environment of their pods', async (context) => {
   const [proxy] = pod_of(of_app('proxy')).containers, [nats] = pod_of(of_app('nats')).containers;
   const env = environment(proxy), server = await config_of('wellspring_server', 'server.conf');
-  assert.equal(env.NODES, `servers.${kustomization.namespace}.svc.cluster.local:${server.get('port')}`);
+  assert.equal(env.NODES,
+      `servers.${kustomization.namespace}.svc.cluster.local:${server.get('port')}`);
   assert.equal(env.AGENT, server.get('agent-port'));
   assert.equal(env.MUSEUM, `:${proxy.ports[0].containerPort}`);
   assert.equal(environment(nats).NATS_LISTEN, `0.0.0.0:${nats.ports[0].containerPort}`);
@@ -265,7 +268,8 @@ test('kubectl makes one whole of it', (context) => {
   if (error) return context.skip('there is no kubectl here');
   assert.equal(status, 0, stderr);
   const whole = yaml.parseAllDocuments(stdout).map((one) => one.toJS());
-  const kinds = (list) => list.map(({ kind }) => kind).filter((kind) => kind !== 'ConfigMap').sort();
+  const kinds = (list) => list.map(({ kind }) => kind).filter((kind) => kind !== 'ConfigMap')
+      .sort();
   assert.deepEqual(kinds(whole), kinds(all));
   assert.deepEqual(problems(whole), []);
   assert.ok(!/image: wellspring-/.test(stdout), 'images come from a registry');
