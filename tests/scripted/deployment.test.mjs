@@ -2,7 +2,8 @@
 // A museum that outgrew one machine (docs/deploy.md): three servers behind HAProxy, NATS and two
 // workers, each on a machine of its own, started by the units and configurations of deploy/. Visits
 // outlive a server that is killed and an upgrade of all of them, pictures outlive NATS.
-// WELLSPRING_NODES_VISITORS: how many there are (6).
+// WELLSPRING_NODES_VISITORS: how many there are (6). WELLSPRING_NODES_EXHIBIT: what they visit, in
+// all of its light (a pyramid in little).
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { appendFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, symlinkSync,
@@ -24,12 +25,13 @@ const absent = ['haproxy', 'nats-server'].find((name) => spawnSync(name, ['-v'],
 const skip = no_namespaces ?? (absent ? `${absent} is not installed` : false);
 
 const count = Number(process.env.WELLSPRING_NODES_VISITORS ?? 6);
+const exhibit = process.env.WELLSPRING_NODES_EXHIBIT ?? '';
 const deploy = (name) => join(source, 'deploy', name);
 const names = ['node1', 'node2', 'node3'], workers = ['worker1', 'worker2'];
 const front = { url: `http://${network(9)}/`, ws: `ws://${network(9)}` };
 const machines = new Map();
 const pages = [];
-let walker, walks, admin, name_server;
+let walker, walks, admin, name_server, centre;
 
 // A unit of Debian's, where it is installed, with ours over it.
 function unit(name) {
@@ -84,9 +86,9 @@ function make_machines() {
       { encoding: 'utf8' });
   assert.equal(made.status, 0, made.stderr);
   // This test judges no picture: the cores are for as many visitors as it asks for.
-  const little_light = ['technique = direct', 'still-technique = direct'];
+  const little_light = exhibit ? [] : ['technique = direct', 'still-technique = direct'];
   const house = [...little_light, 'bake = false', 'fps = 10', 'least-fps = 0.01',
-    `max-visitors = ${count + 1}`];
+    `max-visitors = ${count + 5}`];
   for (const [name, machine] of machines) {
     const etc = join(machine.root, 'etc/wellspring');
     for (const file of ['secrets.env', 'seal.key'])
@@ -117,9 +119,11 @@ function start_proxy(words, asked) {
 
 before(async () => {
   if (skip) return;
-  mkdirSync(join(folder, 'content'));
-  await run('wellspring_new',
-      ['giza', write_pyramid(folder), '--content', join(folder, 'content')]);
+  const content = join(folder, 'content'), shown = join(content, exhibit || 'giza');
+  mkdirSync(content);
+  if (exhibit) symlinkSync(join(source, 'content', exhibit), shown);
+  else await run('wellspring_new', ['giza', write_pyramid(folder), '--content', content]);
+  centre = JSON.parse(readFileSync(join(shown, 'exhibit.json'), 'utf8')).viewpoints[0].position;
   make_machines();
   start_nats();
   names.forEach(start_server);
@@ -152,12 +156,14 @@ test('each server weighs what it says that it serves', { skip }, async () => {
     await until(async () => await said(name) === await thought(name, 'weight'), 'HAProxy hears it');
 });
 
+const beside = (x, z) => [centre[0] + x, centre[1], centre[2] + z];
+
 test('visitors are spread, and each stays with one server', { skip }, async () => {
   for (let k = 0; k < count; k++) {
     const way = 2 * Math.PI * k / count, address = `10.97.1.${k + 1}`;
     add_address(address);
-    pages.push(new ReturningPage(front, { position: [0.5 * Math.sin(way), 1.6, 0.5 * Math.cos(way)],
-      yaw: way - 3, pitch: -0.1 }, address));
+    const position = beside(0.5 * Math.sin(way), 0.5 * Math.cos(way));
+    pages.push(new ReturningPage(front, { position, yaw: way - 3, pitch: -0.1 }, address));
     await pages.at(-1).enter();
   }
   for (const name of names) assert.ok(on(name).length > 0, `nobody is on ${name}`);
@@ -166,7 +172,7 @@ test('visitors are spread, and each stays with one server', { skip }, async () =
 
 // Somebody looks around all the time, so that there is something to trace and to show.
 async function begin_to_walk() {
-  walker = new ReturningPage(front, { position: [0, 1.6, 1], yaw: 0, pitch: 0 }, here);
+  walker = new ReturningPage(front, { position: beside(0, 0.3), yaw: 0, pitch: 0 }, here);
   await walker.enter();
   let seq = 1;
   walks = setInterval(() => {
@@ -266,7 +272,7 @@ test('where DNS names the servers, they come and go by it', { skip }, async () =
   const place = `${network(9)}${words.MUSEUM}`, own = [];
   for (let k = 0; k < 4; k++) {
     const page = new ReturningPage({ url: `http://${place}/`, ws: `ws://${place}` },
-        { position: [0, 1.6, 0.2 * k], yaw: 0.1 * k, pitch: 0 }, here);
+        { position: beside(0, 0.2 * k), yaw: 0.1 * k, pitch: 0 }, here);
     pages.push(page);
     own.push(page);
     await page.enter();
