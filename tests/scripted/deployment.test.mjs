@@ -147,13 +147,16 @@ const tell = (context, came, since) => context.diagnostic(`${came.length} visits
     `of the same pose again after ${seconds(came[came.length >> 1] - since)} (median), ` +
     `${seconds(came.at(-1) - since)} (all)`);
 
+// What a server says itself, in percent.
+async function weight_of(name) {
+  const line = await read_socket({ host: machines.get(name).address, port: 8090 });
+  return /^(\d+)%\n$/.exec(line)[1];
+}
+
 test('each server weighs what it says that it serves', { skip }, async () => {
-  const said = async (name) => {
-    const line = await read_socket({ host: machines.get(name).address, port: 8090 });
-    return /^(\d+)%\n$/.exec(line)[1];
-  };
   for (const name of names)
-    await until(async () => await said(name) === await thought(name, 'weight'), 'HAProxy hears it');
+    await until(async () => await weight_of(name) === await thought(name, 'weight'),
+        'HAProxy hears it');
 });
 
 const beside = (x, z) => [centre[0] + x, centre[1], centre[2] + z];
@@ -282,8 +285,10 @@ test('where DNS names the servers, they come and go by it', { skip }, async () =
   // As a rollout goes: a new server is named; an old one drains, ends, and is named no more.
   there.add(address('node3'));
   await until(() => up('node1', 'node2', 'node3'), say);
-  const { cookie } = Object.values(await thoughts('dns.sock'))
+  const node1 = async () => Object.values(await thoughts('dns.sock'))
       .find(({ addr }) => addr === `${address('node1')}:8080`);
+  await until(async () => (await node1()).weight === await weight_of('node1'), say);
+  const { cookie } = await node1();
   const lost = own.filter((page) => page.cookie === cookie), lines = lines_of(lost);
   assert.ok(lost.length > 0 && lost.length < own.length);
   assert.equal(await machines.get('node1').stop('server'), 0);
