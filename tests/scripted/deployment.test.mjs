@@ -215,6 +215,15 @@ test('a server is killed: its visits go on with others', { skip }, async (contex
   await served(killed);
 });
 
+test('a server falls off the net: its visits go on with others', { skip }, async (context) => {
+  const gone = names.find((name) => name !== walker.cookie && on(name).length > 0);
+  const lost = on(gone), lines = lines_of(lost), since = performance.now();
+  machines.get(gone).plug(false);
+  tell(context, await all_come_back(lost, lines), since);
+  machines.get(gone).plug(true);
+  await served(gone);
+});
+
 test('NATS is killed: pictures go on, and workers come back with it', { skip }, async () => {
   await machines.get('nats').stop('nats', 'SIGKILL');
   const connected = async () => (await metrics(walker.cookie)).get('wellspring_workers_connected');

@@ -141,5 +141,7 @@ export class Machine {
     child.kill(signal);
     return ended;
   }
+  // Pulls its plug out of the net, or puts it in again.
+  plug(is_in) { ip(`-n ${this.name} link set museum ${is_in ? 'up' : 'down'}`); }
   said(name) { return this.processes.get(name).said; }
 }
