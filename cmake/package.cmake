@@ -6,7 +6,7 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME server)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # packing builds nothing: not the tests, above all
 set(server_programs wellspring_server wellspring_voice wellspring_render wellspring_avatar
   wellspring_clip wellspring_speak wellspring_check wellspring_new wellspring_import wellspring_bake
-  wellspring_nebula wellspring_worker wellspring_jobs wellspring_compare wellspring_lamps)
+  wellspring_nebula wellspring_worker wellspring_jobs wellspring_plan wellspring_compare wellspring_lamps)
 install(TARGETS ${server_programs} DESTINATION libexec/wellspring COMPONENT server)
 install(TARGETS wellspring_kiosk wellspring_station DESTINATION libexec/wellspring COMPONENT kiosk)
 install(PROGRAMS deploy/wellspring.sh DESTINATION bin RENAME wellspring)
@@ -19,6 +19,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/weights/face ${PROJECT_SOURCE_DIR}
   DESTINATION share/wellspring/weights COMPONENT kiosk OPTIONAL)
 install(FILES deploy/nginx.conf deploy/haproxy.cfg docs/operation.md docs/kiosk.md docs/stories.md README.md CHANGELOG.md
   DESTINATION share/doc/wellspring)
+install(FILES docs/deploy.md docs/nodes.md docs/workers.md DESTINATION share/doc/wellspring)
+install(FILES deploy/haproxy-nodes.cfg deploy/nats.conf deploy/server.conf deploy/worker.conf
+  DESTINATION share/doc/wellspring/museum)
+install(PROGRAMS deploy/secrets.sh DESTINATION share/doc/wellspring/museum)
+install(DIRECTORY deploy/systemd/nats-server.service.d deploy/systemd/haproxy.service.d
+  DESTINATION share/doc/wellspring/museum)
 install(FILES LICENSE DESTINATION share/doc/wellspring RENAME copyright)
 install(FILES LICENSE DESTINATION share/doc/wellspring-kiosk RENAME copyright COMPONENT kiosk)
 
@@ -43,6 +49,8 @@ function(wellspring_install_text component file place)
 endfunction()
 wellspring_install_text(server deploy/systemd/wellspring-server.service.in
   "\${prefix}/lib/systemd/system/wellspring-server.service")
+wellspring_install_text(server deploy/systemd/wellspring-worker.service.in
+  "\${prefix}/lib/systemd/system/wellspring-worker.service")
 wellspring_install_text(kiosk deploy/systemd/wellspring-kiosk.service.in
   "\${prefix}/lib/systemd/system/wellspring-kiosk.service")
 wellspring_install_text(kiosk deploy/systemd/wellspring-screen.service.in
@@ -65,6 +73,9 @@ wellspring_install_settings(server "\${settings}/server.conf"
   "\"${CMAKE_COMMAND}\" -E env --unset=WELLSPRING_WEIGHTS --unset=WELLSPRING_LOG
     \"${CMAKE_BINARY_DIR}/bin/wellspring_server\" --content /var/lib/wellspring/exhibits
     --cache /var/cache/wellspring --sums /var/lib/wellspring/sums.sqlite --print-config")
+wellspring_install_settings(server "\${settings}/worker.conf"
+  "\"${CMAKE_COMMAND}\" -E env \"${CMAKE_BINARY_DIR}/bin/wellspring_worker\"
+    --content /var/lib/wellspring/exhibits --cache /var/cache/wellspring/worker --print-config")
 wellspring_install_settings(server "\${etc}/logrotate.d/wellspring"
   "\"${CMAKE_COMMAND}\" -E cat \"${PROJECT_SOURCE_DIR}/deploy/logrotate\"")
 wellspring_install_settings(kiosk "\${settings}/kiosk.json"
@@ -108,6 +119,6 @@ foreach(package server kiosk)
     ${CMAKE_BINARY_DIR}/debian/${package}/conffiles)
 endforeach()
 file(WRITE ${CMAKE_BINARY_DIR}/debian/server/conffiles
-  "/etc/wellspring/server.conf\n/etc/logrotate.d/wellspring\n")
+  "/etc/wellspring/server.conf\n/etc/wellspring/worker.conf\n/etc/logrotate.d/wellspring\n")
 file(WRITE ${CMAKE_BINARY_DIR}/debian/kiosk/conffiles "/etc/wellspring/kiosk.json\n")
 include(CPack)

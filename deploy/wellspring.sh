@@ -11,9 +11,9 @@ command="${1:-}"
 [ $# -eq 0 ] || shift
 case "$command" in
   run) command=server ;;
-  kiosk | station | render | avatar | speak | clip | bake | new | import | nebula | compare | lamps | check | worker | jobs) ;;
+  kiosk | station | render | avatar | speak | clip | bake | new | import | nebula | compare | lamps | check | worker | jobs | plan) ;;
   *)
-    echo "usage: wellspring run | kiosk | station | render | avatar | speak | clip | new | import | nebula | compare | lamps | check | bake | worker | jobs [options]
+    echo "usage: wellspring run | kiosk | station | render | avatar | speak | clip | new | import | nebula | compare | lamps | check | bake | worker | jobs | plan [options]
 COMMAND --help tells the options. The service is wellspring-server; its settings are in
 /etc/wellspring/server.conf." >&2
     exit 2 ;;

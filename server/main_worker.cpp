@@ -18,7 +18,9 @@
 
 #include "about/version.h"
 #include "base/clock.h"
+#include "base/host.h"
 #include "base/log.h"
+#include "config/config_file.h"
 #include "show/exhibit/load/exhibit_load.h"
 #include "show/state/make_show.h"
 #include "show/workers/workshop.h"
@@ -201,10 +203,8 @@ int main(int argc, char** argv) {
   log::start("worker");
   CLI::App app{"Traces samples of exhibits for servers on other machines."};
   Options options;
-  options.name = default_name();
   app.option_defaults()->always_capture_default();
-  app.add_option("--nats", options.channel.url, "address of NATS, e.g. nats://10.0.0.5:4222")
-      ->required();
+  app.add_option("--nats", options.channel.url, "address of NATS, e.g. nats://10.0.0.5:4222");
   app.add_option("--content", options.content, "folder of exhibit packages, as the server's");
   app.add_option("--exhibit", options.exhibit, "id of the only one that is loaded at the start");
   app.add_option("--cache", options.cache,
@@ -212,7 +212,8 @@ int main(int argc, char** argv) {
   app.add_option("--fetch-most", options.fetch_most,
                  "GiB of an exhibit that may be fetched; 0: none is")
       ->check(CLI::Range(0.0, 1024.0));
-  app.add_option("--name", options.name, "of this worker; those of one name share its orders");
+  app.add_option("--name", options.name,
+                 "of this worker; those of one name share its orders; empty: a name of its own");
   app.add_option("--cores", options.cores, "that it may use; 0: all")->check(CLI::Range(0, 1024));
   app.add_option("--technique", options.show.technique, "as the server's");
   app.add_option("--still-technique", options.show.still_technique, "as the server's");
@@ -223,11 +224,20 @@ int main(int argc, char** argv) {
   app.add_option("--nats-ca", options.channel.authority, "certificates that sign that of NATS");
   app.add_option("--nats-cert", options.channel.certificate, "this client's certificate in PEM");
   app.add_option("--nats-key", options.channel.key, "its key in PEM");
+  add_config(app, installed_config("worker.conf"));
   try {
-    app.parse(argc, argv);
+    parse_with_config(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const ConfigError& error) {
+    std::cerr << "error: " << error.what() << "\n";
+    return 1;
   }
+  if (options.channel.url.empty()) {
+    std::cerr << "wellspring worker: --nats is missing: the address of NATS\n";
+    return 2;
+  }
+  if (options.name.empty()) options.name = default_name();
   if (!is_worker_name(options.name)) {
     std::cerr << "--name " << options.name << ": 1 to 32 letters, digits, - and _ are expected\n";
     return 2;

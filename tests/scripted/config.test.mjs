@@ -34,6 +34,20 @@ test('what is printed has every option, and is read as it was', async () => {
   assert.equal(set(again.stdout), aloud);
 });
 
+test('a worker reads such a file, too, and says what it lacks', async () => {
+  const file = write('nats = nats://10.0.0.5:4222\ncores = 1\n');
+  const { status, stdout } = await run('wellspring_worker', ['--config', file, '--print-config']);
+  assert.equal(status, 0);
+  assert.match(stdout, /^nats = nats:\/\/10\.0\.0\.5:4222$/m);
+  assert.match(stdout, /^cores = 1$/m);
+  const without = await run('wellspring_worker', ['--config', write('cores = 1\n')]);
+  assert.equal(without.status, 2);
+  assert.match(without.stderr, /--nats is missing/);
+  const wrong = await run('wellspring_worker', ['--config', write('nuts = 1\n')]);
+  assert.equal(wrong.status, 1);
+  assert.match(wrong.stderr, /a\.conf: line 1: .*nuts/);
+});
+
 test('a wrong file is named with its lines, and nothing starts', async () => {
   const file = write('port = 8080\n\nprot = 1\ntechnique = majic\nwatch = perhaps\nport = 1\n');
   const { status, stdout, stderr } = await run('wellspring_server', ['--config', file]);

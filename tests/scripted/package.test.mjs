@@ -4,7 +4,7 @@
 // Debian that debootstrap has made for this test.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { appendFileSync, copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync,
+import { appendFileSync, copyFileSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync,
   readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
@@ -63,6 +63,7 @@ test('the packages say what they need and what an operator may change', () => {
 test('nothing that is installed knows where it was built', () => {
   const units = 'usr/lib/systemd/system';
   for (const name of ['etc/wellspring/server.conf', `${units}/wellspring-server.service`,
+    'etc/wellspring/worker.conf', `${units}/wellspring-worker.service`,
     `${units}/wellspring-kiosk.service`, 'usr/lib/systemd/user/wellspring-screen.service'])
     assert.ok(!readFileSync(join(root, name), 'utf8').includes(folder), name);
   const unit = readFileSync(join(root, units, 'wellspring-server.service'), 'utf8');
@@ -101,8 +102,23 @@ test('the server runs from where it is unpacked, with what lies beside it', asyn
 test('the words of the documents work once installed', () => {
   const wellspring = join(root, 'usr/bin/wellspring');
   call(wellspring, ['check', join(root, 'usr/share/wellspring/content/first-room')]);
-  call(wellspring, ['kiosk', '--help']);
+  for (const word of ['kiosk', 'worker', 'plan']) call(wellspring, [word, '--help']);
   call(wellspring, ['dance'], { status: 2 });
+});
+
+test('a worker has its settings in a file of its own, and works for nobody yet', () => {
+  const worker = join(root, 'usr/libexec/wellspring/wellspring_worker');
+  const printed = readFileSync(join(root, 'etc/wellspring/worker.conf'), 'utf8');
+  assert.equal(call(worker, ['--print-config']), printed, 'it reads its own file');
+  assert.match(printed, /^content = \/var\/lib\/wellspring\/exhibits$/m);
+  assert.match(printed, /^#nats = $/m);
+  assert.match(printed, /^#name = $/m, 'it has no name of the machine that built it');
+  call(worker, [], { status: 2 });
+  const script = readFileSync(join(folder, 'control', 'postinst'), 'utf8');
+  assert.doesNotMatch(script, /(enable|start).*wellspring-worker(?<!try-restart.*)/);
+  const museum = readdirSync(join(root, 'usr/share/doc/wellspring/museum')).sort();
+  assert.deepEqual(museum, ['haproxy-nodes.cfg', 'haproxy.service.d', 'nats-server.service.d',
+    'nats.conf', 'secrets.sh', 'server.conf', 'worker.conf']);
 });
 
 test('systemd takes the units, and finds the services shut off', (context) => {
@@ -121,12 +137,21 @@ test('systemd takes the units, and finds the services shut off', (context) => {
     assert.equal(status, 0, stderr);
     for (const name of names) assert.ok(!stderr.includes(name), stderr);
   };
-  const units = ['wellspring-server.service', 'wellspring-kiosk.service'];
+  const units = ['server', 'worker', 'kiosk'].map((name) => `wellspring-${name}.service`);
   for (const name of units) take('system', name);
   take('user', 'wellspring-screen.service');
   verify(units);
   verify(['wellspring-screen.service'], '--user');
-  for (const [name, most] of [[units[0], 20], [units[1], 20]]) {
+  // Debian's own, with what a museum adds.
+  for (const name of ['haproxy.service', 'nats-server.service']) {
+    const own = ['/usr/lib', '/lib'].map((at) => join(at, 'systemd/system', name)).find(existsSync);
+    if (!own) continue;
+    copyFileSync(own, place(name));
+    cpSync(join(root, 'usr/share/doc/wellspring/museum', `${name}.d`), place(`${name}.d`),
+        { recursive: true });
+    verify([name]);
+  }
+  for (const [name, most] of units.map((one) => [one, 20])) {
     const found = spawnSync('systemd-analyze', ['security', '--offline=true', '--no-pager',
       `--threshold=${most}`, place(name)], { encoding: 'utf8' });
     const score = /Overall exposure level for .*: ([\d.]+)/.exec(found.stdout)?.[1];
