@@ -19,7 +19,8 @@ import { start_name_server } from './name_server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 import { ReturningPage, all_come_back } from './returning_page.mjs';
 
-const { folder, skip: no_namespaces } = enter_own_namespaces(fileURLToPath(import.meta.url));
+const { folder, skip: no_namespaces } = await enter_own_namespaces(
+    fileURLToPath(import.meta.url));
 const absent = ['haproxy', 'nats-server'].find((name) => spawnSync(name, ['-v'],
     { env: { PATH: `${process.env.PATH}:/usr/sbin` } }).error);
 const skip = no_namespaces ?? (absent ? `${absent} is not installed` : false);

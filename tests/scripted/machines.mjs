@@ -22,9 +22,13 @@ const ip = (words) => call(['ip', ...words.split(' ')]);
 // Starts this script anew in namespaces of its own, in which it is root, and ends as that does; in
 // there it returns {folder}, which is taken away at the end. Where there are none to be had it
 // returns {skip}: why.
-export function enter_own_namespaces(file) {
+export async function enter_own_namespaces(file) {
   const given = process.env.WELLSPRING_OWN_NAMESPACES;
-  if (given) return { folder: given };
+  if (given) {
+    // Whoever started it holds the other end: all of it ends with them, however they end.
+    process.stdin.on('end', () => process.exit(1)).resume().unref();
+    return { folder: given };
+  }
   const words = ['--map-root-user', '--net', '--mount', '--pid', '--fork', '--kill-child',
     '--mount-proc'];
   const tried = spawnSync('unshare', [...words, 'sh', '-c',
@@ -32,8 +36,10 @@ export function enter_own_namespaces(file) {
   if (tried.status !== 0)
     return { skip: `no network namespaces here: ${tried.error?.message ?? tried.stderr.trim()}` };
   const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
-  const { status } = spawnSync('unshare', [...words, process.execPath, file], { stdio: 'inherit',
+  const child = spawn('unshare', [...words, process.execPath, file], {
+    stdio: ['pipe', 'inherit', 'inherit'],
     env: { ...process.env, WELLSPRING_OWN_NAMESPACES: folder } });
+  const status = await new Promise((resolve) => child.on('close', resolve));
   rmSync(folder, { recursive: true, force: true });  // what was mounted in it is gone by now
   return process.exit(status ?? 1);
 }
