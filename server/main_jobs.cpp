@@ -19,6 +19,7 @@
 #include "main_jobs_run.h"
 #include "wire/tokens.h"
 #include "workers/message.h"
+#include "workers/program_number.h"
 
 using namespace wellspring;
 using namespace wellspring::program;
@@ -63,7 +64,7 @@ std::string make_name(const JobCommand& command) {
 
 int submit(const Options& options) {
   const JobCommand command = check_words(options.words, uint32_t(options.shards));
-  const JobOrder order{make_name(command),       version_number(),
+  const JobOrder order{make_name(command),       program_number(version_number()),
                        instruction_set(),        number_inputs(command, options.folders),
                        uint32_t(options.shards), options.words};
   LineSettings settings = options.line;
@@ -194,7 +195,8 @@ void keep_to_cores(int cores) {
 }
 
 int work(const Options& options) {
-  WorkSettings settings{options.line, options.folders, options.name, version_number()};
+  WorkSettings settings{options.line, options.folders, options.name,
+                        program_number(version_number())};
   settings.until_empty = options.until_empty;
   int from_hour = 0, from_minute = 0, to_hour = 0, to_minute = 0;
   char rest = 0;

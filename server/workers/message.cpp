@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "workers/bytes.h"
+#include "base/bytes.h"
 #include "world/native_rays.h"
 
 namespace wellspring::workers {

@@ -72,21 +72,6 @@ struct CallAnswer {
   uint32_t cores = 0;
 };
 
-// Asks a server for a file of an exhibit's package by its hash, from an offset on: it comes part by
-// part. A hash of zeros asks for the hash of the list of files.
-struct FileQuestion {
-  uint64_t server = 0;  // as in the order that was refused
-  FileHash hash{};
-  uint64_t offset = 0;  // bytes
-};
-struct FilePart {
-  uint64_t server = 0;
-  FileHash hash{};
-  uint64_t offset = 0, size = 0;  // bytes; size of the file
-  std::string bytes;              // none: there is no such file any more
-};
-inline constexpr size_t most_part_bytes = 256 * 1024;
-
 std::string write_message(const TraceOrder& order, const MessageKey& key);
 std::string write_message(const TraceAnswer& answer, const MessageKey& key);
 std::string write_message(const RollCall& call, const MessageKey& key);

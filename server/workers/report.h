@@ -22,7 +22,7 @@ enum class Refusal : uint8_t {
   late,          // the answer would not be worth having any more
   busy,          // too much waits here
   fetching,      // its exhibit or maps are on their way from the server, or being loaded
-  disk,          // what it would fetch does not fit on its disk
+  disk,          // its disk has no room for the files that it fetches
 };
 inline constexpr int refusals = 12;
 const char* to_word(Refusal refusal);

@@ -11,7 +11,7 @@ namespace wellspring::test {
 
 namespace {
 
-constexpr float degree = pi / 180;
+constexpr float a_degree = pi / 180;
 
 VisitorSequence named(const std::string& name, VisitorSequence sequence) {
   sequence.about = {{"case", name}};
@@ -26,7 +26,7 @@ VisitorSequence look_about(const std::string& name, int figure, VisitorLight lig
   visitor.worn = worn, visitor.size = size;
   for (float yaw : {15.f, 0.f, -15.f}) {
     VisitorFrame frame = sequence.frames.back();
-    frame.shot.visitors[0].turn.x = yaw * degree;
+    frame.shot.visitors[0].turn.x = yaw * a_degree;
     frame.seconds = 0.8, frame.judged = true;
     sequence.frames.push_back(frame);
   }
@@ -66,7 +66,7 @@ VisitorSequence spin() {
   for (int k = 1; k <= 24; k++) {
     VisitorFrame frame = stands;
     const float yaw = 15 * float(k);
-    frame.shot.visitors[0].turn.x = (yaw > 180 ? yaw - 360 : yaw) * degree;
+    frame.shot.visitors[0].turn.x = (yaw > 180 ? yaw - 360 : yaw) * a_degree;
     frame.seconds = k < 24 ? 0.125 : 1, frame.judged = true;
     sequence.frames.push_back(frame);
   }
@@ -116,7 +116,7 @@ VisitorSequence portrait(bool on_shirt, const Image8& face, double seconds) {
   frame.seconds = 2, frame.judged = true;
   for (double time = 0; time < seconds; time += frame.seconds) {
     // People stir; who never does is taken for a portrait.
-    frame.shot.visitors[0].turn.x = (sequence.frames.size() % 2 ? 4 : -4) * degree;
+    frame.shot.visitors[0].turn.x = (sequence.frames.size() % 2 ? 4 : -4) * a_degree;
     sequence.frames.push_back(frame);
   }
   for (VisitorFrame& one : sequence.frames) {
@@ -182,8 +182,9 @@ void judge(const VisitorFrame& frame, const VisitorSeen& seen, Outcome& outcome)
       if (off(one) < 0.12f && (!best || off(one) < off(*best))) best = &one;
     outcome.found.add(best != nullptr);
     if (!best) continue;
-    const vec3 turn = glm::abs(best->rotation - truth.turn) / degree;
-    if (std::abs(truth.turn.x) < 61 * degree) outcome.rotation.add((turn.x + turn.y + turn.z) / 3);
+    const vec3 turn = glm::abs(best->rotation - truth.turn) / a_degree;
+    if (std::abs(truth.turn.x) < 61 * a_degree)
+      outcome.rotation.add((turn.x + turn.y + turn.z) / 3);
     outcome.position.add(glm::length(best->position - truth.eyes) / glm::length(truth.eyes));
     outcome.numbers[truth.figure].insert(best->id);
     outcome.owners[best->id].insert(truth.figure);

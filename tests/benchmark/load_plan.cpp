@@ -18,7 +18,7 @@ struct Size {
   int width, height;
 };
 constexpr Size checked[] = {{320, 180}, {640, 360}};
-constexpr int crowds[] = {1, 2, 4, 8, 16};
+constexpr int crowd_sizes[] = {1, 2, 4, 8, 16};
 constexpr Span simulated{4, 40, 1};
 
 Outcome predict(const Costs& costs, const CrowdPlan& plan, const CrowdSeen& seen) {
@@ -115,7 +115,7 @@ void bench_load_plan(BenchReport& report, const BenchOptions& options) {
   const Costs costs = read_costs(report.to_json(), "load.plan");
   for (const bool local : {true, false})
     for (const Size& size : checked)
-      for (const int visitors : crowds)
+      for (const int visitors : crowd_sizes)
         check(report, options, costs,
               {.visitors = visitors,
                .width = size.width,

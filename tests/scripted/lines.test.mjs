@@ -203,7 +203,7 @@ test('a worker whose disk is full says so, and is missed', { skip }, async (t) =
   await end_worker('full', 'SIGTERM');
 });
 
-test('two servers share workers, which fetch a new package and hold the old one, too', { skip }, async () => {
+test('two servers share workers, which fetch a new package and hold both', { skip }, async () => {
   const exhibits = join(folder, 'content'), scene = join(exhibits, 'first-room', 'scene.glb');
   cpSync(join(content, 'first-room'), join(exhibits, 'first-room'), { recursive: true });
   const other = (words = []) => begin_server(['--cache', join(folder, 'second'), ...words],

@@ -2,40 +2,20 @@
 // A server with workers behind a real NATS server: their samples arrive with the same bits, who
 // differs is refused by name, who answers nonsense is not asked, and whatever dies, pictures go on.
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync,
   writeFileSync } from 'node:fs';
 import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, sleep, source, start_server, until } from '../server.mjs';
+import { Visitor, sleep, start_server, until } from '../server.mjs';
+import { begin_to_walk, content, free_port, kill, read_numbers, skip, start_nats, start_worker,
+  worker_state } from './crew.mjs';
 
-const skip = spawnSync('nats-server', ['--version']).error ? 'nats-server is not installed' : false;
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
 const secret = 'what-only-these-tests-know';
-const content = join(source, 'content');
 const workers = new Map();
 let port, nats, server, visitor;
-
-function free_port() {
-  return new Promise((resolve) => {
-    const socket = net.createServer().listen(0, '127.0.0.1', () => {
-      const { port: found } = socket.address();
-      socket.close(() => resolve(found));
-    });
-  });
-}
-
-async function start_nats() {
-  nats = spawn('nats-server', ['-a', '127.0.0.1', '-p', String(port)], { stdio: 'ignore' });
-  const answers = () => new Promise((resolve) => {
-    const socket = net.connect(port, '127.0.0.1');
-    socket.on('data', () => { socket.destroy(); resolve(true); });
-    socket.on('error', () => resolve(false));
-  });
-  await until(answers, 'nats-server answers');
-}
 
 // Speaks as much of NATS as a test needs.
 class Nats {
@@ -74,84 +54,53 @@ class Nats {
   close() { this.socket.destroy(); }
 }
 
-function start_worker(name,
-    { exhibits = content, cache = join(folder, 'worker'), words = [], key = '', embree = '' } = {}) {
-  const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_worker'),
-      ['--nats', `nats://127.0.0.1:${port}`, '--content', exhibits, '--exhibit', 'first-room',
-        '--cache', cache, '--name', name, '--cores', '1', ...words],
-      { stdio: ['ignore', 'pipe', 'inherit'],
-        env: { ...process.env, WELLSPRING_WORKERS_KEY: key, WELLSPRING_EMBREE: embree } });
+async function begin_worker(name, { embree = '', ...options } = {}) {
+  const { child } = await start_worker(name, port, { cache: join(folder, 'worker'),
+    environment: { WELLSPRING_EMBREE: embree }, ...options });
   workers.set(name, child);
-  return new Promise((resolve, reject) => {
-    child.stdout.once('data', () => resolve(child));
-    child.once('exit', (status) => reject(new Error(`worker ${name} ended with ${status}`)));
-  });
 }
-const kill = (child, signal) => new Promise((resolve) => {
-  if (child.exitCode !== null || child.signalCode !== null) return resolve(child.exitCode);
-  child.on('exit', (status) => resolve(status));
-  child.kill(signal);
-});
-
-async function metric(name, labels = '') {
-  const text = await (await fetch(`${server.url}/metrics`)).text();
-  const line = text.split('\n').find((one) => one.startsWith(`wellspring_${name}${labels} `)
-      || one.startsWith(`wellspring_${name}{`) && one.includes(labels));
-  return line ? Number(line.split(' ').at(-1)) : 0;
-}
-async function worker_state(name) {
-  const { workers: all } = await (await fetch(`${server.url}/api/v1/status`)).json();
-  return all.find((one) => one.name === name);
-}
+const metric = async (name) => (await read_numbers(server))[name] ?? 0;
+const state_of = (name) => worker_state(server, name);
 const pictures_go_on = async () => {
   for (let k = 0; k < 3; k++) await visitor.picture();
 };
 
-// Walks and stands in turn, so that both kinds of samples are asked for.
-let walks;
-function begin_to_walk() {
-  let seq = 1;
-  walks = setInterval(() => {
-    seq++;
-    visitor.send({ type: 'input', seq, move: [0, 0, seq % 16 < 8 ? 0 : seq % 32 < 16 ? 0.4 : -0.4],
-      look: [seq % 16 < 8 ? 0 : 0.02, 0] });
-  }, 250);
-}
+let stop_walking;
 
 before(async () => {
   if (skip) return;
   port = await free_port();
-  await start_nats();
+  nats = await start_nats(port);
   server = await start_server(['--exhibit', 'first-room', '--no-bake', '--verify-workers',
     '--workers', `nats://127.0.0.1:${port}`, '--cache', join(folder, 'server')]);
-  await Promise.all([start_worker('north'), start_worker('south')]);
+  await Promise.all([begin_worker('north'), begin_worker('south')]);
   visitor = new Visitor(server);
   await visitor.hello();
-  begin_to_walk();
+  stop_walking = begin_to_walk(visitor);
 });
 after(async () => {
-  clearInterval(walks);
-  await Promise.all([...workers.values()].map((child) => kill(child, 'SIGKILL')));
+  stop_walking?.();
+  await Promise.all([...workers.values()].map((child) => kill(child)));
   if (server) assert.equal(await server.stop(), 0);
-  if (nats) await kill(nats, 'SIGKILL');
+  if (nats) await kill(nats);
   rmSync(folder, { recursive: true, force: true });
 });
 
 test('samples come from all workers, with the same bits', { skip }, async () => {
   for (const name of ['north', 'south'])
-    await until(async () => await metric('worker_samples_total', `{worker="${name}"}`) > 2000,
+    await until(async () => await metric(`worker_samples_total ${name}`) > 2000,
         `samples of ${name}`);
   assert.ok(await metric('workers_verified_total') > 4000);
   assert.equal(await metric('workers_differing_total'), 0);
   assert.equal(await metric('workers_spoiled_total'), 0);
-  await until(async () => (await worker_state('north')).problem === '', 'north is asked');
-  const north = await worker_state('north');
+  await until(async () => (await state_of('north')).problem === '', 'north is asked');
+  const north = await state_of('north');
   assert.equal(north.cores, 1);
   assert.ok(north.samples_per_second > 0);
 });
 
-test('a finished picture over HTTP has samples of workers, of the same bits', { skip }, async () => {
-  clearInterval(walks);
+test('a finished picture over HTTP has samples of workers, the same bits', { skip }, async () => {
+  stop_walking?.();
   await visitor.close();
   const total = () => metric('workers_samples_total');
   let before;  // what was on its way to the visitor has come
@@ -167,7 +116,7 @@ test('a finished picture over HTTP has samples of workers, of the same bits', { 
   assert.equal(await metric('workers_differing_total'), 0);
   visitor = new Visitor(server);
   await visitor.hello();
-  begin_to_walk();
+  stop_walking = begin_to_walk(visitor);
 });
 
 // Reads where fields of an order lie (server/workers/message.cpp).
@@ -220,9 +169,9 @@ test('an order of another version, scene or light is refused by name', { skip },
 
 test('a worker with other instructions finds the same light, if not the same bits', { skip },
     async () => {
-      await start_worker('old', { embree: 'isa=sse2' });
+      await begin_worker('old', { embree: 'isa=sse2' });
       await until(async () => await metric('workers_alike_total') > 10000, 'samples of old');
-      assert.equal((await worker_state('old')).same_bits, false);
+      assert.equal((await state_of('old')).same_bits, false);
       assert.ok(Math.abs(await metric('workers_alike_deviation')) < 5);
       assert.ok(Math.abs(await metric('workers_alike_difference')) < 0.01);
       assert.equal(await metric('workers_differing_total'), 0);
@@ -233,10 +182,10 @@ test('a worker without the illumination maps fetches them', { skip }, async () =
   const exhibits = join(folder, 'content');
   cpSync(join(content, 'first-room'), join(exhibits, 'first-room'), { recursive: true });
   rmSync(join(exhibits, 'first-room', 'light.maps'));
-  await start_worker('dark', { exhibits });
-  await until(async () => await metric('worker_samples_total', '{worker="dark"}') > 1000,
+  await begin_worker('dark', { exhibits });
+  await until(async () => await metric('worker_samples_total dark') > 1000,
       'samples by fetched maps');
-  assert.ok(await metric('workers_refused_total', '{reason="light"}') > 0);
+  assert.ok(await metric('workers_refused_total light') > 0);
   assert.equal(await metric('workers_differing_total'), 0);
   await kill(workers.get('dark'), 'SIGTERM');
 });
@@ -244,16 +193,16 @@ test('a worker without the illumination maps fetches them', { skip }, async () =
 test('a worker without the exhibit fetches it, whole, and goes on after a kill', { skip },
     async () => {
       const cache = join(folder, 'bare'), files = join(cache, 'packages', 'files');
-      const bare = () => start_worker('bare', { exhibits: join(folder, 'nothing'), cache });
+      const bare = () => begin_worker('bare', { exhibits: join(folder, 'nothing'), cache });
       const halves = () => existsSync(files) && readdirSync(files).length > 0;
       await bare();
       await until(halves, 'the first file');
-      await kill(workers.get('bare'), 'SIGKILL');
+      await kill(workers.get('bare'));
       await bare();
-      await until(async () => await metric('worker_samples_total', '{worker="bare"}') > 1000,
+      await until(async () => await metric('worker_samples_total bare') > 1000,
           'samples by a fetched exhibit');
       assert.equal(await metric('workers_differing_total'), 0);
-      assert.ok(await metric('workers_refused_total', '{reason="exhibit"}') > 0);
+      assert.ok(await metric('workers_refused_total exhibit') > 0);
       const [version] = readdirSync(join(cache, 'packages')).filter((name) => name !== 'files');
       const place = join(cache, 'packages', version, 'first-room', 'scene.glb');
       assert.deepEqual(readFileSync(place), readFileSync(join(content, 'first-room', 'scene.glb')));
@@ -268,10 +217,10 @@ test('a worker that has another scene is not asked, and told', { skip }, async (
   assert.ok(place > 0);
   scene[place + '"roughnessFactor":0.'.length] ^= 1;
   writeFileSync(file, scene);
-  await start_worker('other', { exhibits, words: ['--fetch-most', '0'] });
-  await until(async () => (await worker_state('other'))?.problem.includes('scene'),
+  await begin_worker('other', { exhibits, words: ['--fetch-most', '0'] });
+  await until(async () => (await state_of('other'))?.problem.includes('scene'),
       'refuses: scene');
-  assert.ok(await metric('workers_refused_total', '{reason="scene"}') > 0);
+  assert.ok(await metric('workers_refused_total scene') > 0);
   await pictures_go_on();
   await kill(workers.get('other'), 'SIGTERM');
 });
@@ -298,7 +247,7 @@ test('a worker that answers nonsense is not asked, and spoils nothing', { skip }
       write_text('liar'), Buffer.from([0]), Buffer.alloc(8), Buffer.from([1, 0, 0, 0])]);
     line.send(reply, Buffer.concat([head, one]));
   });
-  await until(async () => (await worker_state('liar'))?.problem.includes('cannot be'), 'is judged');
+  await until(async () => (await state_of('liar'))?.problem.includes('cannot be'), 'is judged');
   assert.ok(orders >= 1);
   assert.ok(await metric('workers_spoiled_total') > 0);
   assert.equal(await metric('workers_differing_total'), 0);
@@ -307,14 +256,14 @@ test('a worker that answers nonsense is not asked, and spoils nothing', { skip }
 });
 
 test('pictures go on when a worker dies, or NATS, and when it is back', { skip }, async () => {
-  await kill(workers.get('south'), 'SIGKILL');
-  await until(async () => (await worker_state('south'))?.problem, 'the dead worker is noticed');
+  await kill(workers.get('south'));
+  await until(async () => (await state_of('south'))?.problem, 'the dead worker is noticed');
   await pictures_go_on();
-  await kill(nats, 'SIGKILL');
+  await kill(nats);
   await until(async () => await metric('workers_connected') === 0, 'the loss is noticed');
   await pictures_go_on();
   const before_it = await metric('workers_samples_total');
-  await start_nats();
+  nats = await start_nats(port);
   await until(async () => await metric('workers_samples_total') > before_it + 1000,
       'samples come again');
 });
@@ -323,9 +272,9 @@ test('with a secret, who does not know it is neither heard nor obeyed', { skip }
   const key = join(folder, 'key');
   writeFileSync(key, `${secret}\n`, { mode: 0o600 });
   await kill(workers.get('north'), 'SIGTERM');
-  await start_worker('sealed', { key: secret });
-  await start_worker('open');
-  clearInterval(walks);
+  await begin_worker('sealed', { key: secret });
+  await begin_worker('open');
+  stop_walking?.();
   await visitor.close();
   assert.equal(await server.stop(), 0);
   server = await start_server(['--exhibit', 'first-room', '--no-bake', '--verify-workers',
@@ -333,10 +282,10 @@ test('with a secret, who does not know it is neither heard nor obeyed', { skip }
     '--cache', join(folder, 'server')]);
   visitor = new Visitor(server);
   await visitor.hello();
-  begin_to_walk();
-  await until(async () => await metric('worker_samples_total', '{worker="sealed"}') > 1000,
+  stop_walking = begin_to_walk(visitor);
+  await until(async () => await metric('worker_samples_total sealed') > 1000,
       'samples of who knows it');
   await sleep(1500);  // more than a call
-  assert.equal(await worker_state('open'), undefined);
+  assert.equal(await state_of('open'), undefined);
   assert.equal(await metric('workers_differing_total'), 0);
 });

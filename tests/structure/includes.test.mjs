@@ -88,7 +88,8 @@ const may_enter = {
     '': ['cells', 'still'],
   },
   workers: {
-    '': [],
+    package: [],
+    '': ['package'],
     jobs: [''],
   },
   kiosk: {
@@ -126,14 +127,14 @@ const may_enter = {
     count: ['state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
     answer: ['wall', 'count', 'state', 'house', 'questions', 'kiosk', 'visit', 'storyteller',
       'moving', 'exhibit/pieces', 'exhibit'],
-    http: ['lens', 'volumes', 'lawns', 'answer', 'state', 'house', 'questions', 'kiosk', 'visit',
-      'storyteller', 'moving', 'exhibit/pieces', 'exhibit'],
+    workers: ['state', 'storyteller', 'moving', 'exhibit/pieces', 'exhibit'],
+    http: ['workers', 'lens', 'volumes', 'lawns', 'answer', 'state', 'house', 'questions', 'kiosk',
+      'visit', 'storyteller', 'moving', 'exhibit/pieces', 'exhibit'],
     status: ['http', 'answer', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving',
       'exhibit'],
     watch: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
     lens: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit/pieces',
       'exhibit'],
-    workers: ['state', 'storyteller', 'moving', 'exhibit/pieces', 'exhibit'],
     draw: ['workers', 'wall', 'lens', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving',
       'exhibit'],
     // The tick.

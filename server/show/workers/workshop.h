@@ -33,7 +33,7 @@ class Workshop {
   // Traces on all cores. `waited`: seconds since the order came.
   TraceAnswer answer(const TraceOrder& order, double waited);
 
-  // What servers are asked for, and where their answers go: on any thread.
+  // It says what servers are asked for, and takes their answers, on any thread.
   PackageFetch& fetch() { return fetch_; }
   // Puts to use what has been fetched: an exhibit is loaded on a thread of its own.
   void advance();

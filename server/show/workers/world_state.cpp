@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/bytes.h"
 #include "base/rng.h"
 #include "light/kept/bake_file.h"
 #include "light/sample/illumination_map.h"
 #include "show/state/lamps.h"
 #include "show/state/visitor_world.h"
-#include "workers/bytes.h"
 
 namespace wellspring::show {
 namespace {

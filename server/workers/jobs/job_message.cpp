@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "workers/bytes.h"
+#include "base/bytes.h"
 
 namespace wellspring::workers {
 namespace {

@@ -102,7 +102,7 @@ void PackageFetch::take(const FilePart& part, double now) {
   try {
     if (missing_.empty()) return begin_list(part, now);
     Part& file = missing_.back();
-    if (file.size == 0) file.size = part.size;  // that of the list is not known before
+    if (file.size == 0) file.size = part.size;  // a list tells its size with its first part
     if (part.bytes.empty() || part.size != file.size || part.size > most_file_bytes ||
         (!has_list_ && part.size > most_list_bytes))
       return fail("its files at the server have changed", now);

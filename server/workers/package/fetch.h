@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fetches the files of an exhibit from its server, at a worker: one package at a time, one part
-// after the other, those alone that are not here yet. What was fetched stays in a folder, also half
-// a file, so that the next attempt goes on with it. No clock: times are given, in seconds.
+// after the other, those alone that are not here yet. Files stay in a folder, also half of one, so
+// that the next attempt goes on with it. No clock: times are given, in seconds.
 #pragma once
 #include <cstdint>
 #include <mutex>
@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "workers/message.h"
 #include "workers/package/package.h"
 
 namespace wellspring::workers {
@@ -35,7 +34,7 @@ class PackageFetch {
   struct Result {
     std::string exhibit;
     What what = What::package;
-    std::string folder;             // that holds the package; empty: it failed, or only maps came
+    std::string folder;             // it holds the package; empty: it failed, or only maps came
     std::vector<std::string> maps;  // files that may be the exhibit's illumination maps
     std::string problem;            // why it failed; empty: it did not
   };

@@ -6,9 +6,9 @@
 #include <memory>
 #include <sodium.h>
 
+#include "base/bytes.h"
 #include "base/load_error.h"
 #include "base/log.h"
-#include "workers/bytes.h"
 
 namespace wellspring::workers {
 

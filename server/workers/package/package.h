@@ -29,6 +29,21 @@ using PackageList = std::vector<PackageFile>;
 inline constexpr size_t most_package_files = 200'000, most_list_bytes = 64 << 20;
 inline constexpr uint64_t most_file_bytes = uint64_t(64) << 30;
 
+// Asks a server for a file of an exhibit's package by its hash, from an offset on: it comes part by
+// part. A hash of zeros asks for the hash of the list of files.
+struct FileQuestion {
+  uint64_t server = 0;  // as in the order that was refused
+  FileHash hash{};
+  uint64_t offset = 0;  // bytes
+};
+struct FilePart {
+  uint64_t server = 0;
+  FileHash hash{};
+  uint64_t offset = 0, size = 0;  // bytes; size of the file
+  std::string bytes;              // none: there is no such file any more
+};
+inline constexpr size_t most_part_bytes = 256 * 1024;
+
 std::string to_hex(const FileHash& hash);
 FileHash hash_bytes(std::string_view bytes);
 FileHash hash_file(const std::string& file);  // throws LoadError

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "workers/message.h"
 #include "workers/package/package.h"
 
 namespace wellspring::workers {

@@ -8,9 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "base/layers.h"
-
-namespace wellspring::workers {
+namespace wellspring {
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -77,4 +75,4 @@ class ByteReader {
   bool good_ = true;
 };
 
-}  // namespace wellspring::workers
+}  // namespace wellspring
