@@ -6,9 +6,12 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <fstream>
+#include <sys/file.h>
 #include <system_error>
+#include <unistd.h>
 #include <utility>
 
 #include "base/load_error.h"
@@ -71,7 +74,8 @@ std::string PackageFetch::progress() const {
 bool PackageFetch::begin(uint64_t server, const std::string& exhibit, What what, double now) {
   std::lock_guard lock(mutex_);
   if (server_ != 0) return exhibit == exhibit_ && (what == what_ || what_ == What::package);
-  if (most_bytes_ == 0 || server == 0 || result_ || now - ended_ < try_again) return false;
+  if (most_bytes_ == 0 || server == 0 || result_ || now - ended_ < try_again || !lock_folder(now))
+    return false;
   server_ = server, exhibit_ = exhibit, what_ = what;
   list_hash_ = {}, list_.clear(), missing_.clear();
   offset_ = done_ = all_ = 0;
@@ -80,6 +84,28 @@ bool PackageFetch::begin(uint64_t server, const std::string& exhibit, What what,
   log::info("{} of '{}' are fetched from the server",
             what == What::maps ? "illumination maps" : "files", exhibit);
   return true;
+}
+
+// The system ends the lock of a process that is killed.
+bool PackageFetch::lock_folder(double now) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  const std::string file = folder_ + "/lock";
+  lock_ = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+  if (lock_ < 0) {
+    full_ = errno == ENOSPC || errno == EDQUOT;
+    ended_ = now;
+    log::warn("{}: {}", file, std::strerror(errno));
+    return false;
+  }
+  if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return true;
+  unlock_folder();
+  return false;
+}
+
+void PackageFetch::unlock_folder() {
+  if (lock_ >= 0) close(lock_);
+  lock_ = -1;
 }
 
 std::optional<FileQuestion> PackageFetch::ask(double now) {
@@ -218,11 +244,13 @@ void PackageFetch::finish(double now) {
   server_ = 0, ended_ = now;
   result_ = std::move(result);
   tidy();
+  unlock_folder();
 }
 
 void PackageFetch::fail(const std::string& problem, double now) {
   log::warn("'{}' cannot be fetched: {}", exhibit_, problem);
   server_ = 0, ended_ = now;
+  unlock_folder();
   result_ = Result{exhibit_, what_, {}, {}, problem};
 }
 

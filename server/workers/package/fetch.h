@@ -18,10 +18,13 @@ class PackageFetch {
  public:
   // `folder` gets files/HASH and HASH/EXHIBIT. `most_bytes` of a package; 0: nothing is fetched.
   PackageFetch(std::string folder, uint64_t most_bytes);
+  ~PackageFetch() { unlock_folder(); }
+  PackageFetch(const PackageFetch&) = delete;
+  PackageFetch& operator=(const PackageFetch&) = delete;
 
   enum class What : uint8_t { package, maps };
-  // Begins, unless something is being fetched, or the last attempt has ended just before. Returns
-  // whether the fetch of this goes on.
+  // Begins, unless something is being fetched, here or by another process with the same folder, or
+  // the last attempt has ended just before. Returns whether the fetch of this goes on.
   bool begin(uint64_t server, const std::string& exhibit, What what, double now);
   // Lets files that are here already be taken from a folder instead: a package of that exhibit.
   void use(const std::string& package_folder);
@@ -48,6 +51,8 @@ class PackageFetch {
     FileHash hash{};
     uint64_t size = 0;
   };
+  bool lock_folder(double now);
+  void unlock_folder();
   void fail(const std::string& problem, double now);
   void begin_list(const FilePart& part, double now);
   void take_list(double now);
@@ -69,6 +74,7 @@ class PackageFetch {
   uint64_t offset_ = 0, done_ = 0, all_ = 0;  // bytes
   double asked_ = -1e9, heard_ = -1e9, ended_ = -1e9;
   bool has_list_ = false, full_ = false;
+  int lock_ = -1;  // descriptor of the locked file; -1: it is not locked
   std::optional<Result> result_;
 };
 

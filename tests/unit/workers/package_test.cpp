@@ -41,7 +41,9 @@ struct Both {
       }
     return fetch.take_result();
   }
-  PackageFetch make_fetch(uint64_t most = 1 << 30) { return {worker.path.string(), most}; }
+  PackageFetch make_fetch(uint64_t most = 1 << 30) {
+    return PackageFetch(worker.path.string(), most);
+  }
   std::string read(const std::string& folder, const std::string& name) const {
     std::ifstream in(fs::path(folder) / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -108,6 +110,20 @@ TEST(PackageFetch, TakesWhatIsHereAlready) {
   const auto result = both.carry(fetch);
   ASSERT_TRUE(result && result->problem.empty());
   EXPECT_EQ(both.parts, 4);
+  EXPECT_EQ(both.read(result->folder, "room/scene.glb"), large);
+}
+
+TEST(PackageFetch, LetsOneProcessFetchAtATime) {
+  Both both;
+  PackageFetch first = both.make_fetch(), second = both.make_fetch();
+  ASSERT_TRUE(first.begin(1, "room", What::package, both.now));
+  EXPECT_FALSE(second.begin(1, "room", What::package, both.now));
+  ASSERT_TRUE(both.carry(first));
+  both.parts = 0;
+  ASSERT_TRUE(second.begin(1, "room", What::package, both.now));
+  const auto result = both.carry(second);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(both.parts, 2) << "the list's hash, and the list";
   EXPECT_EQ(both.read(result->folder, "room/scene.glb"), large);
 }
 
