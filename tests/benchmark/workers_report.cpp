@@ -117,32 +117,34 @@ ReportPage workers_page() {
       "workers",
       "What are workers good for, and can they do harm? Each is held to a quarter of a core by a "
       "control group, on the machine of the server, over NATS.",
-      {"Efficiency: samples a second over those of one worker, over their number. The renderer "
-       "of Wald et al. (2002, table 1) showed 0.4, 0.8, 1.6, 3.2 and 5.3 pictures a second with "
-       "1, 2, 4, 8 and 16 clients: an efficiency of 1, and of 0.83 where its server was full.",
+      {"Efficiency: samples a second over those of one worker, over their number; the renderer of "
+       "Wald et al. (2002, table 1) had 1 with 8 clients, 0.83 with 16.",
        "At rest: a server of a quarter of a core; FLIP against the converged picture so long after "
        "a visitor has leapt to a viewpoint and stands, and the time until it is as low as without "
        "workers at half the time that is measured.",
-       "Walking: a server of half a core; the time from an input to the picture that shows it. "
-       "What is wrong with both workers' lines goes wrong when the walk begins. Over: the time "
-       "over that without workers in the same round, the median of rounds."},
-      {{.caption = "Samples",
+       "Walking: a server of half a core. What is wrong with both workers' lines goes wrong when "
+       "the walk begins. Over: the time over that without workers in the same round."},
+      {{.caption = "Samples, and the time until a picture at rest is good",
         .rows = {{"workers", "workers"}},
-        .columns = {{"samples", "samples a second", 1, "1/s"}, {"efficiency", "efficiency"}}},
+        .columns = {{"samples", "samples a second", 1, "1/s"},
+                    {"efficiency", "efficiency"},
+                    {"rest_until", "at rest"},
+                    {"rest_ratio", "over"},
+                    {"rest_pictures", "pictures"}},
+        .most_rows = 6},
        {.caption = "At rest: FLIP after seconds",
         .rows = {{"workers", "workers"}},
         .columns = {{"rest_flip", "FLIP"}},
-        .across = "seconds"},
-       {.caption = "At rest: until as good as without workers at half the time",
-        .rows = {{"workers", "workers"}},
-        .columns = {{"rest_until", "time"}, {"rest_ratio", "over"}, {"rest_pictures", "pictures"}}},
+        .across = "seconds",
+        .most_rows = 3},
        {.caption = "Walking: input to picture",
         .rows = {{"line", "workers"}},
         .columns = {{"walk_p50", "p50"},
                     {"walk_p95", "p95"},
                     {"walk_p50_over", "p50 over"},
                     {"walk_p95_over", "p95 over"},
-                    {"walk_fps", "pictures a second", 1, "1/s"}}}}};
+                    {"walk_fps", "pictures a second", 1, "1/s"}},
+        .most_rows = 6}}};
 }
 
 }  // namespace wellspring::test

@@ -87,14 +87,18 @@ TEST(PlacePairs, APaintAndItsRetouchingAreFound) {
   EXPECT_NE(text.find("1, 1    3, 3        0.0"), std::string::npos) << text;
   EXPECT_TRUE(find_unlike_places(nm, {paint, other}, lamps, settings).empty());
   // Shards find them together, each pair once.
-  auto second = find_unlike_places(nm, places, lamps, settings, {1, 2});
-  const auto first = find_unlike_places(nm, places, lamps, settings, {0, 2});
-  EXPECT_LT(first.size(), unlike.size());
-  second.insert(second.end(), first.begin(), first.end());
-  EXPECT_EQ(second.size(), unlike.size());
-  const auto merged = choose_place_pairs(nm, places, lamps, settings, second);
+  const std::vector<std::vector<double>> divided{paint, paint, retouching, other};
+  const auto whole = find_unlike_places(nm, divided, lamps, settings);
+  auto parts = find_unlike_places(nm, divided, lamps, settings, {1, 2});
+  const auto first = find_unlike_places(nm, divided, lamps, settings, {0, 2});
+  EXPECT_EQ(parts.size(), 1u);
+  EXPECT_EQ(first.size(), 1u);
+  parts.insert(parts.end(), first.begin(), first.end());
+  EXPECT_EQ(parts.size(), whole.size());
+  const auto merged = choose_place_pairs(nm, divided, lamps, settings, parts);
   ASSERT_EQ(merged.size(), 1u);
-  EXPECT_EQ(merged[0].de00, pairs[0].de00);
+  EXPECT_EQ(merged[0].first, 0u);
+  EXPECT_EQ(merged[0].de00, choose_place_pairs(nm, divided, lamps, settings, whole)[0].de00);
 }
 
 }  // namespace
