@@ -213,15 +213,6 @@ int work(const Options& options) {
   return work_on_jobs(settings);
 }
 
-std::string default_name() {
-  char host[64] = "worker";
-  gethostname(host, sizeof host - 1);
-  std::string name;
-  for (const char* c = host; *c && *c != '.' && name.size() < 20; c++)
-    name += is_worker_name(std::string_view(c, 1)) ? *c : '-';
-  return fmt::format("{}-{}", name, getpid());
-}
-
 void add_options(CLI::App& app, Options& o) {
   app.fallthrough();
   app.add_option("--nats", o.line.channel.url, "address of NATS, e.g. nats://10.0.0.5:4222")
@@ -254,7 +245,7 @@ int main(int argc, char** argv) {
   log::start("jobs");
   CLI::App app{"Does long work in shards on many machines; without a command it lists jobs."};
   Options options;
-  options.name = default_name();
+  options.name = default_worker_name();
   add_options(app, options);
   app.require_subcommand(0, 1);
   CLI::App& submits = *app.add_subcommand("submit", "queues a job and prints its name");

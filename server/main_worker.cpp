@@ -85,15 +85,6 @@ class Orders {
   size_t waiting_ = 0;
 };
 
-std::string default_name() {
-  char host[64] = "worker";
-  gethostname(host, sizeof host - 1);
-  std::string name;
-  for (const char* c = host; *c && *c != '.' && name.size() < 20; c++)
-    name += is_worker_name(std::string_view(c, 1)) ? *c : '-';
-  return fmt::format("{}-{}", name, getpid());
-}
-
 // Returns the folders of the exhibits that are to be loaded.
 std::vector<std::string> folders(const Options& options) {
   std::vector<std::string> all;
@@ -237,7 +228,7 @@ int main(int argc, char** argv) {
     std::cerr << "wellspring worker: --nats is missing: the address of NATS\n";
     return 2;
   }
-  if (options.name.empty()) options.name = default_name();
+  if (options.name.empty()) options.name = default_worker_name();
   if (!is_worker_name(options.name)) {
     std::cerr << "--name " << options.name << ": 1 to 32 letters, digits, - and _ are expected\n";
     return 2;

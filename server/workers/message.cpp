@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/core.h>
 #include <limits>
 #include <utility>
 
@@ -179,6 +180,15 @@ bool is_worker_name(std::string_view name) {
            c == '_';
   };
   return !name.empty() && name.size() <= 32 && std::ranges::all_of(name, fits);
+}
+
+std::string default_worker_name() {
+  char host[64] = "worker";
+  gethostname(host, sizeof host - 1);
+  std::string name;
+  for (const char* c = host; *c && *c != '.' && name.size() < 20; c++)
+    name += is_worker_name(std::string_view(c, 1)) ? *c : '-';
+  return fmt::format("{}-{}", name, getpid());
 }
 
 std::string write_message(const TraceOrder& order, const MessageKey& key) {

@@ -91,6 +91,7 @@ bool read_message(std::string_view bytes, const MessageKey& key, FilePart& part)
 
 // Returns whether the text can be a worker's name: 1 to 32 letters, digits, '-' and '_'.
 bool is_worker_name(std::string_view name);
+std::string default_worker_name();  // consists of this machine's name and the process's number
 
 // Holds how large numbers in samples of a world may be.
 struct SampleBounds {

@@ -78,12 +78,11 @@ Refusal Workshop::begin_fetch(const TraceOrder& order, PackageFetch::What what, 
   const bool maps = what == PackageFetch::What::maps;
   if (maps ? order.same.light == 0 : order.same.scene == other_scene_) return why;
   const bool was_busy = fetch_.busy();
-  if (!was_busy)
-    for (const Room& room : rooms_)
-      if (room.show->stage.exhibit.id == order.exhibit) fetch_.use(room.show->stage.exhibit.folder);
   if (!fetch_.begin(order.server, order.exhibit, what, seconds_now()))
     return fetch_.is_full() ? Refusal::disk : why;
   if (was_busy) return Refusal::fetching;
+  for (const Room& room : rooms_)
+    if (room.show->stage.exhibit.id == order.exhibit) fetch_.use(room.show->stage.exhibit.folder);
   light_ = order.same.light, scene_ = order.same.scene;
   return why;
 }

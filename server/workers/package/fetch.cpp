@@ -66,11 +66,6 @@ bool PackageFetch::is_full() const {
   return full_;
 }
 
-std::string PackageFetch::progress() const {
-  std::lock_guard lock(mutex_);
-  return fmt::format("{}, {:.1f} of {:.1f} MB", exhibit_, megabytes(done_), megabytes(all_));
-}
-
 bool PackageFetch::begin(uint64_t server, const std::string& exhibit, What what, double now) {
   std::lock_guard lock(mutex_);
   if (server_ != 0) return exhibit == exhibit_ && (what == what_ || what_ == What::package);

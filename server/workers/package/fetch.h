@@ -43,8 +43,7 @@ class PackageFetch {
   };
   std::optional<Result> take_result();  // once
   bool busy() const;
-  std::string progress() const;  // for people: "castle, 3.1 of 48 MB"
-  bool is_full() const;          // the last attempt failed for want of space
+  bool is_full() const;  // the last attempt failed for want of space
 
  private:
   struct Part {
